@@ -15,6 +15,7 @@ use super::options::{SkirtOptions, WARM_UP};
 use super::report::{self, SkirtReport};
 use super::scene::{MeteredStages, SkirtScene};
 use crate::backend::SteppedBy;
+use crate::crossings::CrossingWatch;
 
 /// Steps at the end over which the greatest energy of motion is looked for: a second.
 const RESTING_STEPS: usize = 120;
@@ -83,6 +84,13 @@ struct SkirtRun {
     wrong_frames: u64,
     nonfinite: u64,
     energies: Vec<f64>,
+    /// Of each skirt, where they keep from passing through themselves.
+    crossings: Vec<CrossingWatch>,
+}
+
+/// Looks at one of the skirts.
+fn watch(scene: &SkirtScene) -> CrossingWatch {
+    CrossingWatch::new(&[&scene.garment.triangles], f64::from(scene.options.step_s))
 }
 
 impl SkirtRun {
@@ -105,6 +113,7 @@ impl SkirtRun {
             wrong_frames: 0,
             nonfinite: 0,
             energies: Vec::with_capacity(RESTING_STEPS),
+            crossings: if options.folds { scene.cloths.iter().map(|_| watch(scene)).collect() } else { Vec::new() },
         }
     }
 
@@ -122,6 +131,11 @@ impl SkirtRun {
         for cloth in &scene.cloths {
             let frame = self.gauge.read(&cloth.positions, &scene.spheres);
             self.add(&frame);
+        }
+        if CrossingWatch::wants(self.times.len() as u64) {
+            for (watch, cloth) in self.crossings.iter_mut().zip(&scene.cloths) {
+                watch.look(&[cloth.positions.iter().map(|p| (*p).into()).collect()]);
+            }
         }
         if self.times.len() + RESTING_STEPS > self.options.runs.max(1) * self.options.steps.max(1) {
             self.energies.push(scene.kinetic_energy() * 1e3);
@@ -181,6 +195,7 @@ impl SkirtRun {
             },
             hem_winding_wrong: self.wrong_frames,
             nonfinite: self.nonfinite,
+            crossings: self.crossings.iter().map(CrossingWatch::figures).max_by_key(|c| c.frames_with),
             allocations_per_step: self.heap.read().map(|_| self.allocations as f64 / self.times.len() as f64),
             memory_bytes: scene.memory_bytes.map(|[garment, states]| garment + states),
             memory_garment_bytes: scene.memory_bytes.map(|[garment, _]| garment),

@@ -32,6 +32,8 @@ pub struct SkirtOptions {
     pub stretch: Stretch,
     /// Wind of the scene.
     pub wind: bool,
+    /// Whether each skirt keeps from passing through itself.
+    pub folds: bool,
     /// Threads that step.
     pub threads: usize,
     /// Equal skirts on equal bodies, stepped one after the other or shared between threads.
@@ -70,6 +72,7 @@ impl Default for SkirtOptions {
             mesh: SkirtMesh::Grid,
             stretch: Stretch::Inextensible,
             wind: false,
+            folds: false,
             threads: 1,
             garments: 1,
             lanes: None,
@@ -111,6 +114,7 @@ impl SkirtOptions {
                 Wind { velocity: velocity.into(), drag, lift }
             }),
             workers: self.threads,
+            folds: self.folds,
             width: self.lanes.unwrap_or(default.width),
             ..default
         })

@@ -9,6 +9,7 @@ use toile_gpu::backend::BackendTimes;
 
 use super::options::SkirtOptions;
 use crate::backend::SteppedBy;
+use crate::crossings::CrossingFigures;
 
 /// How far warp and weft edges are from their length, as a part of it (0.01 is 1 %).
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -70,6 +71,8 @@ pub struct SkirtReport {
     pub stretch: &'static str,
     /// Whether there is wind.
     pub wind: bool,
+    /// Whether each keeps from passing through itself.
+    pub folds: bool,
     /// Skirts that were stepped.
     pub garments: usize,
     /// Threads that stepped them.
@@ -102,6 +105,8 @@ pub struct SkirtReport {
     pub penetration_mm: Penetration,
     /// Frames in which the hem did not go around each leg exactly once.
     pub hem_winding_wrong: u64,
+    /// Edges of a skirt that passed through its faces, every tenth step.
+    pub crossings: Option<CrossingFigures>,
     /// Vertices that were not finite, summed over the frames.
     pub nonfinite: u64,
     /// What stepped the skirts.
@@ -141,6 +146,7 @@ impl SkirtReport {
             mesh: options.mesh.name(),
             stretch: options.stretch.name(),
             wind: options.wind,
+            folds: options.folds,
             garments: options.garments,
             threads: options.threads,
             runs: options.runs,

@@ -8,6 +8,7 @@ use toile_assets::garment::{Garment, Shape};
 use toile_assets::numeric::hash;
 use toile_assets::scene::skirt;
 use toile_assets::skeleton::BONES;
+use toile_engine::cloth::layers::Layers;
 use toile_engine::cloth::program::METERED_STAGES;
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere};
@@ -58,6 +59,8 @@ pub struct SkirtScene {
     colliders: Colliders,
     pool: WorkerPool,
     stepper: ClothStepper,
+    /// Those that keep each skirt from passing through itself, where that was asked for `[skirts]`.
+    layers: Box<[Layers]>,
 }
 
 impl SkirtScene {
@@ -106,7 +109,9 @@ impl SkirtScene {
         let colliders = Colliders::new(&rest, &skirt::CAPSULES, false)?;
         let new = || Cloth::new(&garment, &colliders);
         let ready = |cloth: Cloth| if options.wind { cloth.in_wind(&garment) } else { cloth };
-        let cloths = (0..options.garments.clamp(1, MAX_GARMENTS)).map(|_| ready(new())).collect();
+        let count = options.garments.clamp(1, MAX_GARMENTS);
+        let cloths = (0..count).map(|_| ready(new())).collect();
+        let layers = Layers::new(std::slice::from_ref(&garment)).filter(|_| options.folds);
         let between = |a: Option<Heap>, b: Option<Heap>| u64::try_from(b?.live_bytes - a?.live_bytes).ok();
         let memory_bytes = between(before, baked).zip(between(baked, heap.read())).map(|(a, b)| [a, b]);
         let mut scene = Self {
@@ -123,6 +128,7 @@ impl SkirtScene {
             colliders,
             pool: WorkerPool::new(options.threads)?,
             stepper: backends.stepper(),
+            layers: layers.map_or_else(Box::default, |layers| vec![layers; count].into()),
         };
         // Where the body stands at time 0; the first step then sweeps as every other.
         scene.ask();
@@ -150,6 +156,14 @@ impl SkirtScene {
     pub fn step(&mut self) {
         self.colliders.place_spheres(&self.spheres);
         let step = Step { palette: &self.palette, colliders: &self.colliders, settings: &self.settings };
+        for (layers, cloth) in self.layers.iter_mut().zip(&mut self.cloths) {
+            let cloths = std::slice::from_mut(cloth);
+            let done = layers.step(&mut self.pool, cloths, std::slice::from_ref(&self.garment), &step);
+            done.expect("a share of the step panicked");
+        }
+        if !self.layers.is_empty() {
+            return;
+        }
         let (garments, steps) = ([&self.garment; MAX_GARMENTS], [step; MAX_GARMENTS]);
         let count = self.cloths.len();
         let mut batch = ClothBatch { cloths: &mut self.cloths, garments: &garments[..count], steps: &steps[..count] };

@@ -160,6 +160,11 @@ impl Cloth {
         }
     }
 
+    /// The body gives way nowhere any more: for steps without contact of cloth with cloth, which would take that back.
+    pub fn forget_what_gives(&mut self) {
+        self.state.forget_what_gives();
+    }
+
     /// Spoils the state between two steps, as a fault of the memory or of the solver itself would: what [`guard::spoil`] picks
     /// by `seed`. How a soak tries the guard; what was published stays.
     pub fn inject_fault(&mut self, seed: u64) {

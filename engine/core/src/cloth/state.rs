@@ -110,6 +110,11 @@ impl State {
         (0..3).for_each(|axis| change(self.column_mut(VELOCITY + axis)));
     }
 
+    /// The body gives way nowhere.
+    pub fn forget_what_gives(&mut self) {
+        self.column_mut(GIVEN).fill(0.0);
+    }
+
     /// The columns, all at once.
     pub fn columns(&mut self) -> ParticleColumns<'_> {
         let (starts, len) = (self.starts, self.len);

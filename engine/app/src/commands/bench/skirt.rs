@@ -67,6 +67,9 @@ pub struct SkirtArgs {
     /// Wind of (1, 0, 0.5) m/s with drag 0.1 and lift 0.05
     #[arg(long)]
     wind: bool,
+    /// Keep the skirt from passing through itself, and count the edges that do all the same; the processor's
+    #[arg(long = "self", conflicts_with_all = ["garment", "table", "backend"])]
+    folds: bool,
     /// Threads that step, 1 or 2
     #[arg(long, value_name = "T", value_parser = count(1..=2), default_value = "1")]
     threads: usize,
@@ -140,6 +143,7 @@ impl SkirtArgs {
             mesh: self.mesh,
             stretch: self.stretch,
             wind: self.wind,
+            folds: self.folds,
             threads: self.threads,
             garments: self.garments,
             lanes: self.lanes,
@@ -170,6 +174,7 @@ impl SkirtArgs {
         self.quality.into_iter().for_each(|q| give("quality", q.name().to_owned()));
         self.substeps.into_iter().for_each(|s| give("substeps", s.to_string()));
         options.extend(self.wind.then(|| "--wind".to_owned()));
+        options.extend(self.folds.then(|| "--self".to_owned()));
         TurnCase { name, options }
     }
 
@@ -297,6 +302,15 @@ mod tests {
     #[test]
     fn the_defaults_are_the_scenes_protocol() {
         assert_eq!(options("skirt").unwrap(), SkirtOptions::default());
+    }
+
+    #[test]
+    fn a_skirt_against_itself_is_the_processors() {
+        let expected = SkirtOptions { folds: true, ..SkirtOptions::default() };
+        assert_eq!(options("skirt --self").unwrap(), expected);
+        for wrong in ["--self --backend gpu", "--self --garment t-shirt", "--self --table"] {
+            assert!(parsed::<SkirtArgs>(&format!("skirt {wrong}")).is_err(), "{wrong}");
+        }
     }
 
     #[test]

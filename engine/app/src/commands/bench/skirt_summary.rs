@@ -16,7 +16,11 @@ pub fn summary(report: &SkirtReport, paint: Paint) -> String {
     );
     let quality = format!("quality {}, ", report.quality);
     let wind = if report.wind { ", wind" } else { "" };
-    put_line!(text, "  {quality}{substeps} substeps, {lanes} lanes, {threads} thread(s), {garments} skirt(s){wind}");
+    let folds = if report.folds { ", against itself" } else { "" };
+    put_line!(
+        text,
+        "  {quality}{substeps} substeps, {lanes} lanes, {threads} thread(s), {garments} skirt(s){wind}{folds}"
+    );
     if let Some(adapter) = report.stepped_by.adapter.as_ref().filter(|_| report.stepped_by.backend == "gpu") {
         let clock = report.device_us.map_or(String::new(), |us| format!("; by its own clock a step takes {us:.1} us"));
         put_line!(text, "  stepped by    {} ({}, {}){clock}", adapter.name, adapter.kind, adapter.driver);
@@ -32,6 +36,11 @@ pub fn summary(report: &SkirtReport, paint: Paint) -> String {
     put_line!(text, "  strain        {mean:.3} % mean, {p99:.2} % at the 99th percentile, {max:.1} % at worst");
     let (deepest, inside) = (report.penetration_mm.max, report.penetration_mm.fraction * 100.0);
     put_line!(text, "  penetration   {deepest:.2} mm at worst, {inside:.3} % of the vertices inside");
+    if let Some(c) = report.crossings {
+        let words =
+            format!("{} of {} moments, {} edges at most, longest {:.2} s", c.frames_with, c.frames, c.max, c.longest_s);
+        put_line!(text, "  crossings     {words}");
+    }
     for (stage, us) in &report.stages_us {
         put_line!(text, "  {stage:13} {us:.1} us");
     }

@@ -23,7 +23,7 @@ use crate::cloth::state::get;
 /// Pairs that one worker keeps of a garment's particles, a particle of it. Of more the nearest are kept, by how far apart they are to
 /// be, then those of the lowest index; the others are counted. There is room enough: a particle has at most twelve others around it that keep apart, each
 /// pair is one share's, and few are folded everywhere.
-pub const PAIRS_A_PARTICLE: usize = 2;
+pub const PAIRS_A_PARTICLE: usize = 4;
 
 /// Where there is no room the pairs nearer than such a part of what they keep apart are taken (1), then again of that.
 const NEARER: f32 = 0.8;

@@ -28,8 +28,6 @@ pub struct GarmentSurface {
 pub struct GarmentMotion {
     /// Boxes of the clusters.
     pub boxes: ClusterBoxes,
-    /// Speed of its fastest particle (m/s).
-    pub fastest: f32,
     /// Unit normals of its vertices, towards the front; 0 where the faces around have no area `[particles]`.
     pub normals: Box<[Vec3A]>,
     /// Where its clusters are and how they move.
@@ -70,7 +68,6 @@ impl GarmentMotion {
         let normals = vec![Vec3A::ZERO; surface.parts.len()].into();
         Self {
             boxes: ClusterBoxes::new(&surface.clusters),
-            fastest: 0.0,
             normals,
             folds: FoldMotion::new(&surface.clusters, &surface.mesh),
         }
@@ -80,8 +77,6 @@ impl GarmentMotion {
     pub fn take(&mut self, surface: &GarmentSurface, columns: ParticleColumns<'_>, width: Width, normals: bool) {
         let x = columns.x.each_ref().map(Readable::reader);
         width.run(FillBoxes { clusters: &surface.clusters, surface: x, boxes: &mut self.boxes });
-        let speed2 = (0..columns.w.len()).map(|i| get(columns.v, i).length_squared());
-        self.fastest = speed2.fold(0.0f32, f32::max).sqrt();
         if surface.folds.is_some() {
             self.folds.take(&surface.clusters, columns, width);
         }

@@ -20,6 +20,9 @@ const MARGIN_M: f32 = 0.001;
 /// How much faster than at its start a particle may be within a step (1).
 const FASTER: f32 = 1.5;
 
+/// How fast what is nearest may come nearer besides (m/s): it turns, and what is beside it moves otherwise.
+const UNSEEN_M_S: f32 = 0.25;
+
 /// How far beyond a border (m) a particle is still over the face: not at all, but for rounding and the bend of the cloth.
 const BEYOND_M: f32 = 0.001;
 
@@ -55,6 +58,8 @@ struct Remembered {
 pub struct PairShare {
     first: usize,
     remembered: Box<[Remembered]>,
+    /// A vertex of the face that each remembers.
+    corner: Box<[u32]>,
     /// How far each particle and its face can still move before it needs to be looked at (m).
     slack: Store,
     /// Particles that are looked at in this step, and what is found.
@@ -79,6 +84,7 @@ impl PairShare {
             folds,
             first,
             remembered: vec![Remembered::default(); len].into(),
+            corner: vec![0; len].into(),
             slack: Store::zeros(len),
             list: Vec::with_capacity(len),
             found: Vec::with_capacity(len),
@@ -118,6 +124,7 @@ impl PairShare {
             let k = i as usize - first;
             let remembered = &mut self.remembered[k];
             remembered.triangle = found.triangle;
+            self.corner[k] = scene.surfaces[1].mesh.corners(found.triangle)[0];
             remembered.distance = found.distance2.sqrt().min(FARTHEST_M);
             match touch(pair, scene, i, found) {
                 Ok(mut contact) => {
@@ -148,14 +155,13 @@ impl PairShare {
                 members.for_each(|k| self.look_anew(scene, k));
             }
         }
-        let (moved, fastest) = (FASTER * scene.step_seconds, scene.motions[1].fastest);
-        let slack = self.slack.column();
         scene.width.run(Approach {
             v: scene.columns[0].v,
             first: self.first,
-            slack,
-            fastest,
-            moved,
+            face_v: scene.columns[1].v,
+            corner: &self.corner,
+            slack: self.slack.column(),
+            seconds: scene.step_seconds,
             list: &mut self.list,
         });
         let Self { list, found, remembered, first, .. } = self;
@@ -194,6 +200,7 @@ impl PairShare {
     /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.remembered)
+            + size_of_val(&*self.corner)
             + self.slack.bytes()
             + size_of::<u32>() * self.list.capacity()
             + size_of::<NearestPoint>() * self.found.capacity()
@@ -221,7 +228,7 @@ fn touch(pair: &LayerPair, scene: &PairScene<'_>, i: u32, found: &NearestPoint) 
     let height = away.dot(front);
     let beyond2 = away.length_squared() - height * height;
     if mesh.on_border(found.triangle, SurfaceMesh::feature(found.shares)) && beyond2 > BEYOND_M * BEYOND_M {
-        return Err(Distant(0.0));
+        return Err(Distant(beyond2.sqrt() - BEYOND_M));
     }
     let normal = normal(pair.wearing, scene, i, corners[0], front, height).ok_or(Distant(0.0))?;
     let gap = away.dot(normal) - pair.thickness;
@@ -234,18 +241,20 @@ fn touch(pair: &LayerPair, scene: &PairScene<'_>, i: u32, found: &NearestPoint) 
     Ok(LayerContact { particle: i, corners, shares: found.shares, normal, gap: pair.thickness, ..none })
 }
 
-/// What particles and a surface can have come nearer in a step is taken from their slack; those without any left are listed.
+/// How far particles and what they are nearest to have moved against each other in a step is taken from their slack; those without
+/// any left are listed.
 struct Approach<'a> {
     /// Velocities of the particles (m/s).
     v: [WriteColumn<'a>; 3],
     /// The first particle.
     first: usize,
+    /// Velocities of the surface (m/s), and the vertex of it that each is nearest to.
+    face_v: [WriteColumn<'a>; 3],
+    corner: &'a [u32],
     /// Slack of each from there on (m).
     slack: WriteColumn<'a>,
-    /// Fastest of the surface (m/s).
-    fastest: f32,
-    /// How long, and how much longer than it is (s).
-    moved: f32,
+    /// Length of the step (s).
+    seconds: f32,
     /// Those that are to be looked at.
     list: &'a mut Vec<u32>,
 }
@@ -259,9 +268,10 @@ impl Kernel for Approach<'_> {
         while from < self.slack.len() {
             let n = (self.slack.len() - from).min(L::N);
             let v = V3::<L>::load(self.v, self.first + from, n);
-            let speed = v.dot(v).sqrt();
+            let relative = v - V3::<L>::gather(self.face_v, &self.corner[from..from + n], n);
+            let moved = relative.dot(relative).sqrt() * L::splat(FASTER) + L::splat(UNSEEN_M_S);
             let slack = if n == L::N { L::load(self.slack, from) } else { L::load_part(self.slack, from, n) };
-            let left = slack - (speed + L::splat(self.fastest)) * L::splat(self.moved);
+            let left = slack - moved * L::splat(self.seconds);
             if n == L::N {
                 left.store(self.slack, from);
             } else {

@@ -282,7 +282,12 @@ impl TouchLists {
     /// Lets the body give way under particles that the last step's contacts have left pinched between two limbs, half of what is
     /// missing on either side, and takes that back where there is room again. Once a step, before contacts are looked for;
     /// `seconds` is its length.
-    pub fn give_way<'c>(&self, columns: ParticleColumns<'_>, seconds: f32, lists: impl Fn(usize) -> &'c [LayerContact]) {
+    pub fn give_way<'c>(
+        &self,
+        columns: ParticleColumns<'_>,
+        seconds: f32,
+        lists: impl Fn(usize) -> &'c [LayerContact],
+    ) {
         let [faster, back] = [GIVES_M_S, COMES_BACK_M_S].map(|speed| speed * seconds);
         for i in 0..columns.given.len() {
             let before = columns.given.get(i);
