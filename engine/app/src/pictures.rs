@@ -4,9 +4,11 @@ use std::f32::consts::{FRAC_PI_2, PI};
 use std::fs::File;
 use std::io::BufWriter;
 
+use glam::Vec3;
 use toile_assets::limits::STEP_HZ;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::lines::Line;
+use toile_engine::skin::Posed;
 use toile_view::contact_sheet;
 use toile_view::drawn_frame::DrawnFrame;
 use toile_view::fit_map;
@@ -113,12 +115,15 @@ impl Pictures {
         self.animation.finish().map_err(AppError::input)?;
         debug_assert_eq!(self.kept.len(), self.timing.frames as usize);
         contact_sheet(out, &self.kept)?;
-        self.frame.update(snapshot);
         let legend = fit_map::legend(3 * STILL.width / 4, contact_sheet::PAPER);
         let aspect = STILL.width as f32 / STILL.height as f32;
         let look = |bounds: &Bounds| {
             [0.0, FRAC_PI_2, PI].map(|turn| Camera::framing(bounds, end.facing + turn, aspect)).to_vec()
         };
+        if let Some(worst) = end.worst {
+            draw_worst(out, renderer, &mut self.frame, worst)?;
+        }
+        self.frame.update(snapshot);
         for (name, map, legend) in [("look.png", None, None), ("fit.png", Some(end.tightness), Some(&legend))] {
             let surfaces = self.frame.surfaces(map);
             let drawn = renderer.draw(&surfaces, end.lines, (STILL, TraceQuality::Still), look, || self.bar.inc(1))?;
@@ -135,6 +140,20 @@ impl Pictures {
     }
 }
 
+/// The moment at which most of the cloth passed through cloth.
+pub struct WorstMoment {
+    /// When it was (s).
+    pub seconds: f64,
+    /// Edges that passed through faces.
+    pub crossings: u64,
+    /// Particles of each garment (m).
+    pub garments: Box<[Box<[Vec3]>]>,
+    /// The skin.
+    pub skin: Posed,
+    /// The direction in which the shopper looked (rad from +z towards +x).
+    pub facing: f32,
+}
+
 /// How the session ended, as the stills show it.
 pub struct FinalState<'a> {
     /// A value in -1 (loose) .. 1 (tight) for each particle of each garment.
@@ -145,6 +164,24 @@ pub struct FinalState<'a> {
     pub title: &'a str,
     /// Lines over the stills.
     pub lines: &'a [Line],
+    /// The moment at which most crossed, if anything ever did.
+    pub worst: Option<&'a WorstMoment>,
+}
+
+/// Draws the moment at which most crossed, from the front and from the back.
+fn draw_worst(
+    out: &mut OutputFolder,
+    renderer: &mut PictureRenderer,
+    frame: &mut DrawnFrame,
+    worst: &WorstMoment,
+) -> Result<(), AppError> {
+    frame.place(&worst.garments, &worst.skin);
+    let aspect = STILL.width as f32 / STILL.height as f32;
+    let look = |bounds: &Bounds| [0.0, PI].map(|turn| Camera::framing(bounds, worst.facing + turn, aspect)).to_vec();
+    let drawn = renderer.draw(&frame.surfaces(None), &[], (STILL, TraceQuality::Still), look, || {})?;
+    let views: Vec<&Image> = drawn.iter().collect();
+    let title = format!("{:.1} s: most edges through faces, {}", worst.seconds, worst.crossings);
+    write_png(out, "worst.png", &contact_sheet::views(&views, &["front", "back"], &title))
 }
 
 fn contact_sheet(out: &mut OutputFolder, kept: &[(Image, u64)]) -> Result<(), AppError> {

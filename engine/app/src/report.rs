@@ -175,6 +175,8 @@ pub struct CrossingReport {
     pub max_between: u64,
     /// The longest time without a moment free of them (s).
     pub longest_s: f64,
+    /// When there were most, from the start (s); none where there never were any.
+    pub worst_s: Option<f64>,
 }
 
 /// Settings, times and errors of the physics.
@@ -347,7 +349,7 @@ mod tests {
             recommendation,
             others: Vec::new(),
             physics: PhysicsReport::default(),
-            crossings: CrossingReport::default(),
+            crossings: CrossingReport { worst_s: Some(0.5), ..CrossingReport::default() },
             contact: Some(ContactReport::default()),
             hidden_mm: Some(Penetration::default()),
             state_hash: hash_text(10),
@@ -392,6 +394,7 @@ mod tests {
             "/crossings/frames_with",
             "/crossings/max",
             "/crossings/longest_s",
+            "/crossings/worst_s",
             "/contact/asked",
             "/contact/contacts_most",
             "/contact/crowded",

@@ -195,9 +195,10 @@ fn crossings(text: &mut String, report: &TryOn) {
         0 => put_line!(text, "  no cloth passes through cloth, in {} moments looked at", c.frames),
         _ => put_line!(
             text,
-            "  cloth passes through cloth in {share:.0} % of {} moments: {} edges at most, for {:.1} s at a time",
+            "  cloth passes through cloth in {share:.0} % of {} moments: {} edges at most, at {:.1} s; for {:.1} s at a time",
             c.frames,
             c.max,
+            c.worst_s.unwrap_or_default(),
             c.longest_s
         ),
     }
@@ -225,7 +226,14 @@ mod tests {
             sentence: "Waist: tight.".into(),
         };
         let mut report = TryOn {
-            crossings: CrossingReport { frames: 50, frames_with: 5, max: 7, max_between: 0, longest_s: 0.25 },
+            crossings: CrossingReport {
+                frames: 50,
+                frames_with: 5,
+                max: 7,
+                max_between: 0,
+                longest_s: 0.25,
+                worst_s: Some(1.5),
+            },
             contact: Some(ContactReport { contacts_most: 321, ..ContactReport::default() }),
             hidden_mm: Some(Penetration { max: 3.0 }),
             renderer: None,
@@ -243,9 +251,17 @@ mod tests {
             files: vec!["out/front.png".into()],
         };
         let text = try_on(&report, Paint::none());
-        for message in
-            ["a.csv", "one drop", "321 at most", "trousers, size 40", "waist", "tight", "-12 mm", "out/front.png"]
-        {
+        for message in [
+            "a.csv",
+            "one drop",
+            "at 1.5 s",
+            "321 at most",
+            "trousers, size 40",
+            "waist",
+            "tight",
+            "-12 mm",
+            "out/front.png",
+        ] {
             assert!(text.contains(message), "{message} is not in: {text}");
         }
         assert!(!text.contains("not finite"));

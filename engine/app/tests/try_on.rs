@@ -114,6 +114,9 @@ fn a_run_with_pictures_leaves_them_and_the_report() {
     for name in ["session.png", "contact-sheet.png", "look.png", "fit.png", "report.json"] {
         assert!(names.iter().any(|n| n == name), "{name} is missing in {names:?}");
     }
+    let crossed = report["crossings"]["frames_with"] != 0;
+    assert_eq!(names.iter().any(|n| n == "worst.png"), crossed, "{}", report["crossings"]);
+    assert_eq!(report["crossings"]["worst_s"].is_number(), crossed);
 
     let (size, frames, levels) = decode(&out.join("session.png"));
     assert_eq!(size, [240, 360]);

@@ -25,6 +25,11 @@ pub fn triptych(front: &Image, side: &Image, back: &Image, title: &str, legend: 
     page(&[front, side, back], 3, &captions, title, legend)
 }
 
+/// Views side by side, each over its caption, under a title as that of [`triptych`].
+pub fn views(views: &[&Image], captions: &[&str], title: &str) -> Image {
+    page(views, views.len(), captions, title, None)
+}
+
 /// Pictures in rows of `columns`, each over its caption (missing captions are left out).
 pub fn contact_sheet(images: &[&Image], columns: usize, captions: &[&str]) -> Image {
     page(images, columns, captions, "", None)

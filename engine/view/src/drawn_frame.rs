@@ -1,9 +1,11 @@
 //! A frame as it is drawn: body and garments, each beneath what is worn over it.
 
 use glam::Vec3;
+use toile_assets::body::Body;
 use toile_assets::garment::Garment;
 use toile_assets::mesh::vertex_normals;
 use toile_engine::frame::{Frame, Snapshot};
+use toile_engine::skin::Posed;
 
 use crate::hidden_skin::CoveringCloth;
 use crate::image::{Image, Size};
@@ -54,7 +56,11 @@ struct DrawnGarment {
 impl DrawnFrame {
     /// Room for a frame's body and garments, as they are put on.
     pub fn new(frame: &Frame) -> Self {
-        let (body, garments) = (frame.body(), frame.garments());
+        Self::of(frame.body(), frame.garments())
+    }
+
+    /// Room for a body and garments, inner first, as they are put on.
+    pub fn of(body: &Body, garments: &[Garment]) -> Self {
         let starts: Vec<&[Vec3]> = garments.iter().map(|g| &*g.start).collect();
         let over = |first: usize| {
             let worn = garments.iter().zip(&starts).skip(first);
@@ -95,24 +101,30 @@ impl DrawnFrame {
         self
     }
 
-    /// Updates all positions from a snapshot, from the outermost garment to the skin: each is drawn beneath what is worn over it.
+    /// Updates all positions from a snapshot.
     pub fn update(&mut self, snapshot: &Snapshot) {
+        self.place(&snapshot.garments, &snapshot.skin);
+    }
+
+    /// Updates the particles of each garment (m) and the skin, from the outermost garment to the skin: each is drawn beneath what
+    /// is worn over it.
+    pub fn place(&mut self, garments: &[impl AsRef<[Vec3]>], skin: &Posed) {
         let mut over: Vec<[Vec3; 3]> = Vec::new();
-        for (cloth, points) in self.cloths.iter_mut().zip(&snapshot.garments).rev() {
+        for (cloth, points) in self.cloths.iter_mut().zip(garments).rev() {
             let DrawnGarment { points: at, dressed, triangles, drawn, normals, .. } = cloth;
-            at.copy_from_slice(points);
+            at.copy_from_slice(points.as_ref());
             vertex_normals(at, triangles, normals);
             let under = CoveringCloth::new(over.iter().copied()).hide_skin(at, normals, dressed, triangles);
             self.hidden_m = self.hidden_m.max(under.hidden_m);
             *drawn = under.triangles;
             over.extend(triangles.iter().map(|t| t.map(|i| at[i as usize])));
         }
-        snapshot.skin.read(&mut self.body, &mut self.normals);
+        skin.read(&mut self.body, &mut self.normals);
         self.bounds = Bounds::of(&self.body);
         let cover = CoveringCloth::new(over.into_iter());
-        let skin = cover.hide_skin(&mut self.body, &self.normals, &self.dressed, &self.body_triangles);
-        self.hidden_m = self.hidden_m.max(skin.hidden_m);
-        self.drawn = skin.triangles;
+        let under = cover.hide_skin(&mut self.body, &self.normals, &self.dressed, &self.body_triangles);
+        self.hidden_m = self.hidden_m.max(under.hidden_m);
+        self.drawn = under.triangles;
     }
 
     /// How far skin, or cloth worn beneath other cloth, stood out of what covers it at most, in all pictures so far (m):

@@ -42,6 +42,15 @@ mod tests {
     use super::*;
 
     #[test]
+    fn strip_slips_over_a_sheet_at_the_ratio_of_the_rope_around_a_post() {
+        let backends = Backends::cpu();
+        let capstans = layered_cases().into_iter().filter(|case| case.name == "layer-capstan");
+        let rope = capstans.min_by(|a, b| a.parameter.cmp(&b.parameter)).unwrap();
+        let got = (rope.run)(CaseSetup { level: Level::GATED, backends: &backends }).unwrap().got;
+        assert!((got / rope.expected - 1.0).abs() < 0.03, "{}: {got} for {}", rope.parameter, rope.expected);
+    }
+
+    #[test]
     fn sheet_slides_on_sheet_at_the_angle_of_friction() {
         let rows = incline().unwrap();
         assert!(rows.len() == 6 && rows.iter().all(|row| row.pass == Some(true)), "{rows:?}");

@@ -9,6 +9,7 @@
 mod exact;
 mod off;
 mod order;
+mod pictures;
 mod poses;
 mod row;
 mod scenes;
@@ -18,5 +19,6 @@ mod table;
 mod twist;
 mod worn;
 
+pub use pictures::{OutfitPicture, pictures};
 pub use row::{ContactError, ContactRow};
 pub use table::{ContactTable, run};

@@ -6,6 +6,9 @@ use toile_assets::skeleton::{Joint, Pose, Skeleton};
 /// How far from the vertical arms are that hang down (degrees): beside the hips.
 const ARMS_DEGREES: f32 = 10.0;
 
+/// How far from hanging straight down they are when they are raised (degrees).
+const RAISED_DEGREES: f32 = 150.0;
+
 /// A pose by its name.
 pub struct NamedPose {
     /// What it is called.
@@ -17,10 +20,20 @@ pub struct NamedPose {
 /// The four poses.
 pub const POSES: [NamedPose; 4] = [
     NamedPose { name: "T-pose", of: |skeleton| with_arms(skeleton, 90.0) },
-    NamedPose { name: "arms down", of: |skeleton| with_arms(skeleton, ARMS_DEGREES) },
+    NamedPose { name: "arms down", of: arms_down },
     NamedPose { name: "left hip bent by 90 degrees", of: |skeleton| bent(skeleton, &[Joint::LeftHip]) },
     NamedPose { name: "sitting", of: sitting },
 ];
+
+/// Arms that are raised over the head.
+pub fn arms_raised(skeleton: &Skeleton) -> Pose {
+    with_arms(skeleton, RAISED_DEGREES)
+}
+
+/// Arms that hang beside the hips.
+pub fn arms_down(skeleton: &Skeleton) -> Pose {
+    with_arms(skeleton, ARMS_DEGREES)
+}
 
 /// Upper arms at an angle from hanging straight down (degrees), in the plane of the body.
 fn with_arms(skeleton: &Skeleton, degrees: f32) -> Pose {
@@ -41,7 +54,7 @@ fn bent(skeleton: &Skeleton, hips: &[Joint]) -> Pose {
 }
 
 /// Hips and knees at right angles.
-fn sitting(skeleton: &Skeleton) -> Pose {
+pub fn sitting(skeleton: &Skeleton) -> Pose {
     let mut pose = bent(skeleton, &[Joint::LeftHip, Joint::RightHip]);
     let knees = [Joint::LeftKnee, Joint::RightKnee];
     knees.iter().for_each(|knee| pose.local[knee.index()] = Quat::from_rotation_x(90f32.to_radians()));

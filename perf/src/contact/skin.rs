@@ -45,16 +45,16 @@ pub fn poses() -> Result<Vec<ContactRow>, ContactError> {
         for pose in POSES {
             let mut scene = WornScene::new(&asked, &HeapProbe::none())?;
             let goal = (pose.of)(scene.skeleton());
-            bring_into(&mut scene, &goal);
+            bring_into(&mut scene, &goal, INTO_POSE_S);
             rows.extend(SkinFindings::of(&scene).rows(pose.name, over));
         }
     }
     Ok(rows)
 }
 
-/// Steps until the body is in a pose and the cloth has come to rest.
-fn bring_into(scene: &mut WornScene, goal: &Pose) {
-    let [way, rest] = INTO_POSE_S.map(|seconds| (seconds / STEP_SECONDS).round());
+/// Steps until the body is in a pose, and then until the cloth has come to rest, for so long each (s).
+pub(super) fn bring_into(scene: &mut WornScene, goal: &Pose, seconds: [f32; 2]) {
+    let [way, rest] = seconds.map(|seconds| (seconds / STEP_SECONDS).round());
     for step in 1..=(way + rest) as u32 {
         let now = on_the_way(scene.skeleton(), goal, (step as f32 / way).min(1.0));
         scene.prepare_in(&now);

@@ -17,17 +17,17 @@ const OUTFIT_STEPS: usize = 3_600;
 const STEP_MS: f64 = 1e3 / 120.0;
 
 /// Some garments of the wardrobe over one another.
-struct Outfit {
+pub(super) struct Outfit {
     /// What it is called in the table.
-    name: &'static str,
+    pub name: &'static str,
     /// Its garments, in wearing order.
-    garments: &'static [&'static str],
+    pub garments: &'static [&'static str],
     /// Longest median time of a step, longest of 999 in 1,000 (ms); none where times are only reported.
     within_ms: Option<[f64; 2]>,
 }
 
 /// What a shopper wears at most: a dress over all else stands for what nobody wears.
-const OUTFITS: [Outfit; 1] = [Outfit {
+pub(super) const OUTFITS: [Outfit; 1] = [Outfit {
     name: "trousers, T-shirt and dress over them",
     garments: &["wide-trousers", "t-shirt", "sun-dress"],
     within_ms: None,

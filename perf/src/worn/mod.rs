@@ -14,4 +14,4 @@ pub use error::WornError;
 pub use mannequin::AverageBody;
 pub use measure::measure;
 pub use report::{WornReport, WornStrain};
-pub use scene::{MAX_OUTFIT, WornOptions, WornScene, on_the_way};
+pub use scene::{MAX_OUTFIT, WornOptions, WornScene, on_the_way, step_at};

@@ -2,6 +2,7 @@
 
 use glam::{Affine3A, Vec3};
 use toile_assets::bake::bake;
+use toile_assets::body::Body;
 use toile_assets::garment::{Garment, Part};
 use toile_assets::limits::STEP_SECONDS;
 use toile_assets::mesh::SkinWeights;
@@ -97,7 +98,8 @@ pub struct WornScene {
     pub tick: u64,
     /// Bytes on the heap of the baked garments and of their states, where the program counts them.
     pub memory_bytes: Option<u64>,
-    skeleton: Skeleton,
+    /// The mannequin, as it is built.
+    pub body: Body,
     bones: [Affine3A; BONES],
     settings: Settings,
     colliders: Colliders,
@@ -106,7 +108,6 @@ pub struct WornScene {
     stepper: ClothStepper,
     layers: Option<Layers>,
     skinning: SkinningJob,
-    skin_triangles: Vec<[u32; 3]>,
     /// The bone that carries most of each triangle's first corner `[triangles]`.
     skin_bones: Vec<u8>,
     skin: Posed,
@@ -154,9 +155,8 @@ impl WornScene {
             cloths,
             tick: 0,
             memory_bytes: bytes,
-            skin_triangles: body.mesh.triangles.clone(),
             skin_bones: body.mesh.triangles.iter().map(|t| heaviest(&body.weights[t[0] as usize])).collect(),
-            skeleton: mannequin.body.skeleton,
+            body: mannequin.body,
             bones: [Affine3A::IDENTITY; BONES],
             settings,
             colliders,
@@ -167,13 +167,13 @@ impl WornScene {
             skin: skinning.posed(),
             skinning,
         };
-        scene.place(&performed(&scene.skeleton, 0));
+        scene.place(&performed(&scene.body.skeleton, 0));
         Ok(scene)
     }
 
     /// Places the body where it is at the end of the coming step. Not timed.
     pub fn prepare(&mut self) {
-        self.prepare_in(&performed(&self.skeleton, self.tick + 1));
+        self.prepare_in(&performed(&self.body.skeleton, self.tick + 1));
     }
 
     /// The same with a body that does something else than perform: its pose at the end of the coming step.
@@ -184,7 +184,7 @@ impl WornScene {
     }
 
     fn place(&mut self, pose: &Pose) {
-        palette(&self.skeleton, pose, &mut self.bones);
+        palette(&self.body.skeleton, pose, &mut self.bones);
         self.colliders.place(&self.bones);
         self.skinning.run(Blend::Linear, &self.bones, &mut self.skin);
         self.colliders.place_skin(&self.skin);
@@ -229,12 +229,17 @@ impl WornScene {
 
     /// The body's joints.
     pub fn skeleton(&self) -> &Skeleton {
-        &self.skeleton
+        &self.body.skeleton
     }
 
     /// The skin as last placed: where its vertices are (m), and its triangles.
     pub fn skin(&self) -> (Vec<Vec3>, &[[u32; 3]]) {
-        ((0..self.skin.vertices()).map(|v| self.skin.position(v)).collect(), &self.skin_triangles)
+        ((0..self.skin.vertices()).map(|v| self.skin.position(v)).collect(), &self.body.mesh.triangles)
+    }
+
+    /// The skin as last placed, as a picture takes it.
+    pub fn posed(&self) -> &Posed {
+        &self.skin
     }
 
     /// The bone that carries most of a triangle of the skin.
@@ -290,6 +295,11 @@ fn heaviest(weights: &SkinWeights) -> u8 {
 
 fn between(a: Option<Heap>, b: Option<Heap>) -> Option<u64> {
     u64::try_from(b?.live_bytes - a?.live_bytes).ok()
+}
+
+/// Step after which the mannequin is so far into the performance (s).
+pub fn step_at(performance_s: f64) -> u64 {
+    ((POSE_S + performance_s - PERFORMED_S[0]) / f64::from(STEP_SECONDS)).round() as u64
 }
 
 /// The pose at the end of a step: on the way into the performance first.

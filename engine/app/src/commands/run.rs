@@ -192,7 +192,9 @@ fn play(runner: &mut Runner, words: &Words, mut dump: Option<&mut Dump>) -> Resu
             runner.step();
             bar.inc(1);
         }
-        crossings.iter_mut().for_each(|c| c.after(step, runner.cloths()));
+        if let Some(crossings) = &mut crossings {
+            crossings.after(step, runner.cloths());
+        }
         if let Some(dump) = dump.as_deref_mut() {
             dump.add(runner)?;
         }

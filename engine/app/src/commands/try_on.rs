@@ -32,7 +32,7 @@ use crate::commands::crossings::CrossingCount;
 use crate::exit::AppError;
 use crate::output::Inputs;
 use crate::output::OutputFolder;
-use crate::pictures::{FinalState, Pictures};
+use crate::pictures::{FinalState, Pictures, WorstMoment};
 use crate::renderer::{PictureRenderer, RendererChoice};
 use crate::report::{self, Document, Recommendation, TryOn};
 use crate::summary;
@@ -100,7 +100,7 @@ pub struct TryOnArgs {
 impl TryOnArgs {
     /// The files that are written.
     fn names(&self) -> Vec<&'static str> {
-        let pictures = ["session.png", "contact-sheet.png", "look.png", "fit.png"];
+        let pictures = ["session.png", "contact-sheet.png", "worst.png", "look.png", "fit.png"];
         let pictures = pictures.into_iter().filter(|_| self.pictures);
         pictures.chain(self.glb.then_some("dressed.glb")).chain(["report.json"]).collect()
     }
@@ -287,11 +287,14 @@ fn play(
     let playing = (pictures.is_none() && video.is_none()).then(|| words.bar(steps, "playing"));
     let mut lines = Lines::new(if args.lines.is_empty() { 0 } else { CAPACITY });
     let mut crossings = CrossingCount::new(frame.garments(), f64::from(STEP_SECONDS));
+    let mut worst = None;
     frame.dress(&track[0]);
     for tick in 0..steps {
         frame.step(&player.step());
         playing.iter().for_each(|bar| bar.inc(1));
-        crossings.after(tick, frame.cloths());
+        if crossings.after(tick, frame.cloths()) && args.pictures {
+            worst = Some(worst_moment(frame, reader.latest(), &crossings.report()));
+        }
         if let Some(pictures) = pictures.as_mut().filter(|p| p.wants(tick)) {
             draw_lines(&mut lines, &args.lines, frame);
             pictures.add(renderer, reader.latest(), lines.as_slice())?;
@@ -311,10 +314,9 @@ fn play(
             .zip(frame.garments())
             .map(|(cloth, garment)| measure::tightness(cloth, garment, frame.colliders()))
             .collect();
-        let ahead = frame.pose().local[Joint::Pelvis.index()] * glam::Vec3::Z;
-        let facing = ahead.x.atan2(ahead.z);
         draw_lines(&mut lines, &args.lines, frame);
-        let ending = FinalState { tightness: &tightness, facing, title, lines: lines.as_slice() };
+        let (facing, worst) = (facing(frame), worst.as_ref());
+        let ending = FinalState { tightness: &tightness, facing, title, lines: lines.as_slice(), worst };
         hidden_m = pictures.finish(out, renderer, reader.latest(), &ending)?;
     }
     let film = video.map(Video::finish).transpose()?;
@@ -325,6 +327,23 @@ fn play(
         crossings: crossings.report(),
         hidden_mm: drew.then_some(f64::from(hidden_m) * 1e3),
     })
+}
+
+/// The direction in which the shopper looks (rad from +z towards +x).
+fn facing(frame: &Frame) -> f32 {
+    let ahead = frame.pose().local[Joint::Pelvis.index()] * glam::Vec3::Z;
+    ahead.x.atan2(ahead.z)
+}
+
+/// A frame as it is, with what was just seen to cross.
+fn worst_moment(frame: &Frame, snapshot: &Snapshot, seen: &report::CrossingReport) -> WorstMoment {
+    WorstMoment {
+        seconds: seen.worst_s.unwrap_or_default(),
+        crossings: seen.max,
+        garments: snapshot.garments.clone(),
+        skin: snapshot.skin.clone(),
+        facing: facing(frame),
+    }
 }
 
 /// Fills in the lines that were asked for, of the frame as it is.

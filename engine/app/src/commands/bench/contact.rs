@@ -1,8 +1,13 @@
 //! `toile bench contact`: cloth against itself, other cloth and the skin, with its targets.
 
-use toile_perf::contact;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+use toile_perf::contact::{self, OutfitPicture};
 
 use crate::exit::AppError;
+use crate::output::OutputFolder;
+use crate::pictures::write_png;
 use crate::report::Document;
 use crate::terminal::{self, Words};
 
@@ -20,6 +25,9 @@ pub struct ContactArgs {
     /// Every case, which is also the default; takes some minutes
     #[arg(long)]
     table: bool,
+    /// Draw the outfits into DIR instead: in four poses, each from four sides
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["table", "case"])]
+    pictures: Option<PathBuf>,
     /// Print one JSON object, and nothing else, on stdout
     #[arg(long)]
     json: bool,
@@ -30,6 +38,9 @@ pub struct ContactArgs {
 /// # Errors
 /// A name that no case has, and where stdout cannot be written.
 pub fn run(args: &ContactArgs) -> Result<(), AppError> {
+    if let Some(folder) = &args.pictures {
+        return draw(folder, args.json);
+    }
     let words = Words::new(args.json);
     let table = contact::run(args.case.as_deref(), &mut |case| words.print_line(case)).map_err(AppError::internal)?;
     if table.rows.is_empty() {
@@ -40,4 +51,45 @@ pub fn run(args: &ContactArgs) -> Result<(), AppError> {
         return terminal::print_json(&Document::new("bench-contact", table));
     }
     terminal::print(&table.markdown())
+}
+
+/// The report on pictures.
+#[derive(Debug, Serialize)]
+struct DrawnOutfits {
+    /// One each, in the order in which they were drawn.
+    pictures: Vec<DrawnOutfit>,
+}
+
+/// A picture, and what was seen in it.
+#[derive(Debug, Serialize)]
+struct DrawnOutfit {
+    file: String,
+    #[serde(flatten)]
+    picture: OutfitPicture,
+}
+
+/// Draws the outfits into a folder.
+fn draw(folder: &Path, json: bool) -> Result<(), AppError> {
+    let words = Words::new(json);
+    let mut out = OutputFolder::prepare(folder)?;
+    let mut pictures = Vec::new();
+    contact::pictures::<AppError>(&mut |picture| {
+        let file = picture.file();
+        words.print_line(&file);
+        write_png(&mut out, &file, &picture.image)?;
+        pictures.push(DrawnOutfit { file, picture });
+        Ok(())
+    })?;
+    out.commit()?;
+    if json {
+        return terminal::print_json(&Document::new("bench-contact-pictures", DrawnOutfits { pictures }));
+    }
+    let row = |drawn: &DrawnOutfit| format!("{}: {}\n", folder.join(&drawn.file).display(), drawn.picture.words());
+    terminal::print(&pictures.iter().map(row).collect::<String>())
+}
+
+impl From<contact::ContactError> for AppError {
+    fn from(error: contact::ContactError) -> Self {
+        Self::internal(error)
+    }
 }

@@ -7,6 +7,10 @@
 //! particles: the sum of a row of the contacts' matrix in place of its diagonal, which leaves no wave that grows and is exact
 //! where all contacts are alike.
 //!
+//! Many contacts of a particle, of which not all touch, each undo but a part of what it slides, so that under a lasting pull what
+//! sticks would creep. So each knows where it sticks, and brings it back from there: as a bristle that bends as far as friction
+//! holds (Canudas de Wit et al. 1995, "A new model for control of systems with friction").
+//!
 //! A particle that lies on the body, or on cloth that does, is put back by it in the same substep: it does not give way. So
 //! the other side takes the whole way, and the particle still gets the whole reaction, which the body then bears (contact
 //! graphs with shock propagation: Guendelman, Bridson, Fedkiw 2003, section 8.3, but without losing the weight).
@@ -52,6 +56,8 @@ pub struct LayerContact {
     /// How much too near the two sides were left because the body holds both against each other (m), below 0 where they have
     /// room; minus infinity where it does not.
     pub pinched: f32,
+    /// Whether it was touched when it was last looked at, so that it sticks somewhere.
+    pub sticks: bool,
     /// From the face to the side on which the particle belongs, unit length.
     pub normal: Vec3A,
     /// What the last solve does to the place of the particle: times its inverse mass and its share (kg m).
@@ -60,6 +66,8 @@ pub struct LayerContact {
     pub carry: Vec3A,
     /// What the upper side bears of what lies on it, passed on to the lower one (kg m).
     pub passed: Vec3A,
+    /// Where the particle sticks, from the nearest point of the face (m).
+    pub anchor: Vec3A,
 }
 
 /// What holds the particles of a garment from below.
@@ -76,6 +84,8 @@ pub struct RestingOn<'a> {
 pub struct ContactLaw {
     /// Coulomb coefficient of what sticks and of what slides (1).
     pub friction: [f32; 2],
+    /// Whether contacts know where they stick.
+    pub sticks: bool,
     /// Fastest that what is found on the wrong side is pushed out (m/s).
     pub push: f32,
     /// Length of the substep (s).
@@ -133,6 +143,13 @@ impl LayerContact {
         [x, before]
     }
 
+    /// How far the particle is from where it sticks (m), if it touches.
+    pub fn slip(&self, of: [ParticleColumns<'_>; 2]) -> Option<Vec3A> {
+        let face = |k: usize| get(of[1].x, self.corners[k] as usize) * self.shares[k];
+        let x = get(of[0].x, self.particle as usize) - (face(0) + face(1) + face(2));
+        self.sticks.then(|| (x - self.anchor).reject_from_normalized(self.normal))
+    }
+
     /// Solves the contact as the constraints of a substep have left the garments.
     #[inline(always)]
     pub fn solve(&mut self, of: [ParticleColumns<'_>; 2], rest: [RestingOn<'_>; 2], law: ContactLaw) {
@@ -149,19 +166,21 @@ impl LayerContact {
         self.pinched = if self.held[0] * self.held[1] > PINCHED { depth } else { f32::NEG_INFINITY };
         let moved = x - before;
         (self.push, self.carry) = (Vec3A::ZERO, Vec3A::ZERO);
+        let from = if law.sticks && std::mem::take(&mut self.sticks) { self.anchor } else { before };
         // Not so where anything is not finite: what is wrong with one garment stays in it.
-        if !(depth > 0.0 && moved.length_squared() < FARTHEST_MOVE_M * FARTHEST_MOVE_M && x.is_finite()) {
+        if !(depth > 0.0 && moved.length_squared() < FARTHEST_MOVE_M * FARTHEST_MOVE_M && (x - from).is_finite()) {
             return;
         }
         let along = moved.dot(n);
         let load = depth.min((-along).max(0.0));
         let carried = (depth - load).min(law.push * law.dt);
-        let sliding = moved - n * along;
+        let sliding = (x - from).reject_from_normalized(n);
         let slid = sliding.length();
         // What lies on the upper side presses as well, as much as it did in the substep before.
         let pressed = if give > 0.0 { self.passed.dot(n).abs() / give } else { 0.0 };
         let [holds, slows] = law.friction.map(|mu| mu * (load + pressed.min(MOST_ABOVE * load)));
         let slowed = if slid <= holds { sliding } else { sliding * (slows / slid).min(1.0) };
+        (self.sticks, self.anchor) = (true, x - slowed);
         self.push = (n * (load + carried) - slowed) * give;
         self.carry = n * (carried * give);
     }

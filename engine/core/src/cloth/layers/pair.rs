@@ -82,7 +82,7 @@ impl LayerPair {
     pub fn law(&self, dt: f32, static_friction: f32) -> ContactLaw {
         let friction = [self.friction * static_friction, self.friction];
         let push = PUSH_M_S[usize::from(self.is_fold())];
-        ContactLaw { friction, push, dt }
+        ContactLaw { friction, sticks: !self.is_fold(), push, dt }
     }
 
     /// The particles of a share: the first half and the second.

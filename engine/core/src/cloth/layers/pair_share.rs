@@ -51,6 +51,8 @@ struct Remembered {
     distance: f32,
     /// What was passed on between the two in the last substep (kg m).
     passed: f32,
+    /// How far it has slid from where it sticks (m), if it touched.
+    slip: Option<Vec3A>,
 }
 
 /// One worker's share of a pair: half of the particles.
@@ -97,10 +99,12 @@ impl PairShare {
     pub fn find(&mut self, pair: &LayerPair, scene: &PairScene<'_>) {
         let first = self.first;
         if self.folds.is_none() {
-            self.remembered.iter_mut().for_each(|r| r.passed = 0.0);
-            self.contacts
-                .iter()
-                .for_each(|c| self.remembered[c.particle as usize - first].passed = c.passed.dot(c.normal).abs());
+            self.remembered.iter_mut().for_each(|r| (r.passed, r.slip) = (0.0, None));
+            for contact in &self.contacts {
+                let remembered = &mut self.remembered[contact.particle as usize - first];
+                remembered.passed = contact.passed.dot(contact.normal).abs();
+                remembered.slip = contact.slip(scene.columns);
+            }
         }
         self.contacts.clear();
         if let Some(folds) = &mut self.folds {
@@ -129,6 +133,8 @@ impl PairShare {
             match touch(pair, scene, i, found) {
                 Ok(mut contact) => {
                     contact.passed = contact.normal * remembered.passed;
+                    contact.sticks = remembered.slip.is_some();
+                    contact.anchor -= remembered.slip.unwrap_or_default();
                     self.slack.as_mut()[k] = 0.0;
                     self.contacts.push(contact);
                 }
@@ -231,14 +237,15 @@ fn touch(pair: &LayerPair, scene: &PairScene<'_>, i: u32, found: &NearestPoint) 
         return Err(Distant(beyond2.sqrt() - BEYOND_M));
     }
     let normal = normal(pair.wearing, scene, i, corners[0], front, height).ok_or(Distant(0.0))?;
-    let gap = away.dot(normal) - pair.thickness;
+    let apart = away.dot(normal) - pair.thickness;
     let relative = get(of.v, i as usize) - (at(faces.v, 0) + at(faces.v, 1) + at(faces.v, 2));
     let near = MARGIN_M + FASTER * scene.step_seconds * (-relative.dot(normal)).max(0.0);
-    if gap.is_nan() || gap >= near {
-        return Err(Distant(gap - near));
+    if apart.is_nan() || apart >= near {
+        return Err(Distant(apart - near));
     }
     let none = LayerContact::default();
-    Ok(LayerContact { particle: i, corners, shares: found.shares, normal, gap: pair.thickness, ..none })
+    let gap = pair.thickness;
+    Ok(LayerContact { particle: i, corners, shares: found.shares, normal, gap, anchor: away, ..none })
 }
 
 /// How far particles and what they are nearest to have moved against each other in a step is taken from their slack; those without
