@@ -120,10 +120,11 @@ pub enum FabricError {
 }
 
 /// The fabrics that are built in.
-const BUILT_IN: [&str; 3] = [
+const BUILT_IN: [&str; 4] = [
     include_str!("../data/fabrics/cotton-lawn.toml"),
     include_str!("../data/fabrics/cotton-jersey.toml"),
     include_str!("../data/fabrics/linen-twill.toml"),
+    include_str!("../data/fabrics/wool-suiting.toml"),
 ];
 
 impl Fabric {

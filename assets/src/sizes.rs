@@ -19,6 +19,9 @@ named! {
         /// A T-shirt.
         #[serde(rename = "t-shirt")]
         Tshirt = "t-shirt",
+        /// A jacket.
+        #[serde(rename = "jacket")]
+        Jacket = "jacket",
         /// Trousers.
         #[serde(rename = "trousers")]
         Trousers = "trousers",
@@ -406,6 +409,7 @@ mod tests {
         let women = SizeTable::embedded("women").unwrap();
         assert_eq!(women.designation(GarmentKind::Dress).unwrap().primary, [Girth::Chest]);
         assert_eq!(women.designation(GarmentKind::Tshirt).unwrap().primary, [Girth::Chest]);
+        assert_eq!(women.designation(GarmentKind::Jacket).unwrap().primary, [Girth::Chest]);
         let trousers = women.designation(GarmentKind::Trousers).unwrap();
         assert_eq!(
             (trousers.primary.as_slice(), trousers.secondary.as_slice()),

@@ -24,17 +24,29 @@ pub struct DrapeBody<'a> {
     pub body: &'a Body,
     /// Least gap that cloth keeps from it (m).
     pub gap: f32,
+    /// Room left for what is worn under the garment (m), more than the gap.
+    pub room: f32,
 }
 
 impl<'a> DrapeBody<'a> {
     /// The body that a size is cut for.
     pub const fn cut(body: &'a Body) -> Self {
-        Self { body, gap: -1.0 }
+        Self { body, gap: -1.0, room: 0.0 }
     }
 
     /// The shopper's body, with the gap [`START_GAP_M`].
     pub const fn shopper(body: &'a Body) -> Self {
-        Self { body, gap: START_GAP_M }
+        Self { body, gap: START_GAP_M, room: 0.0 }
+    }
+
+    /// The same with room for what is worn under the garment (m).
+    pub const fn over(self, room: f32) -> Self {
+        Self { room, ..self }
+    }
+
+    /// How a ring of some girth (m) fits.
+    pub fn fit(&self, girth: f32) -> RingFit {
+        RingFit { girth, gap: self.gap + self.room }
     }
 
     /// Girth of the trunk at a height (m).
@@ -49,10 +61,18 @@ impl<'a> DrapeBody<'a> {
 
     /// A ring around the trunk, from the front centre over the left side.
     pub fn ring(&self, height: f32, girth: f32, columns: usize) -> Vec<Vec3> {
-        let fit = RingFit { girth, gap: self.gap };
         self.trunk(height).map_or_else(
             || vec![Vec3::new(0.0, height, 0.0); columns],
-            |section| section.ring(fit, columns, Vec2::Y, 0.0),
+            |section| section.ring(self.fit(girth), columns, Vec2::Y, 0.0),
+        )
+    }
+
+    /// A ring around the trunk that is open in front, `columns + 1` points from its left edge to its right one; `girth` is that of
+    /// the cloth, and the edges lie `opening` apart (m).
+    pub fn open_ring(&self, height: f32, girth: f32, opening: f32, columns: usize) -> Vec<Vec3> {
+        self.trunk(height).map_or_else(
+            || vec![Vec3::new(0.0, height, 0.0); columns + 1],
+            |section| section.open_ring(self.fit(girth + opening), opening, columns, Vec2::Y),
         )
     }
 
@@ -67,7 +87,7 @@ impl<'a> DrapeBody<'a> {
         };
         // The ends lie lowest, so they are corners of the hull, and the way over the top is one of its two sides.
         let ends = [front, back].map(|p| Vec2::new(p.z, p.y));
-        let mut points = section.widened(0.0, self.gap.max(START_GAP_M));
+        let mut points = section.widened(0.0, self.gap.max(START_GAP_M) + self.room);
         points.retain(|p| p.y > lowest + LEAST_RISE_M);
         points.extend(ends);
         let around = hull(&points);

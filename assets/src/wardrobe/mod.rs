@@ -5,10 +5,12 @@
 //! Thread: the loading thread.
 
 pub mod drape;
+pub mod jacket;
 pub mod section;
 pub mod style;
 pub mod sun_dress;
 pub mod t_shirt;
+pub mod upper_body;
 pub mod wide_trousers;
 
 use std::path::Path;
@@ -24,10 +26,11 @@ use crate::sizes::{Girth, Population, SizeBody, SizeError, SizeTable};
 use style::{Cut, Style};
 
 /// The garments that are built in, first the one that is shown when none is asked for.
-const BUILT_IN: [(&str, &str); 3] = [
+const BUILT_IN: [(&str, &str); 4] = [
     ("sun-dress", include_str!("../../data/garments/sun-dress.toml")),
     ("t-shirt", include_str!("../../data/garments/t-shirt.toml")),
     ("wide-trousers", include_str!("../../data/garments/wide-trousers.toml")),
+    ("jacket", include_str!("../../data/garments/jacket.toml")),
 ];
 
 /// What rises this far above the upper edge of a bodice is a strap (m).
@@ -155,12 +158,13 @@ impl Style {
         let mut shape = match self.cut {
             Cut::SunDress { .. } => sun_dress::draft(self, &cut, shopper),
             Cut::TShirt { .. } => t_shirt::draft(self, &cut, shopper),
+            Cut::Jacket { .. } => jacket::draft(self, &cut, shopper),
             Cut::WideTrousers { .. } => wide_trousers::draft(self, &cut, shopper),
         };
         // Below this height (m) a garment hangs on the trunk alone; above it, on the shoulders too.
         let shoulders_from = match self.cut {
             Cut::SunDress { neckline_mm, .. } => shopper.levels.chest + neckline_mm * 1e-3 + STRAP_RISE_M,
-            Cut::TShirt { .. } => f32::NEG_INFINITY,
+            Cut::TShirt { .. } | Cut::Jacket { .. } => f32::NEG_INFINITY,
             Cut::WideTrousers { .. } => f32::INFINITY,
         };
         let carries = |p: glam::Vec3, bone| weights::trunk(bone) || (p.y > shoulders_from && weights::shoulders(bone));

@@ -111,6 +111,23 @@ impl BodySection {
             .map(|s| self.plane.at(along(&line, s)))
             .collect()
     }
+
+    /// `columns + 1` points around the widened outline from one edge of an opening to the other; `columns` is a multiple of 4.
+    /// The opening (m) lies where the direction `from` leaves the middle, half of it to either side. Each quarter of the outline
+    /// has a quarter of the columns, so that the sides lie where those of a closed ring do.
+    pub fn open_ring(&self, fit: RingFit, opening: f32, columns: usize, from: Vec2) -> Vec<Vec3> {
+        let mut line = self.widened(fit.girth, fit.gap);
+        line.reverse(); // as for a closed ring
+        let line = start_at(&line, self.middle(), from);
+        let length = closed_length(&line);
+        let first = (2.0 * opening / length).min(1.0); // the edge's place in its quarter (1)
+        let place = |c: usize| {
+            let quarters = c as f32 / (columns / 4) as f32;
+            let in_front = |q: f32| if q < 1.0 { first + (1.0 - first) * q } else { q };
+            if quarters <= 2.0 { in_front(quarters) } else { 4.0 - in_front(4.0 - quarters) }
+        };
+        (0..=columns).map(|c| self.plane.at(along(&line, 0.25 * length * place(c)))).collect()
+    }
 }
 
 /// How wide a ring is: its girth as cut, and the gap that it keeps from the body (m). The gap is negative where cloth
@@ -196,6 +213,16 @@ mod tests {
             assert!(ring[0].x.abs() < 1e-4 && ring[0].z > 0.0, "{:?}", ring[0]);
             assert!(ring[60].x > 0.0 && ring[60].z.abs() < 2e-3, "{:?}", ring[60]);
         }
+    }
+
+    #[test]
+    fn an_open_ring_lacks_what_its_opening_measures_and_keeps_its_sides() {
+        let ring = circle(0.12).open_ring(RingFit { girth: 0.9, gap: -1.0 }, 0.06, 80, Vec2::Y);
+        assert_eq!(ring.len(), 81);
+        let length: f32 = ring.windows(2).map(|w| w[0].distance(w[1])).sum();
+        assert!((length - 0.84).abs() < 2e-3, "{length}");
+        assert!((ring[0].x - 0.03).abs() < 1e-3 && (ring[80].x + 0.03).abs() < 1e-3, "{} {}", ring[0], ring[80]);
+        assert!(ring[20].z.abs() < 2e-3 && ring[60].z.abs() < 2e-3 && ring[40].x.abs() < 2e-3);
     }
 
     #[test]

@@ -117,6 +117,21 @@ pub enum Cut {
         /// Depth of the front neckline below the side of the neck.
         front_neck_mm: f32,
     },
+    /// A jacket that is open in front, with long set-in sleeves and no collar.
+    Jacket {
+        /// Length from waist to hem (mm).
+        below_waist_mm: f32,
+        /// Length of the sleeve from the shoulder point.
+        sleeve_mm: f32,
+        /// What the sleeve adds to the wrist at its hem.
+        sleeve_ease_mm: f32,
+        /// Half the width of the neck opening.
+        neck_mm: f32,
+        /// Depth of the front neckline below the side of the neck.
+        front_neck_mm: f32,
+        /// How far apart the front edges lie when it is put on.
+        opening_mm: f32,
+    },
     /// Trousers that fall straight and wide from the hip.
     WideTrousers {
         /// Height of the upper edge above the waist level.

@@ -59,6 +59,7 @@ garments-instead = Statt: { $others }
 garment-sun-dress = Sommerkleid
 garment-t-shirt = T-Shirt
 garment-wide-trousers = Weite Hose
+garment-jacket = Offene Jacke
 colour-of = Farbe: { $colour }
 colour-own = Wie gewebt
 colour-coral = Koralle

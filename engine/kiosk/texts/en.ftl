@@ -60,6 +60,7 @@ garments-instead = Replaces: { $others }
 garment-sun-dress = Sun dress
 garment-t-shirt = T-shirt
 garment-wide-trousers = Wide trousers
+garment-jacket = Open jacket
 colour-of = Colour: { $colour }
 colour-own = As woven
 colour-coral = Coral

@@ -59,6 +59,7 @@ garments-instead = Sustituye a: { $others }
 garment-sun-dress = Vestido de verano
 garment-t-shirt = Camiseta
 garment-wide-trousers = Pantalón ancho
+garment-jacket = Chaqueta abierta
 colour-of = Color: { $colour }
 colour-own = Tal como se teje
 colour-coral = Coral

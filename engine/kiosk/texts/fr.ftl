@@ -59,6 +59,7 @@ garments-instead = Remplace : { $others }
 garment-sun-dress = Robe d’été
 garment-t-shirt = T-shirt
 garment-wide-trousers = Pantalon large
+garment-jacket = Veste ouverte
 colour-of = Couleur : { $colour }
 colour-own = Telle que tissée
 colour-coral = Corail

@@ -59,6 +59,7 @@ garments-instead = 入れ替え：{ $others }
 garment-sun-dress = サンドレス
 garment-t-shirt = Tシャツ
 garment-wide-trousers = ワイドパンツ
+garment-jacket = オープンジャケット
 colour-of = 色：{ $colour }
 colour-own = 生地の色
 colour-coral = コーラル

@@ -59,6 +59,7 @@ garments-instead = Şunun yerine: { $others }
 garment-sun-dress = Yazlık elbise
 garment-t-shirt = Tişört
 garment-wide-trousers = Bol pantolon
+garment-jacket = Önü açık ceket
 colour-of = Renk: { $colour }
 colour-own = Kumaşın kendi rengi
 colour-coral = Mercan

@@ -70,6 +70,7 @@ keys! {
     GarmentSunDress = "garment-sun-dress",
     GarmentTShirt = "garment-t-shirt",
     GarmentWideTrousers = "garment-wide-trousers",
+    GarmentJacket = "garment-jacket",
     ColourOf = "colour-of",
     ColourOwn = "colour-own",
     ColourCoral = "colour-coral",

@@ -102,6 +102,15 @@ const LINEN: [Colour; 5] = [
     colour(TextKey::ColourCharcoal, [0.19, 0.20, 0.22]),
 ];
 
+/// Colours of jackets; the first is that of the fabric.
+const WOOL: [Colour; 5] = [
+    colour(TextKey::ColourCharcoal, [0.19, 0.20, 0.22]),
+    colour(TextKey::ColourNavy, [0.13, 0.17, 0.32]),
+    colour(TextKey::ColourMoss, [0.38, 0.44, 0.24]),
+    colour(TextKey::ColourSand, [0.66, 0.60, 0.48]),
+    colour(TextKey::ColourBrick, [0.62, 0.24, 0.19]),
+];
+
 /// A garment of the wardrobe.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WardrobeItem {
@@ -130,6 +139,7 @@ impl WardrobeItem {
         let (layer, place, held, covers): (_, _, _, &'static [BodyHalf]) = match style.kind {
             GarmentKind::Trousers => (Layer::Shirt, 0, FittingLevel::Waist, &[BodyHalf::Lower]),
             GarmentKind::Tshirt => (Layer::Shirt, 1, FittingLevel::Shoulders, &[BodyHalf::Upper]),
+            GarmentKind::Jacket => (Layer::Jacket, 0, FittingLevel::Shoulders, &[BodyHalf::Upper]),
             GarmentKind::Dress => (Layer::Shirt, 1, FittingLevel::Shoulders, &[BodyHalf::Upper, BodyHalf::Lower]),
         };
         let own = Fabric::built_in(&style.fabric).map_err(KioskError::input)?.colour;
@@ -141,6 +151,7 @@ impl WardrobeItem {
         match self.style.name.as_str() {
             "sun-dress" => Some(TextKey::GarmentSunDress),
             "t-shirt" => Some(TextKey::GarmentTShirt),
+            "jacket" => Some(TextKey::GarmentJacket),
             "wide-trousers" => Some(TextKey::GarmentWideTrousers),
             _ => None,
         }
@@ -157,6 +168,7 @@ fn palette(kind: GarmentKind, own: [f32; 3]) -> Vec<Colour> {
     let ours = match kind {
         GarmentKind::Dress => LAWN,
         GarmentKind::Tshirt => JERSEY,
+        GarmentKind::Jacket => WOOL,
         GarmentKind::Trousers => LINEN,
     };
     if ours[0].srgb == own {
@@ -239,6 +251,12 @@ mod tests {
         assert_eq!(wear(&["t-shirt", "wide-trousers", "sun-dress"]), ["sun-dress"]);
         assert_eq!(wear(&["sun-dress", "wide-trousers"]), ["wide-trousers"]);
         assert_eq!(wear(&["t-shirt", "t-shirt"]), ["t-shirt"], "nothing is worn twice");
+    }
+
+    #[test]
+    fn a_jacket_goes_over_whatever_else_is_worn() {
+        assert_eq!(wear(&["jacket", "t-shirt", "wide-trousers"]), ["wide-trousers", "t-shirt", "jacket"]);
+        assert_eq!(wear(&["jacket", "sun-dress"]), ["sun-dress", "jacket"]);
     }
 
     #[test]
