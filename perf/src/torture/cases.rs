@@ -2,7 +2,7 @@
 
 use super::outcome::TrialFindings;
 use super::pieces::Pieces;
-use super::{elements, long_rest, poison, ratios, start, surround};
+use super::{elements, folded, layered, long_rest, poison, ratios, start, surround};
 use crate::random::CaseRandom;
 
 /// A case: something that cloth must survive.
@@ -16,7 +16,7 @@ pub struct TortureCase {
 }
 
 /// Every case, in the order of the table.
-pub const CASES: [TortureCase; 25] = [
+pub const CASES: [TortureCase; 30] = [
     case("random-box", "every vertex anywhere in a box of 1 m", start::random_box),
     case("crumpled-lawn", "the same with thin cloth, in which folds may stay", start::crumpled),
     case("flattened", "pressed into a plane", start::flattened),
@@ -35,6 +35,11 @@ pub const CASES: [TortureCase; 25] = [
     case("squeeze", "two capsules meet with the cloth between them", surround::squeeze),
     case("too-small", "a tube on a body twice as wide", surround::too_small),
     case("spin", "10 turns a second about any axis, 2 s", surround::spin),
+    case("crossing", "a corner or the lower edge drawn through the cloth itself", folded::crossing),
+    case("crushing", "five walls crush it to 4 to 10 cm and let go", folded::crushing),
+    case("ball", "every vertex anywhere in a ball of 3 to 8 cm, or drawn together into it", folded::ball),
+    case("layers", "sheets inside of those that they are worn over, by up to 10 mm", layered::layers),
+    case("thrown", "sheets thrown at each other", layered::thrown),
     case("bad-elements", "sides without length and faces without area", elements::bad_elements),
     case("bad-surroundings", "NaN and infinity in colliders", poison::surroundings),
     case("bad-bones", "NaN and infinity in the bones that pins follow", poison::bones),

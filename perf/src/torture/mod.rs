@@ -5,8 +5,12 @@
 //! Thread: two of its own over the seeds; the results stand in the order of the cases and seeds.
 
 mod cases;
+mod crossed;
 mod elements;
 mod error;
+mod folded;
+mod layer_trial;
+mod layered;
 mod long_rest;
 mod outcome;
 mod piece;

@@ -3,6 +3,7 @@
 use glam::Vec3;
 use serde::Serialize;
 
+use super::crossed::CrossedEdges;
 use super::piece;
 use super::trial::{self, BACK_M, RECOVER_S, Trial, TrialFigures, TrialRecovery};
 use crate::backend::SteppedBy;
@@ -19,6 +20,8 @@ pub struct TrialFindings {
     pub limit: Option<f32>,
     /// How it came back, where there is one place to come back to.
     pub recovery: Option<TrialRecovery>,
+    /// Edges that pass through faces at the end, where they are counted.
+    pub crossings: Option<u64>,
     /// What else was to be met and was not.
     pub miss: Option<String>,
     /// Figures of the case's own.
@@ -34,14 +37,15 @@ impl TrialFindings {
     /// Lets a trial come to rest and compares.
     pub fn back(mut trial: Trial<'_>, rest: &[Vec3]) -> Self {
         let recovery = Some(trial.recover(rest));
-        Self { recovery, ..Self::of(&trial) }
+        Self { recovery, crossings: trial.crossed().map(|crossed| crossed.now), ..Self::of(&trial) }
     }
 
     /// The same for what may have other places of rest: one that the oracle finds downhill from where the cloth ended,
     /// and stable, is as good.
     pub fn back_anywhere(mut trial: Trial<'_>, rest: &[Vec3]) -> Self {
         let recovery = trial.recover(rest);
-        let mut found = Self { recovery: Some(recovery), ..Self::of(&trial) };
+        let crossings = trial.crossed().map(|crossed| crossed.now);
+        let mut found = Self { recovery: Some(recovery), crossings, ..Self::of(&trial) };
         if recovery.after_s.is_none() {
             let end: Vec<Vec3> = trial.cloth.positions.iter().map(|p| Vec3::from(*p)).collect();
             let near = piece::equilibrium(trial.garment, &trial.settings, &end);
@@ -57,6 +61,25 @@ impl TrialFindings {
         found
     }
 
+    /// The same with what was seen of crossings, of which there must be none after so long (s).
+    pub fn uncrossed(self, crossed: &CrossedEdges, within_s: f32, step_seconds: f32) -> Self {
+        let free_s = crossed.free_after_s(step_seconds);
+        let late = free_s.filter(|s| *s > within_s);
+        Self {
+            crossings: Some(crossed.now),
+            note: format!(
+                "at most {} edges through faces{}",
+                crossed.most,
+                match free_s {
+                    Some(s) => format!(", none after {s:.2} s"),
+                    None => String::new(),
+                }
+            ),
+            miss: late.map(|s| format!("edges passed through faces for {s:.2} s")).or(self.miss),
+            ..self
+        }
+    }
+
     /// The first thing that is not as it has to be.
     fn cause(&self) -> Option<String> {
         let TrialFigures { nonfinite, max_speed, .. } = self.seen;
@@ -65,6 +88,9 @@ impl TrialFindings {
         }
         if self.limit.is_some_and(|limit| max_speed > limit * (1.0 + SPEED_SLACK)) {
             return Some(format!("{max_speed:.1} m/s, over the limit"));
+        }
+        if let Some(crossings) = self.crossings.filter(|&count| count > 0) {
+            return Some(format!("{crossings} edges pass through faces at the end"));
         }
         if let Some(recovery) = self.recovery.filter(|r| r.after_s.is_none()) {
             let mm = recovery.hausdorff_m * 1e3;
@@ -97,6 +123,8 @@ pub struct SeedOutcome {
     pub recovered_s: Option<f32>,
     /// Hausdorff distance to its place of rest after 5 s (mm); none where there is more than one such place.
     pub hausdorff_mm: Option<f64>,
+    /// Edges that pass through faces at the end, where they are counted.
+    pub crossings: Option<u64>,
     /// Whether all was as it has to be.
     pub pass: bool,
     /// What was not as it has to be; none where all was.
@@ -118,6 +146,7 @@ impl SeedOutcome {
             speed_limit: found.limit,
             recovered_s: found.recovery.and_then(|r| r.after_s),
             hausdorff_mm: found.recovery.map(|r| r.hausdorff_m * 1e3),
+            crossings: found.crossings,
             pass: cause.is_none(),
             cause,
             note: found.note,
@@ -164,7 +193,7 @@ pub struct CaseSummary {
 impl CaseSummary {
     /// What the seeds of a case have in common.
     pub(super) fn of(name: &'static str, about: &'static str, outcomes: &[SeedOutcome]) -> Self {
-        let far = |o: &&SeedOutcome| (!o.pass, o.hausdorff_mm.unwrap_or(0.0));
+        let far = |o: &&SeedOutcome| (!o.pass, o.hausdorff_mm.unwrap_or(0.0).max(o.crossings.unwrap_or(0) as f64));
         let worst = outcomes.iter().max_by(|a, b| {
             let (a, b) = (far(a), far(b));
             a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))

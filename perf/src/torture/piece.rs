@@ -21,7 +21,7 @@ pub const CURTAIN: [usize; 2] = [15, 24];
 pub const PATCH: [usize; 2] = [9, 14];
 
 /// From thread to thread (m).
-const CELL_M: f32 = 0.02;
+pub const CELL_M: f32 = 0.02;
 
 /// Where the upper edge hangs (m): in the height of a person, because f32 is coarser there than about the origin.
 pub const TOP: Vec3 = Vec3::new(0.0, 1.5, 0.0);

@@ -10,7 +10,7 @@ use super::trial::Trial;
 use crate::random::CaseRandom;
 
 /// The middle of the curtain (m).
-const MIDDLE: Vec3 = Vec3::new(0.0, TOP.y - 0.23, 0.0);
+pub(super) const MIDDLE: Vec3 = Vec3::new(0.0, TOP.y - 0.23, 0.0);
 
 /// Half of the side of the box that vertices are strewn in (m).
 const BOX_M: f32 = 0.5;
@@ -23,7 +23,7 @@ const PUSH_M_S: f32 = 3.0;
 
 /// How far nothing is from where it is meant to be (m). What lies exactly in the plane that it hangs in could leave it to
 /// either side as well and so, by symmetry, never does: an equilibrium, but not one that anything real is found in.
-const TREMBLE_M: f32 = 1e-5;
+pub(super) const TREMBLE_M: f32 = 1e-5;
 
 /// Puts the curtain's free particles elsewhere, at rest, and lets go.
 fn from(pieces: &Pieces, random: &mut CaseRandom, mut to: impl FnMut(usize, Vec3) -> Vec3) -> TrialFindings {

@@ -4,11 +4,14 @@ use glam::{Affine3A, Vec3, Vec3A, Vec4};
 use toile_assets::garment::Garment;
 use toile_assets::skeleton::BONES;
 use toile_engine::cloth::guard::GuardEvents;
+use toile_engine::cloth::layers::Layers;
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere};
+use toile_engine::workers::WorkerPool;
 use toile_gpu::backend::ClothStepper;
 use toile_gpu::cloth_batch::ClothBatch;
 
+use super::crossed::CrossedEdges;
 use super::piece::{self, Piece};
 use super::pieces::Pieces;
 
@@ -39,6 +42,14 @@ pub struct TrialRecovery {
     pub hausdorff_m: f64,
 }
 
+/// What keeps a cloth out of itself, which the processor steps.
+#[derive(Debug)]
+struct Folds {
+    layers: Layers,
+    pool: WorkerPool,
+    crossed: CrossedEdges,
+}
+
 /// A cloth among colliders.
 #[derive(Debug)]
 pub struct Trial<'a> {
@@ -57,6 +68,7 @@ pub struct Trial<'a> {
     /// What was seen so far.
     pub seen: TrialFigures,
     stepper: ClothStepper,
+    folds: Option<Folds>,
     before: Box<[Vec3A]>,
     /// The events up to which jumps were explained.
     explained: GuardEvents,
@@ -97,6 +109,7 @@ impl<'a> Trial<'a> {
             before: cloth.positions.clone(),
             explained: cloth.events,
             stepper: pieces.backends.stepper(),
+            folds: None,
             garment,
             cloth,
             colliders,
@@ -104,6 +117,29 @@ impl<'a> Trial<'a> {
             palette: Box::new([Affine3A::IDENTITY; BONES]),
             settings: *settings,
             seen: TrialFigures::default(),
+        }
+    }
+
+    /// The same cloth, kept out of itself, with its crossings counted.
+    pub fn with_folds(mut self) -> Self {
+        let layers = Layers::new(std::slice::from_ref(self.garment));
+        let pool = WorkerPool::new(1).expect("one worker is the caller's thread");
+        let crossed = CrossedEdges::new(&[&self.garment.triangles]);
+        self.settings.folds = true;
+        self.folds = layers.map(|layers| Folds { layers, pool, crossed });
+        self
+    }
+
+    /// Crossings of the cloth with itself, where they are counted.
+    pub fn crossed(&mut self) -> Option<&mut CrossedEdges> {
+        self.folds.as_mut().map(|folds| &mut folds.crossed)
+    }
+
+    /// Counts the crossings of the cloth as it is, and forgets those before.
+    pub fn count_crossings_from_here(&mut self) {
+        if let Some(folds) = &mut self.folds {
+            folds.crossed.restart();
+            folds.crossed.look(&[&self.cloth.positions]);
         }
     }
 
@@ -124,10 +160,14 @@ impl<'a> Trial<'a> {
             None => self.colliders.place(&self.palette),
         }
         self.before.copy_from_slice(&self.cloth.positions);
-        let steps = [Step { palette: &self.palette, colliders: &self.colliders, settings: &self.settings }];
+        let step = Step { palette: &self.palette, colliders: &self.colliders, settings: &self.settings };
         let cloths = std::slice::from_mut(&mut self.cloth);
-        // Without a worker pool there is no worker that could panic.
-        let _ = self.stepper.step(&mut ClothBatch { cloths, garments: &[self.garment], steps: &steps }, None);
+        // Without another worker there is none that could panic.
+        let _ = match &mut self.folds {
+            Some(folds) => folds.layers.step(&mut folds.pool, cloths, std::slice::from_ref(self.garment), &step),
+            None => self.stepper.step(&mut ClothBatch { cloths, garments: &[self.garment], steps: &[step] }, None),
+        };
+        self.folds.iter_mut().for_each(|folds| folds.crossed.after_step(&[&self.cloth.positions]));
         self.look();
     }
 

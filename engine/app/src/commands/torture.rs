@@ -20,9 +20,10 @@ const MAX_SEEDS: u64 = 100_000;
 
 /// Put the cloth into states that it should never meet, and see whether it comes back.
 ///
-/// Runs the hard cases: cloth that starts inside the body, surroundings that jump, extreme ratios and steps, inputs that are
-/// NaN or infinite. Required are: nothing that is not finite is ever published, no particle is faster than the limit, and the
-/// cloth is back within 1 mm of its place of rest in 5 s where it has only one. A case that fails makes the exit code 3.
+/// Runs the hard cases: cloth that starts inside the body, through itself or in the wrong order, surroundings that jump or
+/// crush, extreme ratios and steps, inputs that are NaN or infinite. Required are: nothing that is not finite is ever published,
+/// no particle is faster than the limit, the cloth is back within 1 mm of its place of rest in 5 s where it has only one, and no
+/// edge passes through a face in the end where cloth keeps out of cloth. A case that fails makes the exit code 3.
 /// docs/torture.md describes the cases.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(after_help = "Example: run one seed of a case once more\n  toile torture squeeze --seed 7")]
