@@ -76,6 +76,7 @@ pub fn bake(name: &str, size: &str, shape: &Shape, fabric: &Fabric) -> Result<Ga
         name: name.into(),
         size: size.into(),
         layer: 0,
+        tuck: None,
         fabric: fabric.clone(),
         start: (0..n).map(|i| shape.worn[old(i)]).collect(),
         inverse_mass: (0..n).map(|i| masses[old(i)]).collect(),

@@ -6,9 +6,11 @@
 
 pub mod check;
 pub mod direction;
+mod gather;
 pub mod layout;
 pub mod shape;
 pub mod solver;
+pub mod tuck;
 
 use glam::Vec3;
 
@@ -17,6 +19,7 @@ pub use direction::Direction;
 pub use layout::Layout;
 pub use shape::{Face, Part, Shape};
 pub use solver::{Overrides, Solver};
+pub use tuck::Tuck;
 
 use crate::fabric::Fabric;
 use crate::mesh::SkinWeights;
@@ -30,6 +33,8 @@ pub struct Garment {
     pub size: String,
     /// Which layer it is worn in, the innermost lowest: it stays outside of what is worn in lower ones.
     pub layer: u8,
+    /// What of it is worn inside of a garment of a lower layer, though its own lies outside.
+    pub tuck: Option<Tuck>,
     /// The fabric that it is made of.
     pub fabric: Fabric,
     /// The vertex of the shape that each particle was `[particles]`.
@@ -98,6 +103,7 @@ impl Garment {
             + size_of_val(&*self.start)
             + size_of_val(&*self.inverse_mass)
             + size_of_val(&*self.parts)
+            + self.tuck.as_ref().map_or(0, |tuck| size_of_val(&*tuck.particles))
             + size_of_val(&*self.triangles)
             + size_of_val(&*self.fixed)
             + size_of_val(&*self.fixed_weights)

@@ -44,6 +44,8 @@ pub struct SceneGarment {
     pub mesh: UserMesh,
     /// Velocity of the free vertices at the start (m/s).
     pub velocity: Vec3,
+    /// Whether it is tucked into the next garment under it that has a waistband.
+    pub tuck: bool,
     /// Mass of the whole cloth (kg), pinned parts included.
     pub mass_kg: f64,
 }
@@ -73,7 +75,7 @@ impl SceneGarment {
             let (warp, weft) = (chosen("warp")?, chosen("weft")?);
             shape.solver = Overrides { warp, weft, waistband: chosen("waistband")?, hem: chosen("hem")?, bias: None };
         }
-        Ok(Self { name, shape, fabric, mesh, velocity: table.vector("velocity")?, mass_kg })
+        Ok(Self { name, shape, fabric, mesh, velocity: table.vector("velocity")?, tuck: table.flag("tuck")?, mass_kg })
     }
 }
 

@@ -38,6 +38,7 @@ rotation_deg = [0, 90, 0]
 position = [0, 1, 0]
 velocity = [0, 0, 1]
 mass = 0.5
+tuck = false
 solver = { warp = "zero-stretch", weft = "semi-implicit", waistband = "gauss-seidel", hem = "zero-stretch" }
 
 [garment.fabric]

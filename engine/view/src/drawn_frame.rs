@@ -2,12 +2,12 @@
 
 use glam::Vec3;
 use toile_assets::body::Body;
-use toile_assets::garment::Garment;
+use toile_assets::garment::{Garment, Tuck};
 use toile_assets::mesh::vertex_normals;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::skin::Posed;
 
-use crate::hidden_skin::CoveringCloth;
+use crate::hidden_skin::{CoveringCloth, DrawnSkin};
 use crate::image::{Image, Size};
 use crate::scene::{Bounds, Camera, Colours, MANNEQUIN, Material, Scene, Surface};
 use crate::trace::{TraceQuality, TracedScene};
@@ -46,6 +46,8 @@ struct DrawnGarment {
     points: Vec<Vec3>,
     /// Particles under a garment worn over this one.
     dressed: Vec<bool>,
+    /// What of it is tucked into another garment, and so drawn beneath that one.
+    tuck: Option<Tuck>,
     triangles: Vec<[u32; 3]>,
     /// Those of them that are drawn.
     drawn: Vec<[u32; 3]>,
@@ -72,6 +74,7 @@ impl DrawnFrame {
             DrawnGarment {
                 points: g.start.to_vec(),
                 dressed: over(i + 1).dressed(&g.start, &normals),
+                tuck: g.tuck.clone(),
                 drawn: g.triangles.to_vec(),
                 triangles: g.triangles.to_vec(),
                 normals,
@@ -109,19 +112,28 @@ impl DrawnFrame {
     /// Updates the particles of each garment (m) and the skin, from the outermost garment to the skin: each is drawn beneath what
     /// is worn over it.
     pub fn place(&mut self, garments: &[impl AsRef<[Vec3]>], skin: &Posed) {
-        let mut over: Vec<[Vec3; 3]> = Vec::new();
-        for (cloth, points) in self.cloths.iter_mut().zip(garments).rev() {
-            let DrawnGarment { points: at, dressed, triangles, drawn, normals, .. } = cloth;
-            at.copy_from_slice(points.as_ref());
+        // Each with the garment that it does not lie over, because it is tucked into it.
+        let mut over: Vec<([Vec3; 3], Option<usize>)> = Vec::new();
+        for i in (0..self.cloths.len()).rev() {
+            let into = self.cloths[i].tuck.as_ref().map(|tuck| tuck.into);
+            let into = into.map(|g| cover(&self.cloths[g].triangles, garments[g].as_ref()));
+            let DrawnGarment { points: at, dressed, tuck, triangles, drawn, normals, .. } = &mut self.cloths[i];
+            at.copy_from_slice(garments[i].as_ref());
             vertex_normals(at, triangles, normals);
-            let under = CoveringCloth::new(over.iter().copied()).hide_skin(at, normals, dressed, triangles);
+            let worn_over = over.iter().filter(|(_, beneath)| *beneath != Some(i)).map(|(face, _)| *face);
+            let mut under = CoveringCloth::new(worn_over).hide_skin(at, normals, dressed, triangles);
+            if let (Some(cover), Some(tuck)) = (into, tuck.as_ref()) {
+                let tucked = cover.hide_skin(at, normals, &tuck.particles, &under.triangles);
+                under = DrawnSkin { hidden_m: under.hidden_m.max(tucked.hidden_m), ..tucked };
+            }
             self.hidden_m = self.hidden_m.max(under.hidden_m);
             *drawn = under.triangles;
-            over.extend(triangles.iter().map(|t| t.map(|i| at[i as usize])));
+            let beneath = |t: &[u32; 3]| tuck.as_ref().filter(|tuck| tuck.holds(*t)).map(|tuck| tuck.into);
+            over.extend(triangles.iter().map(|t| (t.map(|v| at[v as usize]), beneath(t))));
         }
         skin.read(&mut self.body, &mut self.normals);
         self.bounds = Bounds::of(&self.body);
-        let cover = CoveringCloth::new(over.into_iter());
+        let cover = CoveringCloth::new(over.into_iter().map(|(face, _)| face));
         let under = cover.hide_skin(&mut self.body, &self.normals, &self.dressed, &self.body_triangles);
         self.hidden_m = self.hidden_m.max(under.hidden_m);
         self.drawn = under.triangles;
@@ -163,6 +175,11 @@ impl DrawnFrame {
         let shown = Bounds { min: at - reach, max: at + reach + Vec3::Y * self.stature * HEADROOM };
         Camera::front(&shown, size.width as f32 / size.height as f32)
     }
+}
+
+/// A garment as what is beneath it sees it.
+fn cover(triangles: &[[u32; 3]], points: &[Vec3]) -> CoveringCloth {
+    CoveringCloth::new(triangles.iter().map(|t| t.map(|v| points[v as usize])))
 }
 
 /// A small picture of a dressed body, seen from `yaw` (rad), its garments in these colours (linear RGB, inner first).

@@ -26,12 +26,19 @@ pub(super) struct Outfit {
     within_ms: Option<[f64; 2]>,
 }
 
-/// What a shopper wears at most: a dress over all else stands for what nobody wears.
-pub(super) const OUTFITS: [Outfit; 1] = [Outfit {
-    name: "trousers, T-shirt and dress over them",
-    garments: &["wide-trousers", "t-shirt", "sun-dress"],
-    within_ms: None,
-}];
+/// An outfit of the shop, which has to keep its time, and a dress over all else, which nobody wears and is only reported.
+pub(super) const OUTFITS: [Outfit; 2] = [
+    Outfit {
+        name: "trousers, T-shirt and open jacket",
+        garments: &["wide-trousers", "t-shirt", "jacket"],
+        within_ms: Some([4.5, 6.7]),
+    },
+    Outfit {
+        name: "trousers, T-shirt and dress over them",
+        garments: &["wide-trousers", "t-shirt", "sun-dress"],
+        within_ms: None,
+    },
+];
 
 /// How garments are worn here.
 pub fn options(garments: &[&str], threads: usize) -> WornOptions {

@@ -14,6 +14,7 @@ use toile_assets::limits::{STEP_HZ, STEP_SECONDS};
 use toile_assets::rig::Rig;
 use toile_assets::skeleton::{BONES, Joint};
 use toile_engine::body::palette;
+use toile_engine::cloth::layers::tuck_in;
 use toile_engine::cloth::{Settings, measure};
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::frame_loop::governor::LADDER;
@@ -58,6 +59,9 @@ pub struct TryOnArgs {
     /// Size to wear, as the garment's table names it (default: the one that fits)
     #[arg(long, value_name = "S")]
     pub size: Option<String>,
+    /// Garment that is tucked into the next one under it that has a waistband; repeat it for more
+    #[arg(long = "tuck", value_name = "G")]
+    pub tuck: Vec<String>,
     /// Body to show: female, male, or a file (.glb, .gltf, .vrm) (default: by the garment)
     #[arg(long, value_name = "B", value_parser = Wearer::parse)]
     pub body: Option<Wearer>,
@@ -163,7 +167,8 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     let track = session::standing(&session)?;
     let (body, note) = worn_body(args, &mut measured, &choices, has_joints)?;
     let notes: Vec<String> = note.into_iter().chain(measured.best.notes.iter().cloned()).collect();
-    let (garments, recommendations) = put_on(&choices, args.size.as_deref(), &measured, &body)?;
+    let (mut garments, recommendations) = put_on(&choices, args.size.as_deref(), &measured, &body)?;
+    args.tuck.iter().try_for_each(|name| tuck(&mut garments, name))?;
 
     let rig = Rig::fit(&body);
     let settings = LADDER[usize::from(args.rung)].of(&Settings { quality: args.quality, ..Settings::default() });
@@ -253,6 +258,18 @@ fn put_on(
         garments.push(worn.garment);
     }
     Ok((garments, recommendations))
+}
+
+/// Tucks in a garment that is worn, by its name.
+fn tuck(garments: &mut [Garment], name: &str) -> Result<(), AppError> {
+    let Some(place) = garments.iter().rposition(|g| g.name == name) else {
+        let worn: Vec<&str> = garments.iter().map(|g| g.name.as_str()).collect();
+        let worn = worn.join(", ");
+        return Err(AppError::input(format!(
+            "--tuck: {name} is not worn; name one of {worn}, or add --garment {name}"
+        )));
+    };
+    tuck_in(garments, place).map_err(|why| AppError::input(format!("--tuck: {why}")))
 }
 
 /// What playing a session left behind.

@@ -22,7 +22,7 @@ use toile_assets::limits::MAX_SPHERES;
 use toile_assets::numeric::hash;
 use toile_assets::scene_file::{SceneFile, SceneGarment};
 use toile_assets::skeleton::BONES;
-use toile_engine::cloth::layers::Layers;
+use toile_engine::cloth::layers::{Layers, TuckError, tuck_in};
 use toile_engine::cloth::program::METERED_STAGES;
 use toile_engine::cloth::{Cloth, Quality, Settings, Step, Wind, measure};
 use toile_engine::colliders::{ColliderError, Colliders, RestSphere, RoundCone};
@@ -48,6 +48,9 @@ pub enum RunError {
         /// What is wrong with the mesh.
         source: MeshError,
     },
+    /// A garment that cannot be tucked in.
+    #[error(transparent)]
+    Tuck(#[from] TuckError),
     /// Colliders that the engine does not take.
     #[error(transparent)]
     Colliders(#[from] ColliderError),
@@ -328,7 +331,10 @@ impl Runner {
 
 /// All garments of a scene.
 pub(crate) fn bake_all(scene: &SceneFile) -> Result<Vec<Garment>, RunError> {
-    scene.garments.iter().map(baked).collect()
+    let mut garments: Vec<Garment> = scene.garments.iter().map(baked).collect::<Result<_, _>>()?;
+    let mut tucked = (0..garments.len()).filter(|&g| scene.garments[g].tuck);
+    tucked.try_for_each(|g| tuck_in(&mut garments, g))?;
+    Ok(garments)
 }
 
 /// The colliders of a scene where they stand at its start.

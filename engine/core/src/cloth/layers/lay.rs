@@ -1,4 +1,4 @@
-//! Dressing: outer garments are laid outside of inner ones. At load.
+//! Dressing: outer garments are laid outside of inner ones, and what is tucked in inside. At load.
 
 use glam::{Vec3, Vec3A};
 use toile_assets::garment::Garment;
@@ -16,7 +16,8 @@ const INSIDE_M: f32 = 0.05;
 const ROUNDS: usize = 12;
 
 /// Moves where outer garments start to the outside of inner ones, a thickness away. What is pushed is the outer garment's
-/// particle, or the corners of its face that an inner particle looks through.
+/// particle, or the corners of its face that an inner particle looks through. What is tucked in is laid inside instead, a thickness
+/// away as well, and gathered to the width that it has there.
 pub fn lay_outside(garments: &mut [Garment]) {
     let order = wearing_order(garments);
     for (k, &outer) in order.iter().enumerate() {
@@ -31,6 +32,7 @@ pub fn lay_outside(garments: &mut [Garment]) {
                 break;
             }
         }
+        garments[outer].gather();
     }
 }
 
@@ -73,9 +75,15 @@ fn near(surface: &GarmentSurface, start: &[Vec3], points: &[Vec3]) -> Vec<(u32, 
 fn particles_out(garments: &mut [Garment], outer: usize, inner: usize, apart: f32) -> bool {
     let near = near(&GarmentSurface::new(&garments[inner]), &garments[inner].start, &garments[outer].start);
     let mut moved = false;
-    for (i, _, normal, front) in near.into_iter().filter(|n| n.3 < apart) {
-        garments[outer].start[i as usize] += Vec3::from(normal * (apart - front));
-        moved |= front < 0.5 * apart;
+    let garment = &mut garments[outer];
+    let tuck = garment.tuck.as_ref().filter(|tuck| tuck.into == inner);
+    for (i, _, normal, front) in near {
+        // Where it belongs is in front, of what is tucked in behind.
+        let side = if tuck.is_some_and(|tuck| tuck.particles[i as usize]) { -1.0 } else { 1.0 };
+        if side * front < apart {
+            garment.start[i as usize] += Vec3::from(normal * (side * apart - front));
+            moved |= side * front < 0.5 * apart;
+        }
     }
     moved
 }
@@ -88,13 +96,17 @@ fn faces_out(garments: &mut [Garment], outer: usize, inner: usize, apart: f32) -
     let mut moved = false;
     let at = |v: u32| Vec3A::from(garments[inner].start[v as usize]);
     let mut pushes = Vec::new();
+    let tuck = garments[outer].tuck.as_ref().filter(|tuck| tuck.into == inner);
     for (i, found, normal, front) in near {
         let front_of_inner = own.mesh.fan(i).iter().map(|&t| own.mesh.normal(t, Feature::Face, at)).sum::<Vec3A>();
-        if front_of_inner.dot(normal) > 0.0 && front > -apart {
-            moved |= front > -0.5 * apart;
+        let corners = of.mesh.corners(found.triangle);
+        // Where the inner particle belongs is behind, of what is tucked in in front.
+        let side = if tuck.is_some_and(|tuck| tuck.holds(corners)) { -1.0 } else { 1.0 };
+        if front_of_inner.dot(normal) > 0.0 && side * front > -apart {
+            moved |= side * front > -0.5 * apart;
             let square = found.shares.iter().map(|s| s * s).sum::<f32>();
-            let corners = of.mesh.corners(found.triangle);
-            (0..3).for_each(|k| pushes.push((corners[k], normal * ((apart + front) * found.shares[k] / square))));
+            (0..3)
+                .for_each(|k| pushes.push((corners[k], normal * ((side * apart + front) * found.shares[k] / square))));
         }
     }
     // Of several pushes the longest: they are for the same way out.

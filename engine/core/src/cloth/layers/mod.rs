@@ -25,6 +25,7 @@ mod step;
 mod tests;
 mod thickness;
 mod touch;
+mod tuck;
 mod turns;
 mod uncross;
 #[expect(unsafe_code, reason = "the workers of a step share the contacts")]
@@ -45,6 +46,7 @@ use turns::Turns;
 pub use fold_share::PAIRS_A_PARTICLE;
 pub use lay::lay_outside;
 pub use order::wearing_order;
+pub use tuck::{TuckError, tuck_in};
 pub use uncross::MOST_CROSSINGS;
 
 /// Garments that lie farther apart than this where they start (m) never meet.

@@ -1,6 +1,6 @@
 //! A pair of garments, or one and itself: what one is to the other, and what is known of both at the start of a step.
 
-use toile_assets::garment::{Garment, Part};
+use toile_assets::garment::{Garment, Part, Tuck};
 
 use super::contact::ContactLaw;
 use super::garment_surface::{GarmentMotion, GarmentSurface};
@@ -41,6 +41,29 @@ pub struct LayerPair {
     pub count: usize,
     /// How high it lies, from 1: what is lower is solved first.
     pub level: usize,
+    /// What of the one is tucked into the other.
+    tuck: PairTuck,
+}
+
+/// What of a pair is tucked in.
+#[derive(Debug, Clone)]
+enum PairTuck {
+    /// Nothing.
+    None,
+    /// The particles so marked, into the garment of the faces.
+    Particles(Tuck),
+    /// Faces with a corner so marked, into the garment of the particles.
+    Faces(Tuck),
+}
+
+impl PairTuck {
+    fn new(garments: &[Garment], particles: usize, faces: usize) -> Self {
+        match (&garments[particles].tuck, &garments[faces].tuck) {
+            (Some(tuck), _) if tuck.into == faces => Self::Particles(tuck.clone()),
+            (_, Some(tuck)) if tuck.into == particles => Self::Faces(tuck.clone()),
+            _ => Self::None,
+        }
+    }
 }
 
 impl LayerPair {
@@ -55,6 +78,23 @@ impl LayerPair {
             friction: 0.5 * fabrics.iter().map(|f| f.friction).sum::<f32>(),
             count: garments[particles].particles(),
             level,
+            tuck: PairTuck::new(garments, particles, faces),
+        }
+    }
+
+    /// What a particle is to a face with these corners: as the garments are worn, the other way round where it or the face is
+    /// tucked in.
+    #[inline]
+    pub fn wearing_at(&self, particle: u32, corners: [u32; 3]) -> Wearing {
+        let tucked = match &self.tuck {
+            PairTuck::None => false,
+            PairTuck::Particles(tuck) => tuck.particles[particle as usize],
+            PairTuck::Faces(tuck) => tuck.holds(corners),
+        };
+        match self.wearing {
+            Wearing::Outer if tucked => Wearing::Inner,
+            Wearing::Inner if tucked => Wearing::Outer,
+            worn => worn,
         }
     }
 

@@ -236,7 +236,7 @@ fn touch(pair: &LayerPair, scene: &PairScene<'_>, i: u32, found: &NearestPoint) 
     if mesh.on_border(found.triangle, SurfaceMesh::feature(found.shares)) && beyond2 > BEYOND_M * BEYOND_M {
         return Err(Distant(beyond2.sqrt() - BEYOND_M));
     }
-    let normal = normal(pair.wearing, scene, i, corners[0], front, height).ok_or(Distant(0.0))?;
+    let normal = normal(pair.wearing_at(i, corners), scene, i, corners[0], front, height).ok_or(Distant(0.0))?;
     let apart = away.dot(normal) - pair.thickness;
     let relative = get(of.v, i as usize) - (at(faces.v, 0) + at(faces.v, 1) + at(faces.v, 2));
     let near = MARGIN_M + FASTER * scene.step_seconds * (-relative.dot(normal)).max(0.0);

@@ -4,6 +4,7 @@ use glam::{Affine3A, Vec3, Vec3A};
 use toile_assets::bake::bake;
 use toile_assets::fabric::Fabric;
 use toile_assets::garment::{Garment, Shape};
+use toile_assets::mesh::Influences;
 use toile_assets::skeleton::BONES;
 
 use super::*;
@@ -186,6 +187,110 @@ fn outer_garments_are_laid_outside_and_nothing_else_is_moved() {
     let over = garments[0].start.iter().filter(|p| p.x > 0.01 && p.z > 0.01);
     let least = over.map(|p| p.y).fold(f32::MAX, f32::min);
     assert!(least > 0.01 + 0.003_9, "the outer one starts at {least}");
+}
+
+/// A tube that stands upright, its upper end at a height (m), of vertices 20 mm apart.
+fn tube(radius: f32, top: f32, rows: u32, layer: u8) -> Garment {
+    const COLUMNS: u32 = 24;
+    let mut shape = Shape::default();
+    for (r, c) in (0..rows).flat_map(|r| (0..COLUMNS).map(move |c| (r, c))) {
+        let angle = std::f32::consts::TAU * c as f32 / COLUMNS as f32;
+        let at = Vec3::new(radius * angle.sin(), top - 0.02 * r as f32, radius * angle.cos());
+        shape.push(at, at, r == 0, toile_assets::garment::Part::All);
+    }
+    shape.weights = vec![Influences::strongest([(0, 1.0)]).0; shape.cut.len()];
+    let row = |r: u32, c: u32| r * COLUMNS + c % COLUMNS;
+    let faces =
+        (1..rows).flat_map(|r| (0..COLUMNS).map(move |c| [row(r, c), row(r, c + 1), row(r - 1, c + 1), row(r - 1, c)]));
+    shape.faces = faces.collect();
+    let mut garment = bake("tube", "one", &shape, &Fabric::built_in("cotton-jersey").unwrap()).unwrap();
+    garment.layer = layer;
+    garment
+}
+
+/// A shirt 20 mm wider than the trousers over whose waistband, at 1 m, it comes down by 160 mm.
+fn shirt_and_trousers() -> Vec<Garment> {
+    let mut trousers = tube(0.10, 1.0, 20, 1);
+    trousers.name = "trousers".into();
+    vec![trousers, tube(0.12, 1.3, 24, 2)]
+}
+
+/// How far each particle of a garment is from the middle (m), of those that start at these heights (m).
+fn radii(scene: &Scene, garment: usize, heights: std::ops::Range<f32>) -> Vec<f32> {
+    let within = scene.garments[garment].start.iter().map(|p| heights.contains(&p.y));
+    let at = scene.cloths[garment].positions.iter().zip(within).filter(|(_, within)| *within);
+    at.map(|(p, _)| p.x.hypot(p.z)).collect()
+}
+
+/// Whether each particle of the shirt that lies over or under the trousers is inside of them.
+fn sides(scene: &Scene) -> Vec<bool> {
+    let (at, of) = (&scene.cloths[1].positions, &scene.cloths[0].positions);
+    let mesh = &scene.layers.surfaces[0].mesh;
+    let inside = |p: &Vec3A| {
+        let nearest = (0..of.len() as u32).min_by(|a, b| {
+            let distance = |v: &u32| of[*v as usize].distance_squared(*p);
+            distance(a).total_cmp(&distance(b))
+        })?;
+        let front = (*p - of[nearest as usize]).dot(mesh.vertex_normal(nearest, |v| of[v as usize]));
+        (!mesh.is_border(nearest)).then_some(front < 0.0)
+    };
+    at.iter().filter_map(inside).collect()
+}
+
+#[test]
+fn what_is_tucked_in_stays_inside_and_the_rest_outside() {
+    let ends = |tuck: bool| {
+        let mut garments = shirt_and_trousers();
+        if tuck {
+            tuck_in(&mut garments, 1).unwrap();
+        }
+        lay_outside(&mut garments);
+        let mut scene = Scene::new(garments, 1, Width::widest());
+        scene.steps(120);
+        scene
+    };
+    let mean = |radii: Vec<f32>| radii.iter().sum::<f32>() / radii.len() as f32;
+    for (tuck, side) in [(true, 1.0), (false, -1.0)] {
+        let scene = ends(tuck);
+        // Hem and waistband where both are: by rows, because neither stays round.
+        let [hem, band] = [(1, 0.86..0.98), (0, 0.86..0.98)].map(|(g, rows)| mean(radii(&scene, g, rows)));
+        assert!(side * (band - hem) > 0.002, "tucked in: {tuck}, hem {hem} m from the middle, trousers {band} m");
+        let inside = sides(&scene);
+        let wrong = inside.iter().filter(|inside| **inside != tuck).count();
+        assert!(inside.len() > 50 && wrong == 0, "tucked in: {tuck}, {wrong} of {} on the wrong side", inside.len());
+    }
+}
+
+#[test]
+fn tucked_cloth_has_the_same_bits_with_any_workers_and_lanes() {
+    let state = |workers, width| {
+        let mut garments = shirt_and_trousers();
+        garments.push(tube(0.15, 1.3, 24, 3));
+        tuck_in(&mut garments, 1).unwrap();
+        lay_outside(&mut garments);
+        let mut scene = Scene::new(garments, workers, width);
+        scene.steps(30);
+        scene.cloths.iter().flat_map(|c| c.positions.iter().map(|p| p.to_array().map(f32::to_bits))).collect::<Vec<_>>()
+    };
+    let first = state(1, Width::One);
+    for workers in [1, 2] {
+        assert!(state(workers, Width::widest()) == first, "{workers} workers give other bits");
+    }
+}
+
+#[test]
+fn what_has_no_waistband_to_go_into_is_refused_with_the_cure() {
+    let refused = |garments: &mut [Garment], wanted: &str| {
+        let message = tuck_in(garments, 1).unwrap_err().to_string();
+        assert!(message.contains("tube") && message.contains(wanted), "{message}");
+        assert!(message.contains("do not tuck it in") && !message.contains('\n'), "{message}");
+        assert!(garments.iter().all(|g| g.tuck.is_none()));
+    };
+    // Beside it as high; nothing under it; too short; too long.
+    refused(&mut [tube(0.1, 1.3, 20, 1), tube(0.12, 1.3, 24, 2)], "wear trousers");
+    refused(&mut [tube(0.1, 1.0, 20, 3), tube(0.12, 1.3, 24, 2)], "wear trousers");
+    refused(&mut [tube(0.1, 1.0, 20, 1), tube(0.12, 1.3, 10, 2)], "above the waistband");
+    refused(&mut [tube(0.1, 1.0, 40, 1), tube(0.12, 1.3, 40, 2)], "480 mm below the waistband");
 }
 
 /// Where a flat sheet is once its half beyond x = 110 mm is folded back over the other one, 30 mm above it.
