@@ -95,8 +95,11 @@ impl UpperBodyDraft {
 
     /// The rows of the front panel without a gap: one, or the right half and the left.
     fn front_pieces(&self) -> Vec<std::ops::Range<usize>> {
-        let width = self.front_width();
-        if self.open() == 1 { vec![0..self.front + 1, self.front + 1..width] } else { vec![0..width] }
+        let mut ends = vec![0, self.front_width()];
+        if self.open() == 1 {
+            ends.insert(1, self.front + 1);
+        }
+        ends.windows(2).map(|end| end[0]..end[1]).collect()
     }
 
     /// How far from the middle a column of the front lies on the shoulder or at the neckline (m); `half` is how far the armhole
