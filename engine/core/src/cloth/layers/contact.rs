@@ -8,7 +8,7 @@
 //! where all contacts are alike.
 //!
 //! Many contacts of a particle, of which not all touch, each undo but a part of what it slides, so that under a lasting pull what
-//! sticks would creep. So each knows where it sticks, and brings it back from there: as a bristle that bends as far as friction
+//! sticks would creep. So each knows where it sticks, and draws it back there little by little: as a bristle that bends as far as friction
 //! holds (Canudas de Wit et al. 1995, "A new model for control of systems with friction").
 //!
 //! A particle that lies on the body, or on cloth that does, is put back by it in the same substep: it does not give way. So
@@ -35,6 +35,9 @@ const MOST_ABOVE: f32 = 10.0;
 /// Least share of what gives where nothing is held (1) that is reckoned with: a corner that alone can move, and carries next to
 /// nothing of the contact, would be thrown far away. Less than what three corners give by themselves.
 const LEAST_GIVE: f32 = 0.2;
+
+/// How much of the way to where it sticks a particle is brought back in a substep (1): all of it at once would swing.
+const BACK: f32 = 1.0 / 16.0;
 
 /// A particle near a face of another garment, for one step.
 #[derive(Debug, Clone, Copy, Default)]
@@ -174,13 +177,15 @@ impl LayerContact {
         let along = moved.dot(n);
         let load = depth.min((-along).max(0.0));
         let carried = (depth - load).min(law.push * law.dt);
-        let sliding = (x - from).reject_from_normalized(n);
+        let slip = (x - from).reject_from_normalized(n);
+        let sliding = ((before - from) * BACK + moved).reject_from_normalized(n);
         let slid = sliding.length();
         // What lies on the upper side presses as well, as much as it did in the substep before.
         let pressed = if give > 0.0 { self.passed.dot(n).abs() / give } else { 0.0 };
         let [holds, slows] = law.friction.map(|mu| mu * (load + pressed.min(MOST_ABOVE * load)));
         let slowed = if slid <= holds { sliding } else { sliding * (slows / slid).min(1.0) };
-        (self.sticks, self.anchor) = (true, x - slowed);
+        let kept = if slid <= holds { slip } else { slip.clamp_length_max(slows / BACK) };
+        (self.sticks, self.anchor) = (true, x - kept);
         self.push = (n * (load + carried) - slowed) * give;
         self.carry = n * (carried * give);
     }
