@@ -4,7 +4,8 @@ use toile_engine::cloth::Quality;
 use toile_gpu::backend::Backends;
 
 use super::row::{ContactError, ContactRow};
-use crate::validate::{CaseSetup, Level, layered_cases};
+use crate::validate::cases::layered;
+use crate::validate::{CaseSetup, Level};
 
 /// The slope at which sheet slides on sheet.
 pub fn incline() -> Result<Vec<ContactRow>, ContactError> {
@@ -25,7 +26,7 @@ pub fn weight() -> Result<Vec<ContactRow>, ContactError> {
 fn rows(name: &str, called: &str) -> Result<Vec<ContactRow>, ContactError> {
     let backends = Backends::cpu();
     let mut rows = Vec::new();
-    for case in layered_cases().into_iter().filter(|case| case.name == name) {
+    for case in layered::cases().into_iter().filter(|case| case.name == name) {
         for quality in [Quality::Shop, Quality::Fine] {
             let got = (case.run)(CaseSetup { level: Level::Production(quality), backends: &backends })?.got;
             let off = 100.0 * (got / case.expected - 1.0).abs();
@@ -44,7 +45,7 @@ mod tests {
     #[test]
     fn strip_slips_over_a_sheet_at_the_ratio_of_the_rope_around_a_post() {
         let backends = Backends::cpu();
-        let capstans = layered_cases().into_iter().filter(|case| case.name == "layer-capstan");
+        let capstans = layered::cases().into_iter().filter(|case| case.name == "layer-capstan");
         let rope = capstans.min_by(|a, b| a.parameter.cmp(&b.parameter)).unwrap();
         let got = (rope.run)(CaseSetup { level: Level::GATED, backends: &backends }).unwrap().got;
         assert!((got / rope.expected - 1.0).abs() < 0.03, "{}: {got} for {}", rope.parameter, rope.expected);

@@ -5,14 +5,12 @@
 //! Thread: as many as are asked for; cases are independent and rows come out in a fixed order.
 
 pub mod case;
-mod cases;
+pub mod cases;
 pub mod exact;
 pub mod layered;
 pub mod mesh;
 pub mod run;
 pub mod specimen;
-
-pub use cases::layered::cases as layered_cases;
 
 use toile_engine::cloth::Quality;
 use toile_gpu::backend::Backends;

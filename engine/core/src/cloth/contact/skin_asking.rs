@@ -5,11 +5,13 @@ use std::ops::Range;
 use toile_assets::garment::Part;
 
 use super::ContactSettings;
-use super::skin_contact::DISAGREE_M;
 use crate::body_surface::{BodySurface, PartSurface};
 use crate::cloth::state::{ParticleColumns, get};
 use crate::lanes::{Kernel, Lanes, MOST, Mask, ReadColumn, Store, V3, Width, WriteColumn};
 use crate::surface::{NearestPoint, NearestVertex};
+
+/// Farther from the skin than this (m), or deeper inside it, a particle lies by the cones.
+pub const DISAGREE_M: f32 = 0.02;
 
 /// How much faster than at its start a particle may be within a step (1).
 const FASTER: f32 = 1.5;

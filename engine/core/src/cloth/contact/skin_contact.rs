@@ -10,15 +10,12 @@ use toile_assets::garment::Part;
 
 use super::ContactSettings;
 use super::near::ParticleBlock;
-use super::skin_asking::{AskingList, LookAnew, PartList, turn};
+use super::skin_asking::{AskingList, DISAGREE_M, LookAnew, PartList, turn};
 use super::touch::{ContactSurface, Friction, push};
 use crate::body_surface::{BodyPart, BodySurface, PartSurface};
 use crate::cloth::state::{ParticleColumns, get};
 use crate::lanes::{Kernel, Lanes, MOST, Mask, ReadColumn, Readable, Store, V3, Width, WriteColumn, reciprocal_root};
 use crate::surface::{FindNearest, NearestPoint, SurfaceMesh};
-
-/// Farther from the skin than this (m), or deeper inside it, a particle lies by the cones.
-pub const DISAGREE_M: f32 = 0.02;
 
 /// How much nearer than the offset a plane is made (m).
 const MARGIN_M: f32 = 0.002;

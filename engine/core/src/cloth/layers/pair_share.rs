@@ -161,7 +161,7 @@ impl PairShare {
                 members.for_each(|k| self.look_anew(scene, k));
             }
         }
-        scene.width.run(Approach {
+        scene.width.run(SpendSlack {
             v: scene.columns[0].v,
             first: self.first,
             face_v: scene.columns[1].v,
@@ -250,7 +250,7 @@ fn touch(pair: &LayerPair, scene: &PairScene<'_>, i: u32, found: &NearestPoint) 
 
 /// How far particles and what they are nearest to have moved against each other in a step is taken from their slack; those without
 /// any left are listed.
-struct Approach<'a> {
+struct SpendSlack<'a> {
     /// Velocities of the particles (m/s).
     v: [WriteColumn<'a>; 3],
     /// The first particle.
@@ -266,7 +266,7 @@ struct Approach<'a> {
     list: &'a mut Vec<u32>,
 }
 
-impl Kernel for Approach<'_> {
+impl Kernel for SpendSlack<'_> {
     type Out = ();
 
     #[inline(always)]
