@@ -96,7 +96,8 @@ impl UpperBodyDraft {
     /// The rows of the front panel without a gap: one, or the right half and the left.
     fn front_pieces(&self) -> Vec<std::ops::Range<usize>> {
         let width = self.front_width();
-        if self.open() == 1 { vec![0..self.front + 1, self.front + 1..width] } else { vec![0..width] }
+        let middle = if self.open() == 1 { self.front + 1 } else { width };
+        [0..middle, middle..width].into_iter().filter(|piece| !piece.is_empty()).collect()
     }
 
     /// How far from the middle a column of the front lies on the shoulder or at the neckline (m); `half` is how far the armhole
