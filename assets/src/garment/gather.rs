@@ -1,27 +1,65 @@
 //! Gathering: cloth that is tucked in is narrowed to the way around that it is laid at, as pleats narrow it, and not pressed
 //! together. A shirt is wider than the waistband that it goes into; with its full width it would come out of it in bulges.
 
-use super::layout::{ConstraintRun, Diagonals, FiberLists, Links};
-use super::{Direction, Garment};
 use glam::Vec3;
+
+use super::layout::{ConstraintRun, Diagonals, FiberLists, Links};
+use super::tuck::{SLIPS_M, Tuck};
+use super::{Direction, Garment, Part};
 
 /// Cloth is not gathered to less than this share of its width (1).
 const LEAST_WIDTH: f32 = 0.5;
 
+/// Above the waistband cloth gets its full width back over this length (m): in one row it would be a shelf that hangs over.
+const WIDENS_M: f32 = 0.08;
+
+/// How far below the waistband it is seen how much is gathered there (m).
+const SEEN_M: f32 = 0.04;
+
 /// Where tucked cloth lies.
 struct Laid<'a> {
     start: &'a [Vec3],
-    tucked: &'a [bool],
+    parts: &'a [Part],
+    tuck: &'a Tuck,
+    /// Width at the waistband as a share of what was cut (1).
+    width: f32,
 }
 
-impl Laid<'_> {
+impl<'a> Laid<'a> {
+    fn new(garment: &'a Garment, tuck: &'a Tuck) -> Self {
+        let mut laid = Self { start: &garment.start, parts: &garment.parts, tuck, width: 1.0 };
+        let near = |(ends, _): &&([u32; 2], f32)| laid.are_inside(*ends) && laid.above_band(*ends) > -SEEN_M;
+        let lengths = garment.hoop_edges.iter().filter(near).map(|(ends, rest)| [laid.length(*ends), *rest]);
+        let [now, cut] = lengths.fold([0.0; 2], |[a, b], [now, cut]| [a + now, b + cut]);
+        laid.width = if cut > 0.0 { (now / cut).clamp(LEAST_WIDTH, 1.0) } else { 1.0 };
+        laid
+    }
+
+    fn length(&self, [a, b]: [u32; 2]) -> f32 {
+        self.start[a as usize].distance(self.start[b as usize])
+    }
+
+    /// How far above the waistband the higher of two particles starts (m).
+    fn above_band(&self, [a, b]: [u32; 2]) -> f32 {
+        self.start[a as usize].y.max(self.start[b as usize].y) - self.tuck.band
+    }
+
+    /// Whether both particles of a link lie below the waistband.
+    fn are_inside(&self, ends: [u32; 2]) -> bool {
+        ends.iter().all(|&v| self.tuck.particles[v as usize]) && self.above_band(ends) <= 0.0
+    }
+
     /// Length of a link between two particles (m), which is `rest` as cut.
-    fn gathered(&self, [a, b]: [u32; 2], rest: f32) -> f32 {
-        let [a, b] = [a as usize, b as usize];
-        if !(self.tucked[a] && self.tucked[b]) {
+    fn gathered(&self, ends: [u32; 2], rest: f32) -> f32 {
+        if self.are_inside(ends) {
+            return rest.min(self.length(ends)).max(LEAST_WIDTH * rest);
+        }
+        let is_sleeve = ends.iter().any(|&v| matches!(self.parts[v as usize], Part::LeftArm | Part::RightArm));
+        let above = self.above_band(ends) - SLIPS_M;
+        if is_sleeve || above >= WIDENS_M {
             return rest;
         }
-        rest.min(self.start[a].distance(self.start[b])).max(LEAST_WIDTH * rest)
+        rest * (self.width + (1.0 - self.width) * (above / WIDENS_M).max(0.0))
     }
 }
 
@@ -29,8 +67,11 @@ impl Garment {
     /// Shortens what runs across the warp in the tucked part to what it is where it starts; nothing where nothing is tucked. At
     /// load.
     pub fn gather(&mut self) {
-        let Self { tuck: Some(tuck), start, layout, strain_edges, hoop_edges, .. } = self else { return };
-        let laid = Laid { start, tucked: &tuck.particles };
+        let Some(tuck) = self.tuck.clone() else { return };
+        let (own, parts) = (self.start.clone(), self.parts.clone());
+        let width = Laid::new(self, &tuck).width;
+        let laid = Laid { start: &own, parts: &parts, tuck: &tuck, width };
+        let Self { layout, strain_edges, hoop_edges, .. } = self;
         for links in [&mut layout.weft, &mut layout.shear] {
             unshare(links);
             let rest = &mut links.rest;
@@ -112,6 +153,7 @@ fn gather_lists(lists: &mut FiberLists, laid: &Laid<'_>) {
 
 #[cfg(test)]
 mod tests {
+    use super::{SLIPS_M, WIDENS_M};
     use crate::body::{Body, Measures, Sex};
     use crate::garment::Tuck;
     use crate::wardrobe;
@@ -123,22 +165,22 @@ mod tests {
         let mut same = shirt.clone();
         same.gather();
         assert_eq!(same, shirt, "nothing is tucked in");
-        let hem = shopper.levels.waist - 0.05;
+        let band = shopper.levels.waist - 0.05;
         let mut tucked = shirt.clone();
-        let particles: Box<[bool]> = shirt.start.iter().map(|p| p.y < hem).collect();
-        let inside = |[a, b]: [u32; 2]| particles[a as usize] && particles[b as usize];
+        let particles: Box<[bool]> = shirt.start.iter().map(|p| p.y < band).collect();
+        let free = |[a, b]: [u32; 2]| [a, b].iter().all(|&v| shirt.start[v as usize].y > band + SLIPS_M + WIDENS_M);
         tucked.start.iter_mut().zip(&particles).filter(|(_, inside)| **inside).for_each(|(p, _)| {
             (p.x, p.z) = (0.8 * p.x, 0.8 * p.z);
         });
-        tucked.tuck = Some(Tuck { into: 0, particles: particles.clone() });
+        tucked.tuck = Some(Tuck { into: 0, band, particles: particles.clone() });
         tucked.gather();
         // The shirt starts a little wider or narrower than it is cut, because this shopper is not of its size.
         let as_cut = |garment: &crate::garment::Garment| {
             let of = |within: bool| {
-                let links = garment.hoop_edges.iter().filter(|(ends, _)| inside(*ends) == within);
+                let links = garment.hoop_edges.iter().filter(|(ends, _)| free(*ends) == within);
                 links.map(|(_, rest)| *rest).sum::<f32>()
             };
-            [of(true), of(false)]
+            [of(false), of(true)]
         };
         let ([before, rest], [after, kept]) = (as_cut(&shirt), as_cut(&tucked));
         assert!((0.7..0.95).contains(&(after / before)) && rest == kept, "{before} {after} {rest} {kept}");
@@ -153,7 +195,7 @@ mod tests {
         assert_eq!(old.len(), new.len());
         for ((ends, was, soft), (same_ends, is, same_soft)) in old.into_iter().zip(new) {
             assert_eq!((ends, soft), (same_ends, same_soft));
-            assert!(is <= was && (inside(ends) || is == was), "{ends:?}: {was} became {is}");
+            assert!(is <= was && (!free(ends) || is == was), "{ends:?}: {was} became {is}");
         }
     }
 }

@@ -49,6 +49,36 @@ fn a_cloth_that_nothing_holds_falls_as_a_stone_at_any_step() {
     }
 }
 
+/// Trousers and a shirt that starts 10 mm inside of them, both hung by their upper ends; the shirt's own keys are added.
+fn shirt_in_trousers(keys: &str) -> String {
+    let tube = |rows: u32, radius: f32, height: f32, top: f32| {
+        format!(
+            "[[garment]]\ntube = {{ rows = {rows}, columns = 30, top_radius = {radius}, bottom_radius = {radius}, \
+             height = {height} }}\nposition = [0, {top}, 0]\n"
+        )
+    };
+    let pin = "[[garment.pin]]\nvertices = [\"0-29\"]\n";
+    let (trousers, shirt) = (tube(16, 0.1, 0.3, 1.0), tube(22, 0.09, 0.42, 1.25));
+    format!("duration = 0.5\n{trousers}{pin}{shirt}{keys}\n{pin}")
+}
+
+#[test]
+fn a_garment_is_tucked_in_where_its_file_says_so() {
+    let inside = |keys: &str| {
+        let runner = played(&shirt_in_trousers(keys));
+        // Rows of the hem, below the waistband by 40 to 160 mm.
+        let hem = runner.positions(1).skip(15 * 30);
+        let radii: Vec<f32> = hem.map(|p| p.x.hypot(p.z)).collect();
+        radii.iter().sum::<f32>() / (radii.len() as f32)
+    };
+    let (tucked, over) = (inside("tuck = true"), inside("tuck = false"));
+    assert!(tucked < 0.1 && over > tucked + 0.002, "tucked in {tucked} m from the middle, over them {over} m");
+    let text = format!("{GRID}tuck = true\n");
+    let scene = SceneFile::parse("test.toml", &text, SceneSource::Inside(FILES)).unwrap();
+    let message = Runner::new(scene).unwrap_err().to_string();
+    assert!(message.contains("cloth-1") && message.contains("waistband") && !message.contains('\n'), "{message}");
+}
+
 #[test]
 fn pins_follow_their_track_and_the_rest_of_the_world_stands() {
     let text = format!(

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use toile_assets::garment::tuck::SLIPS_M;
 use toile_assets::garment::{Garment, Part, Tuck};
 
 use super::order::wearing_order;
@@ -11,10 +12,6 @@ const COMES_OUT_M: f32 = 0.1;
 
 /// Nothing of what has a waistband rises higher above it (m).
 const ABOVE_BAND_M: f32 = 0.03;
-
-/// Particles up to this far above the waistband belong inside as well (m), a row: above it they meet nothing, and when they slip
-/// below it they are where they belong.
-const SLIPS_M: f32 = 0.02;
 
 /// Farthest below a waistband that cloth can be tucked in (m): a long shirt. A dress has no room in trousers.
 pub const DEEPEST_TUCK_M: f32 = 0.4;
@@ -79,7 +76,7 @@ pub fn tuck_in(garments: &mut [Garment], tucked: usize) -> Result<(), TuckError>
         return Err(TuckError::Long { garment: garment(), into: name, reaches_mm: deepest * 1e3 });
     }
     let particles = (0..own.particles()).map(|i| below(i) > -SLIPS_M).collect();
-    garments[tucked].tuck = Some(Tuck { into, particles });
+    garments[tucked].tuck = Some(Tuck { into, band, particles });
     Ok(())
 }
 
