@@ -49,7 +49,7 @@ fn a_cloth_that_nothing_holds_falls_as_a_stone_at_any_step() {
     }
 }
 
-/// Trousers and a shirt that starts 10 mm inside of them, both hung by their upper ends; the shirt's own keys are added.
+/// Trousers and a shirt that starts 2 mm outside of them, both hung by their upper ends; the shirt's own keys are added.
 fn shirt_in_trousers(keys: &str) -> String {
     let tube = |rows: u32, radius: f32, height: f32, top: f32| {
         format!(
@@ -58,7 +58,7 @@ fn shirt_in_trousers(keys: &str) -> String {
         )
     };
     let pin = "[[garment.pin]]\nvertices = [\"0-29\"]\n";
-    let (trousers, shirt) = (tube(16, 0.1, 0.3, 1.0), tube(22, 0.09, 0.42, 1.25));
+    let (trousers, shirt) = (tube(16, 0.1, 0.3, 1.0), tube(22, 0.102, 0.42, 1.25));
     format!("duration = 0.5\n{trousers}{pin}{shirt}{keys}\n{pin}")
 }
 
@@ -72,7 +72,7 @@ fn a_garment_is_tucked_in_where_its_file_says_so() {
         radii.iter().sum::<f32>() / (radii.len() as f32)
     };
     let (tucked, over) = (inside("tuck = true"), inside("tuck = false"));
-    assert!(tucked < 0.1 && over > tucked + 0.002, "tucked in {tucked} m from the middle, over them {over} m");
+    assert!(tucked < 0.1 && over > 0.1, "tucked in {tucked} m from the middle, over them {over} m");
     let text = format!("{GRID}tuck = true\n");
     let scene = SceneFile::parse("test.toml", &text, SceneSource::Inside(FILES)).unwrap();
     let message = Runner::new(scene).unwrap_err().to_string();
