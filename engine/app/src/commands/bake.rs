@@ -360,7 +360,10 @@ mod tests {
             let least = if name == "jacket" { 0.25 } else { 0.5 };
             assert!(loose * 50 < all && report.hanging.share > least, "{name}: {}", report.hanging.share);
             // Pieces that meet at an angle leave needles; nothing else is wrong with what is built in.
-            let wrong = report.warnings.iter().find(|w| !(w.contains("needles") || w.contains("mm long")));
+            let known = |w: &str| {
+                w.contains("needles") || w.contains("mm long") || w.contains("hang by fibers") && name == "jacket"
+            };
+            let wrong = report.warnings.iter().find(|w| !known(w));
             assert_eq!(wrong, None, "{name}");
             let text = summary(&report, Paint::none());
             for expected in [name, "vertices", "down the warp", "semi-implicit", "tethers", "substeps"] {
