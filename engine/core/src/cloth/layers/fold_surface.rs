@@ -11,7 +11,7 @@ const SEWN: f32 = 1.0;
 
 /// Share of the distance at which they start (1) that particles keep at least, where that is less than what their edges ask for:
 /// neighbours over two edges then fold by 120 degrees at most.
-const KEPT_SHARE: f32 = 0.6;
+const KEPT_SHARE: f32 = 0.5;
 
 /// Two vertices farther apart than so much of the longest edge cannot be of triangles that cross (1): Wu et al. 2020, "A safe
 /// and fast repulsion method for GPU-based cloth self collisions", theorem 1.

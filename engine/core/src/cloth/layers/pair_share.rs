@@ -21,7 +21,7 @@ const MARGIN_M: f32 = 0.001;
 const FASTER: f32 = 1.5;
 
 /// How fast what is nearest may come nearer besides (m/s): it turns, and what is beside it moves otherwise.
-const UNSEEN_M_S: f32 = 0.25;
+const UNSEEN_M_S: f32 = 1.0;
 
 /// How far beyond a border (m) a particle is still over the face: not at all, but for rounding and the bend of the cloth.
 const BEYOND_M: f32 = 0.001;
