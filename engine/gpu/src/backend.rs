@@ -1,5 +1,5 @@
 //! Steps garments on the processor or on a graphics device, as asked for or whichever measures faster; the result is a
-//! [`Cloth`](toile_engine::cloth::Cloth) either way.
+//! [`Cloth`] either way.
 //!
 //! A step is over when the call returns, on both: how benchmarks and validation need it. A frame loop that can take results a
 //! frame late drives `cloth::Offload` itself. Whatever goes wrong with the device, the processor goes on from the last places, and
