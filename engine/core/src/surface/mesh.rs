@@ -109,6 +109,15 @@ impl SurfaceMesh {
         self.border[vertex as usize]
     }
 
+    /// The edges that only one triangle has, as this runs around.
+    pub fn border_edges(&self) -> impl Iterator<Item = [u32; 2]> {
+        let of = |t: &Linked| {
+            let Linked { corners, across } = *t;
+            (0..3).filter(move |k| across[*k] == NO_TRIANGLE).map(move |k| [corners[(k + 1) % 3], corners[(k + 2) % 3]])
+        };
+        self.triangles.iter().flat_map(of)
+    }
+
     /// What the point of a triangle with these shares lies on.
     pub fn feature(shares: [f32; 3]) -> Feature {
         let none = shares.map(|s| s < ON_EDGE);

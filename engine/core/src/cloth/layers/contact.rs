@@ -1,4 +1,4 @@
-//! One contact between a particle and a face: what a substep makes of it.
+//! One contact between a particle and a face, or two edges: what a substep makes of it.
 //!
 //! A contact acts on positions, as contact with the body does ([`push`](crate::cloth::contact)): what came too near in this
 //! substep is moved back and loses that speed, what was too near before is moved apart without gaining any, and friction holds
@@ -39,47 +39,115 @@ const LEAST_GIVE: f32 = 0.2;
 /// How much of the way to where it sticks a particle is brought back in a substep (1): all of it at once would swing.
 const BACK: f32 = 1.0 / 16.0;
 
-/// A particle near a face of another garment, for one step.
-#[derive(Debug, Clone, Copy, Default)]
+/// Most contacts that one edge of a border makes with another garment: the deepest of those that it lies across.
+pub const CONTACTS_AN_EDGE: usize = 2;
+
+/// Vertices of one contact: a particle and a face, or an edge and an edge.
+pub const VERTICES: usize = 4;
+
+/// Two places of two garments that may come too near to each other, for one step: a particle and a face, or two edges.
+#[derive(Debug, Clone, Copy)]
 pub struct LayerContact {
-    /// The particle.
-    pub particle: u32,
-    /// Vertices of the face.
-    pub corners: [u32; 3],
-    /// Shares of the corners at the nearest point, together 1.
-    pub shares: [f32; 3],
-    /// What a push does to the gap with all contacts taken together, by the particle and by each corner (1/kg).
-    pub gives: [f32; 4],
-    /// How much of the particle's side, and of the face's, does not give way (0..1).
-    pub held: [f32; 2],
+    /// Its vertices: those of one side, then those of the other.
+    pub vertices: [u32; VERTICES],
+    /// Shares of the vertices, 1 together on the first side and -1 on the other.
+    pub shares: [f32; VERTICES],
+    /// How many vertices the first side has: 1 is a particle before a face, 2 an edge before an edge.
+    pub own: u8,
+    /// Whether it was touched when it was last looked at, so that it sticks somewhere.
+    pub sticks: bool,
+    /// What a push does to the gap with all contacts taken together, by each vertex (1/kg).
+    pub gives: [f32; VERTICES],
     /// Distance that is kept (m).
     pub gap: f32,
     /// Not a contact but a crossing that is drawn apart, so fast (m/s); 0 otherwise.
     pub drawn: f32,
-    /// How much too near the two sides were left because the body holds both against each other (m), below 0 where they have
-    /// room; minus infinity where it does not.
-    pub pinched: f32,
-    /// Whether it was touched when it was last looked at, so that it sticks somewhere.
-    pub sticks: bool,
-    /// From the face to the side on which the particle belongs, unit length.
-    pub normal: Vec3A,
-    /// What the last solve does to the place of the particle: times its inverse mass and its share (kg m).
-    pub push: Vec3A,
-    /// The same to where the substep started, so that no speed comes of it (kg m).
-    pub carry: Vec3A,
     /// What the upper side bears of what lies on it, passed on to the lower one (kg m).
     pub passed: Vec3A,
-    /// Where the particle sticks, from the nearest point of the face (m).
+    /// Where the first side sticks, from the nearest point of the other (m).
     pub anchor: Vec3A,
 }
 
-/// What holds the particles of a garment from below.
-#[derive(Clone, Copy)]
-pub struct RestingOn<'a> {
-    /// Where to the body, or cloth that lies on it, moves each: a unit vector, or 0 `[particles]`.
-    pub support: &'a [Vec3A],
-    /// How far it moved it in the last substep (m) `[particles]`.
-    pub lift: &'a [Vec3A],
+/// What a contact does to its vertices, as they gather it.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct ContactPush {
+    /// What the last solve does to the place of a vertex: times its inverse mass and its share (kg m).
+    pub push: Vec3A,
+    /// From the other side to the one on which the first belongs, unit length.
+    pub normal: Vec3A,
+    /// The part of the push, along the normal, that is also done to where the substep started, so that no speed comes of it (kg m).
+    pub carry: f32,
+    /// How much of each side does not give way (0..1).
+    pub held: [f32; 2],
+    /// How much too near the two sides were left because the body holds both against each other (m), below 0 where they have
+    /// room; minus infinity where it does not.
+    pub pinched: f32,
+}
+
+impl LayerContact {
+    /// A particle before a face, which stays `gap` (m) away; `anchor` is how far it is from the nearest point now (m).
+    pub fn with_face(particle: u32, corners: [u32; 3], shares: [f32; 3], gap: f32, anchor: Vec3A) -> Self {
+        let ([a, b, c], [u, v, w]) = (corners, shares);
+        Self::new([particle, a, b, c], [1.0, -u, -v, -w], 1, gap, anchor)
+    }
+
+    /// An edge before an edge, each by how far along it (1) the two meet.
+    pub fn with_edge(edges: [[u32; 2]; 2], along: [f32; 2], gap: f32, anchor: Vec3A) -> Self {
+        let ([[a, b], [c, d]], [s, t]) = (edges, along);
+        Self::new([a, b, c, d], [1.0 - s, s, t - 1.0, -t], 2, gap, anchor)
+    }
+
+    /// A particle and another one of the same garment.
+    pub fn with_particle(particle: u32, other: u32, gap: f32) -> Self {
+        Self::with_face(particle, [other; 3], [1.0, 0.0, 0.0], gap, Vec3A::ZERO)
+    }
+
+    /// A particle that is drawn away from a face (m/s).
+    pub fn drawn_from(particle: u32, corners: [u32; 3], shares: [f32; 3], drawn: f32) -> Self {
+        Self { drawn, ..Self::with_face(particle, corners, shares, 0.0, Vec3A::ZERO) }
+    }
+
+    fn new(vertices: [u32; VERTICES], shares: [f32; VERTICES], own: u8, gap: f32, anchor: Vec3A) -> Self {
+        let gives = [0.0; VERTICES];
+        Self { vertices, shares, own, sticks: false, gives, gap, drawn: 0.0, passed: Vec3A::ZERO, anchor }
+    }
+
+    /// Which side a vertex is of: 0 or 1.
+    #[inline(always)]
+    pub fn side(&self, k: usize) -> usize {
+        usize::from(k >= usize::from(self.own))
+    }
+
+    /// The vertices of a side with their shares.
+    #[inline(always)]
+    pub fn of_side(&self, side: usize) -> impl Iterator<Item = (u32, f32)> {
+        let (own, end) = (usize::from(self.own), [usize::from(self.own), VERTICES][side]);
+        let first = [0, own][side];
+        (first..end).map(|k| (self.vertices[k], self.shares[k]))
+    }
+}
+
+impl ContactPush {
+    /// Along a normal, with nothing done yet.
+    pub fn along(normal: Vec3A) -> Self {
+        Self { normal, pinched: f32::NEG_INFINITY, ..Self::default() }
+    }
+
+    /// Whether something that moves a vertex along `support` holds it against this contact's push, which is along `share`
+    /// times the normal.
+    #[inline(always)]
+    pub fn holds(&self, support: Vec3A, share: f32) -> bool {
+        support.dot(self.normal) * share.signum() < -SUPPORTED
+    }
+}
+
+/// What holds a particle from below.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Resting {
+    /// Where to the body, or cloth that lies on it, moves it: a unit vector, or 0.
+    pub support: Vec3A,
+    /// How far it moved it in the last substep (m).
+    pub lift: Vec3A,
 }
 
 /// What all contacts of a pair have in common in a substep.
@@ -96,79 +164,73 @@ pub struct ContactLaw {
 }
 
 impl LayerContact {
-    /// Takes the loads that all contacts together put on the particles of the particle's garment and of the face's.
+    /// Takes the loads that all contacts together put on the particles of both garments.
     pub fn weigh(&mut self, of: [ParticleColumns<'_>; 2], load: [&[f32]; 2]) {
-        let i = self.particle as usize;
-        let face = |k: usize| {
-            let j = self.corners[k] as usize;
-            self.shares[k] * of[1].w.get(j) * load[1][j]
-        };
-        self.gives = [of[0].w.get(i) * load[0][i], face(0), face(1), face(2)];
-    }
-
-    /// Whether something that moves a particle along `support` holds it against this contact's push, which is along `share`
-    /// times the normal.
-    #[inline(always)]
-    pub fn holds(&self, support: Vec3A, share: f32) -> bool {
-        support.dot(self.normal) * share.signum() < -SUPPORTED
-    }
-
-    /// Notes which of the four particles do not give way; gives how far a push moves the two sides apart by the others (kg).
-    #[inline(always)]
-    fn give(&mut self, rest: [RestingOn<'_>; 2]) -> (f32, [bool; 4]) {
-        let own = self.holds(rest[0].support[self.particle as usize], 1.0);
-        let face = [0, 1, 2].map(|k| self.holds(rest[1].support[self.corners[k] as usize], -1.0));
-        let free = |held: bool, give: f32| if held { 0.0 } else { give };
-        let [i, a, b, c] = self.gives;
-        let sum = free(own, i) + free(face[0], a) + free(face[1], b) + free(face[2], c);
-        let share = |k: usize| if face[k] { self.shares[k] } else { 0.0 };
-        self.held = [f32::from(u8::from(own)), share(0) + share(1) + share(2)];
-        // Where all are held there is no room: the body is in its own way, and cloth gives in.
-        let least = LEAST_GIVE * (i + a + b + c);
-        (if sum > 0.0 { sum.max(least).recip() } else { 0.0 }, [own, face[0], face[1], face[2]])
-    }
-
-    /// Where the particle is from the nearest point of the face, and where it was when the substep started (m). Those that
-    /// something holds are taken to be where that will put them.
-    #[inline(always)]
-    fn relative(&self, of: [ParticleColumns<'_>; 2], rest: [RestingOn<'_>; 2], held: [bool; 4]) -> [Vec3A; 2] {
-        let i = self.particle as usize;
-        let (mut x, mut before) = (get(of[0].x, i), get(of[0].previous, i));
-        if held[0] {
-            x += rest[0].lift[i];
+        for k in 0..VERTICES {
+            let (j, side) = (self.vertices[k] as usize, self.side(k));
+            self.gives[k] = self.shares[k].abs() * of[side].w.get(j) * load[side][j];
         }
-        for k in 0..3 {
-            let j = self.corners[k] as usize;
-            let lift = if held[k + 1] { rest[1].lift[j] } else { Vec3A::ZERO };
-            x -= (get(of[1].x, j) + lift) * self.shares[k];
-            before -= get(of[1].previous, j) * self.shares[k];
+    }
+
+    /// How far the vertices that nothing holds move the two sides apart by a push (kg); notes how much of each side is held.
+    #[inline(always)]
+    fn give(&self, rest: &[Resting; VERTICES], push: &mut ContactPush) -> (f32, [bool; VERTICES]) {
+        // No closures: those that are not inlined are calls.
+        let (mut held, mut sum) = ([false; VERTICES], 0.0);
+        push.held = [0.0; 2];
+        for k in 0..VERTICES {
+            held[k] = push.holds(rest[k].support, self.shares[k]);
+            sum += if held[k] { 0.0 } else { self.gives[k] };
+            push.held[self.side(k)] += if held[k] { self.shares[k].abs() } else { 0.0 };
+        }
+        // Where all are held there is no room: the body is in its own way, and cloth gives in.
+        let [i, a, b, c] = self.gives;
+        let least = LEAST_GIVE * (i + a + b + c);
+        (if sum > 0.0 { sum.max(least).recip() } else { 0.0 }, held)
+    }
+
+    /// Where the first side is from the other, and where it was when the substep started (m). Vertices that something holds are
+    /// taken to be where that will put them.
+    #[inline(always)]
+    fn relative(&self, of: [ParticleColumns<'_>; 2], rest: &[Resting; VERTICES], held: [bool; VERTICES]) -> [Vec3A; 2] {
+        let (mut x, mut before) = (Vec3A::ZERO, Vec3A::ZERO);
+        for k in 0..VERTICES {
+            let (j, columns) = (self.vertices[k] as usize, &of[self.side(k)]);
+            let lift = if held[k] { rest[k].lift } else { Vec3A::ZERO };
+            x += (get(columns.x, j) + lift) * self.shares[k];
+            before += get(columns.previous, j) * self.shares[k];
         }
         [x, before]
     }
 
-    /// How far the particle is from where it sticks (m), if it touches.
-    pub fn slip(&self, of: [ParticleColumns<'_>; 2]) -> Option<Vec3A> {
-        let face = |k: usize| get(of[1].x, self.corners[k] as usize) * self.shares[k];
-        let x = get(of[0].x, self.particle as usize) - (face(0) + face(1) + face(2));
-        self.sticks.then(|| (x - self.anchor).reject_from_normalized(self.normal))
+    /// How far the first side is from where it sticks (m), if it touches.
+    pub fn slip(&self, of: [ParticleColumns<'_>; 2], normal: Vec3A) -> Option<Vec3A> {
+        let at = |k: usize| get(of[self.side(k)].x, self.vertices[k] as usize) * self.shares[k];
+        self.sticks.then(|| (at(0) + at(1) + at(2) + at(3) - self.anchor).reject_from_normalized(normal))
     }
 
-    /// Solves the contact as the constraints of a substep have left the garments.
+    /// Solves the contact as the constraints of a substep have left the garments; `rest` is what holds its vertices.
     #[inline(always)]
-    pub fn solve(&mut self, of: [ParticleColumns<'_>; 2], rest: [RestingOn<'_>; 2], law: ContactLaw) {
-        self.pinched = f32::NEG_INFINITY;
-        let (give, held) = self.give(rest);
+    pub fn solve(
+        &mut self,
+        of: [ParticleColumns<'_>; 2],
+        rest: &[Resting; VERTICES],
+        law: ContactLaw,
+        push: &mut ContactPush,
+    ) {
+        let (give, held) = self.give(rest, push);
+        let n = push.normal;
+        push.pinched = f32::NEG_INFINITY;
         if self.drawn > 0.0 {
-            self.push = self.normal * (self.drawn * law.dt * give);
-            self.carry = self.push;
+            push.carry = self.drawn * law.dt * give;
+            push.push = n * push.carry;
             return;
         }
         let [x, before] = self.relative(of, rest, held);
-        let n = self.normal;
         let depth = self.gap - x.dot(n);
-        self.pinched = if self.held[0] * self.held[1] > PINCHED { depth } else { f32::NEG_INFINITY };
+        push.pinched = if push.held[0] * push.held[1] > PINCHED { depth } else { f32::NEG_INFINITY };
         let moved = x - before;
-        (self.push, self.carry) = (Vec3A::ZERO, Vec3A::ZERO);
+        (push.push, push.carry) = (Vec3A::ZERO, 0.0);
         let from = if law.sticks && std::mem::take(&mut self.sticks) { self.anchor } else { before };
         // Not so where anything is not finite: what is wrong with one garment stays in it.
         if !(depth > 0.0 && moved.length_squared() < FARTHEST_MOVE_M * FARTHEST_MOVE_M && (x - from).is_finite()) {
@@ -186,22 +248,18 @@ impl LayerContact {
         let slowed = if slid <= holds { sliding } else { sliding * (slows / slid).min(1.0) };
         let kept = if slid <= holds { slip } else { slip.clamp_length_max(slows / BACK) };
         (self.sticks, self.anchor) = (true, x - kept);
-        self.push = (n * (load + carried) - slowed) * give;
-        self.carry = n * (carried * give);
+        push.push = (n * (load + carried) - slowed) * give;
+        push.carry = carried * give;
     }
 
-    /// Passes on what the upper side bears, by this contact's part of what holds it; `held_by` is the sum of the parts. The
-    /// upper side is the particle or the face.
-    pub fn pass(&mut self, particle_above: bool, bears: &[Vec3A], held_by: &[f32]) {
-        let push = self.push.length();
-        let part = |i: u32, share: f32, held: f32| {
-            let all = held_by[i as usize];
-            if all > 0.0 { bears[i as usize] * (push * share * held / all) } else { Vec3A::ZERO }
+    /// Passes on what the upper side bears, by this contact's part of what holds it. `above` says which side that is, `borne` what
+    /// a particle of it bears (kg m) and how strongly it is held (kg m).
+    pub fn pass(&mut self, push: &ContactPush, above: usize, borne: impl Fn(u32) -> (Vec3A, f32)) {
+        let strength = push.push.length() * push.held[1 - above];
+        let part = |(i, share): (u32, f32)| {
+            let (bears, held_by) = borne(i);
+            if held_by > 0.0 { bears * (strength * share.abs() / held_by) } else { Vec3A::ZERO }
         };
-        self.passed = if particle_above {
-            part(self.particle, 1.0, self.held[1])
-        } else {
-            (0..3).map(|k| part(self.corners[k], self.shares[k], self.held[0])).sum()
-        };
+        self.passed = self.of_side(above).map(part).sum();
     }
 }

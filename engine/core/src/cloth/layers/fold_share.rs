@@ -13,6 +13,7 @@ use glam::Vec3A;
 use toile_assets::garment::Part;
 
 use super::contact::LayerContact;
+use super::contact_list::ContactList;
 use super::find_folds::{FASTER, FindFolds, FoldPair, MARGIN_M, PARTS};
 use super::fold_motion::FoldMotion;
 use super::fold_surface::FoldSurface;
@@ -25,14 +26,9 @@ use crate::cloth::state::get;
 /// pair is one share's, and few are folded everywhere.
 pub const PAIRS_A_PARTICLE: usize = 4;
 
-/// Where there is no room the pairs nearer than such a part of what they keep apart are taken (1), then again of that.
-const NEARER: f32 = 0.8;
-
-/// Farther apart than any that are found, as a part of what they keep apart (1).
-const ALL: f32 = 1e9;
-
-/// Times that nearer ones are looked for.
-const NEARER_TIMES: i32 = 6;
+/// Which pairs are taken, by how far apart they are as a part of what they keep apart (1): all, and where there is no room those
+/// nearer than the next of these. What comes near fast is looked for from far away, so it begins well above 1.
+const NEARER: [f32; 10] = [1e9, 4.0, 2.8, 2.0, 1.5, 1.2, 1.0, 0.8, 0.6, 0.4];
 
 /// Farther apart than such a part of what they keep apart (1) no edges of two particles cross.
 const MAY_CROSS: f32 = 0.9;
@@ -106,7 +102,7 @@ impl FoldShare {
         scene: &PairScene<'_>,
         folds: FoldScene<'_>,
         thickness: f32,
-        contacts: &mut Vec<LayerContact>,
+        contacts: &mut ContactList,
     ) -> u64 {
         self.find_pairs(scene, folds);
         let mesh = &scene.surfaces[0].mesh;
@@ -123,10 +119,10 @@ impl FoldShare {
             let Some(away) = touching(scene, pair) else { continue };
             let free = self.uncross.is_sure(i) && self.uncross.is_sure(j) || folds.surface.is_local(i, j);
             let along = || if free { away.try_normalize() } else { None };
-            contacts.extend(match side(scene, folds.surface, i, j) {
-                Some(normal) => Some(apart(&FoldPair { gap: pair.gap.min(thickness), ..*pair }, normal)),
-                None => along().map(|normal| apart(pair, normal)),
-            });
+            match side(scene, folds.surface, i, j) {
+                Some(normal) => contacts.push(LayerContact::with_particle(i, j, pair.gap.min(thickness)), normal),
+                None => along().into_iter().for_each(|n| contacts.push(LayerContact::with_particle(i, j, pair.gap), n)),
+            }
         }
         let parts = &scene.surfaces[0].parts;
         let told = |i: u32, triangle: u32| are_opposite(parts, folds.surface, i, mesh.corners(triangle)[0]);
@@ -161,7 +157,7 @@ impl FoldShare {
 
     /// Finds the pairs of a part: all, or where there is no room the nearest.
     fn find_part(&mut self, scene: &PairScene<'_>, folds: FoldScene<'_>, part: usize) {
-        for time in 0..=NEARER_TIMES {
+        for (time, nearest) in NEARER.into_iter().enumerate() {
             self.pairs[part].clear();
             let left_out = scene.width.run(FindFolds {
                 clusters: &scene.surfaces[0].clusters,
@@ -170,7 +166,7 @@ impl FoldShare {
                 motion: folds.motion,
                 share: [self.share, part],
                 seconds: scene.step_seconds * PARTS as f32,
-                nearest: if time == 0 { ALL } else { NEARER.powi(time - 1) },
+                nearest,
                 pairs: &mut self.pairs[part],
             });
             self.crowded += if time == 0 { left_out } else { 0 };
@@ -210,11 +206,4 @@ fn side(scene: &PairScene<'_>, surface: &FoldSurface, i: u32, j: u32) -> Option<
     let [own, other] = [i, j].map(|v| scene.surfaces[0].mesh.vertex_normal(v, |k| get(x, k as usize)));
     let front = (other - own).normalize_or_zero();
     (own.dot(other) < FACING).then_some(front)
-}
-
-/// What keeps two particles apart along a direction from the second to the first.
-fn apart(pair: &FoldPair, normal: Vec3A) -> LayerContact {
-    let [particle, other] = pair.particles;
-    let shares = [1.0, 0.0, 0.0];
-    LayerContact { particle, corners: [other; 3], shares, normal, gap: pair.gap, ..LayerContact::default() }
 }

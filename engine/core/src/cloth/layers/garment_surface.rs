@@ -19,6 +19,8 @@ pub struct GarmentSurface {
     pub clusters: Clusters,
     /// The part of the body that each vertex lies on.
     pub parts: Box<[Part]>,
+    /// Edges of its borders, by their first vertex.
+    pub border_edges: Box<[[u32; 2]]>,
     /// How far its particles keep from each other.
     pub folds: Option<FoldSurface>,
 }
@@ -39,7 +41,9 @@ impl GarmentSurface {
     pub fn new(garment: &Garment) -> Self {
         let mesh = SurfaceMesh::new(&garment.triangles, garment.start.len());
         let clusters = Clusters::new(&mesh, &garment.start);
-        Self { clusters, mesh, parts: garment.parts.clone(), folds: None }
+        let mut border_edges: Vec<[u32; 2]> = mesh.border_edges().collect();
+        border_edges.sort_unstable();
+        Self { clusters, border_edges: border_edges.into(), mesh, parts: garment.parts.clone(), folds: None }
     }
 
     /// The same, made ready to meet itself. At load.
@@ -58,6 +62,7 @@ impl GarmentSurface {
         self.mesh.bytes()
             + self.clusters.bytes()
             + size_of_val(&*self.parts)
+            + size_of_val(&*self.border_edges)
             + self.folds.as_ref().map_or(0, FoldSurface::bytes)
     }
 }

@@ -8,7 +8,10 @@
 //! garment's face, one of an inner garment behind an outer garment's. So an order that was lost comes back. Within a substep each
 //! garment is put on what lies under it, from below; what it bears is then passed on downwards, so all weight arrives at the body.
 
+mod bearing;
+mod border_edges;
 mod contact;
+mod contact_list;
 mod find_folds;
 mod flatness;
 mod fold_motion;
@@ -35,6 +38,7 @@ use glam::Vec3;
 use toile_assets::garment::Garment;
 use toile_assets::limits::MAX_GARMENTS;
 
+use bearing::GarmentBearing;
 use garment_surface::{GarmentMotion, GarmentSurface};
 use order::heights;
 use pace::PairPace;
@@ -101,7 +105,8 @@ pub struct Layers {
     /// First share of every pair, then the second.
     shares: Box<[PairShare]>,
     touching: Box<[TouchLists]>,
-    /// Which worker steps each garment.
+    bearing: Box<[GarmentBearing]>,
+    /// Which worker takes and lists what is known of each garment.
     worker: Box<[usize]>,
     turns: Turns,
     tick: u64,
@@ -135,11 +140,14 @@ impl Layers {
         if pairs.is_empty() || garments.len() > MAX_GARMENTS {
             return None;
         }
-        let halves = |share: usize| pairs.iter().map(move |p| PairShare::new(p, share));
+        let halves = |share: usize| pairs.iter().map(|p| PairShare::new(p, &surfaces, share)).collect::<Vec<_>>();
         Some(Self {
             motions: surfaces.iter().map(GarmentMotion::new).collect(),
-            shares: halves(0).chain(halves(1)).collect(),
-            touching: (0..garments.len()).map(|g| TouchLists::new(g, heights[g], garments, &pairs)).collect(),
+            shares: halves(0).into_iter().chain(halves(1)).collect(),
+            bearing: garments.iter().map(|g| GarmentBearing::new(g.particles())).collect(),
+            touching: (0..garments.len())
+                .map(|g| TouchLists::new(g, heights[g], garments, &surfaces, &pairs))
+                .collect(),
             worker: workers(garments),
             turns: Turns { top: heights.iter().copied().max().unwrap_or(0).max(1) },
             surfaces,
@@ -161,6 +169,7 @@ impl Layers {
             + self.motions.iter().map(GarmentMotion::bytes).sum::<usize>()
             + self.shares.iter().map(PairShare::bytes).sum::<usize>()
             + self.touching.iter().map(TouchLists::bytes).sum::<usize>()
+            + self.bearing.iter().map(GarmentBearing::bytes).sum::<usize>()
     }
 }
 
@@ -170,7 +179,7 @@ fn bounds(garment: &Garment) -> [Vec3; 2] {
     garment.start.iter().fold(none, |[low, high], p| [low.min(*p), high.max(*p)])
 }
 
-/// Which worker steps each garment: the dearest first, each to the worker who has less to do.
+/// Which worker does what is one worker's of each garment: the dearest first, each to the worker who has less to do.
 fn workers(garments: &[Garment]) -> Box<[usize]> {
     let mut order: Vec<usize> = (0..garments.len()).collect();
     order.sort_by_key(|&g| std::cmp::Reverse(garments[g].particles()));

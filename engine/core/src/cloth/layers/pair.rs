@@ -1,8 +1,9 @@
 //! A pair of garments, or one and itself: what one is to the other, and what is known of both at the start of a step.
 
+use glam::Vec3A;
 use toile_assets::garment::{Garment, Part, Tuck};
 
-use super::contact::ContactLaw;
+use super::contact::{CONTACTS_AN_EDGE, ContactLaw};
 use super::garment_surface::{GarmentMotion, GarmentSurface};
 use super::thickness::thickness;
 use crate::cloth::ContactRates;
@@ -12,6 +13,23 @@ use crate::lanes::Width;
 /// Fastest that cloth is pushed apart that is found in other cloth (m/s): garments, 10 mm in a hundredth of a second, and a
 /// garment and itself, whose particles keep farther apart.
 const PUSH_M_S: [f32; 2] = [1.0, 2.0];
+
+/// Particles farther from a face than this (m) have lost nothing there: about half of the least distance between opposite
+/// walls of a garment, a sleeve at the wrist.
+pub const REACH_M: f32 = 0.03;
+
+/// How much nearer than the gap of two garments a contact is made (m).
+const MARGIN_M: f32 = 0.001;
+
+/// How much faster than at its start a particle may be within a step (1).
+pub const FASTER: f32 = 1.5;
+
+/// How deep behind a face that looks towards it (m) a particle may be and still belong in front: two garments' fronts,
+/// a sleeve and a trouser leg for example, are no layers.
+const FACING_M: f32 = 0.006;
+
+/// Cosine of normals from which on two fronts look at each other.
+const FACING: f32 = -0.7;
 
 /// What a particle of a pair is to the face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -98,6 +116,33 @@ impl LayerPair {
         }
     }
 
+    /// The normal of a contact of a particle and a face with these corners, towards the side on which the particle belongs; none
+    /// where that cannot be told. `front` is the normal of the face, `height` how far in front of it the particle is (m).
+    ///
+    /// Layers look the same way, and their contact is square to the mean of both: where one of them is crumpled, its faces look
+    /// anywhere, and the smooth one shows the way out.
+    pub fn normal(&self, scene: &PairScene<'_>, i: u32, corners: [u32; 3], front: Vec3A, height: f32) -> Option<Vec3A> {
+        let [of, faces] = scene.surfaces;
+        let own = scene.motions[0].normals[i as usize];
+        let opposite = opposite(of.parts[i as usize], faces.parts[corners[0] as usize]);
+        let turned = own.dot(front) < FACING;
+        match (self.wearing_at(i, corners), opposite) {
+            (_, Some(true)) => Some(front),
+            (Wearing::Outer | Wearing::Folded, _) => {
+                Some(if turned { front } else { (front + own).normalize_or_zero() })
+            }
+            (Wearing::Inner, _) if !turned => Some(-(front + own).normalize_or_zero()),
+            // Rolled up cloth does not tell, nor does cloth of parts that nobody knows.
+            (Wearing::Inner, Some(false)) => None,
+            (Wearing::Inner, None) => (height > -FACING_M).then_some(front),
+        }
+    }
+
+    /// Most contacts of both shares together, of a pair that is no fold; `surface` is that of the particles' garment.
+    pub fn most_contacts(&self, surface: &GarmentSurface) -> usize {
+        self.count + CONTACTS_AN_EDGE * surface.border_edges.len()
+    }
+
     /// Whether a garment lies on the other one of the two.
     pub fn has_above(&self, garment: usize) -> bool {
         match self.wearing {
@@ -147,6 +192,14 @@ pub struct PairScene<'a> {
     pub tick: u64,
     /// Lanes of the kernels.
     pub width: Width,
+}
+
+impl PairScene<'_> {
+    /// How far apart (m) two things are looked at that approach each other so fast (m/s).
+    #[inline(always)]
+    pub fn near(&self, approach: f32) -> f32 {
+        MARGIN_M + FASTER * self.step_seconds * approach.max(0.0)
+    }
 }
 
 /// Whether cloth on two parts of the body meets front to front, a sleeve and a trouser leg for example, and not as

@@ -2,36 +2,21 @@
 
 use glam::Vec3A;
 
+use super::border_edges::BorderEdges;
 use super::contact::LayerContact;
+use super::contact_list::ContactList;
 use super::fold_share::{FoldCounts, FoldScene, FoldShare};
 use super::garment_surface::GarmentSurface;
-use super::pair::{LayerPair, PairScene, Wearing, opposite};
+use super::pair::{FASTER, LayerPair, PairScene, REACH_M};
 use crate::cloth::state::get;
 use crate::lanes::{Kernel, Lanes, MOST, Mask, Readable, Store, V3, WriteColumn};
 use crate::surface::{FindNearest, NearestPoint, NearestVertex, SurfaceMesh};
-
-/// Particles farther from a face than this (m) have lost nothing there: about half of the least distance between opposite
-/// walls of a garment, a sleeve at the wrist.
-const REACH_M: f32 = 0.03;
-
-/// How much nearer than the gap of two garments a contact is made (m).
-const MARGIN_M: f32 = 0.001;
-
-/// How much faster than at its start a particle may be within a step (1).
-const FASTER: f32 = 1.5;
 
 /// How fast what is nearest may come nearer besides (m/s): it turns, and what is beside it moves otherwise.
 const UNSEEN_M_S: f32 = 1.0;
 
 /// How far beyond a border (m) a particle is still over the face: not at all, but for rounding and the bend of the cloth.
 const BEYOND_M: f32 = 0.001;
-
-/// How deep behind a face that looks towards it (m) a particle may be and still belong in front: two garments' fronts,
-/// a sleeve and a trouser leg for example, are no layers.
-const FACING_M: f32 = 0.006;
-
-/// Cosine of normals from which on two fronts look at each other.
-const FACING: f32 = -0.7;
 
 /// Every so many steps the nearest face of each particle is looked for from anew: of one that is near, of one that is not.
 const ANEW_STEPS: [u64; 2] = [32, 128];
@@ -68,20 +53,26 @@ pub struct PairShare {
     list: Vec<u32>,
     found: Vec<NearestPoint>,
     /// The contacts of this step.
-    pub contacts: Vec<LayerContact>,
+    pub contacts: ContactList,
     /// Particles looked at in this step.
     pub asked: u64,
     /// What is remembered of folds, where the garment meets itself.
     folds: Option<FoldShare>,
+    /// Edges of the garment's borders.
+    borders: BorderEdges,
 }
 
 impl PairShare {
     /// Room for a share of a pair. At load.
-    pub fn new(pair: &LayerPair, share: usize) -> Self {
+    pub fn new(pair: &LayerPair, surfaces: &[GarmentSurface], share: usize) -> Self {
         let range = pair.range(share);
-        let (first, len) = (range.start, range.len());
-        let folds = (pair.wearing == Wearing::Folded).then(|| FoldShare::new(pair.count, share));
-        let (len, most) = if folds.is_some() { (0, FoldShare::most_contacts(pair.count)) } else { (len, len) };
+        let first = range.start;
+        let folds = pair.is_fold().then(|| FoldShare::new(pair.count, share));
+        let borders = BorderEdges::new(&surfaces[pair.particles], if folds.is_some() { 0..0 } else { range.clone() });
+        let (len, most) = match folds {
+            Some(_) => (0, FoldShare::most_contacts(pair.count)),
+            None => (range.len(), range.len() + borders.most_contacts()),
+        };
         Self {
             folds,
             first,
@@ -90,7 +81,8 @@ impl PairShare {
             slack: Store::zeros(len),
             list: Vec::with_capacity(len),
             found: Vec::with_capacity(len),
-            contacts: Vec::with_capacity(most),
+            contacts: ContactList::new(most),
+            borders,
             asked: 0,
         }
     }
@@ -99,12 +91,7 @@ impl PairShare {
     pub fn find(&mut self, pair: &LayerPair, scene: &PairScene<'_>) {
         let first = self.first;
         if self.folds.is_none() {
-            self.remembered.iter_mut().for_each(|r| (r.passed, r.slip) = (0.0, None));
-            for contact in &self.contacts {
-                let remembered = &mut self.remembered[contact.particle as usize - first];
-                remembered.passed = contact.passed.dot(contact.normal).abs();
-                remembered.slip = contact.slip(scene.columns);
-            }
+            self.remember(scene);
         }
         self.contacts.clear();
         if let Some(folds) = &mut self.folds {
@@ -131,15 +118,32 @@ impl PairShare {
             self.corner[k] = scene.surfaces[1].mesh.corners(found.triangle)[0];
             remembered.distance = found.distance2.sqrt().min(FARTHEST_M);
             match touch(pair, scene, i, found) {
-                Ok(mut contact) => {
-                    contact.passed = contact.normal * remembered.passed;
+                Ok((mut contact, normal)) => {
+                    contact.passed = normal * remembered.passed;
                     contact.sticks = remembered.slip.is_some();
                     contact.anchor -= remembered.slip.unwrap_or_default();
                     self.slack.as_mut()[k] = 0.0;
-                    self.contacts.push(contact);
+                    self.contacts.push(contact, normal);
                 }
                 Err(Distant(slack)) => self.slack.as_mut()[k] = slack,
             }
+        }
+        let Self { remembered, borders, contacts, .. } = self;
+        let near = |vertex: u32| {
+            let known = &remembered[vertex as usize - first];
+            (known.distance < REACH_M).then_some(known.triangle)
+        };
+        borders.find(pair, scene, near, contacts);
+    }
+
+    /// Keeps in mind what the contacts of the last step have shown of each particle.
+    fn remember(&mut self, scene: &PairScene<'_>) {
+        let Self { first, remembered, contacts, .. } = self;
+        remembered.iter_mut().for_each(|r| (r.passed, r.slip) = (0.0, None));
+        for (contact, push) in contacts.pairs().filter(|(contact, _)| contact.own == 1) {
+            let remembered = &mut remembered[contact.vertices[0] as usize - *first];
+            remembered.passed = contact.passed.dot(push.normal).abs();
+            remembered.slip = contact.slip(scene.columns, push.normal);
         }
     }
 
@@ -210,7 +214,8 @@ impl PairShare {
             + self.slack.bytes()
             + size_of::<u32>() * self.list.capacity()
             + size_of::<NearestPoint>() * self.found.capacity()
-            + size_of::<LayerContact>() * self.contacts.capacity()
+            + self.contacts.bytes()
+            + self.borders.bytes()
             + self.folds.as_ref().map_or(0, FoldShare::bytes)
     }
 }
@@ -219,7 +224,12 @@ impl PairShare {
 struct Distant(f32);
 
 /// The contact of a particle with the face that is nearest to it, if it may come to one in this step.
-fn touch(pair: &LayerPair, scene: &PairScene<'_>, i: u32, found: &NearestPoint) -> Result<LayerContact, Distant> {
+fn touch(
+    pair: &LayerPair,
+    scene: &PairScene<'_>,
+    i: u32,
+    found: &NearestPoint,
+) -> Result<(LayerContact, Vec3A), Distant> {
     let [of, faces] = scene.columns;
     let mesh = &scene.surfaces[1].mesh;
     let distance = found.distance2.sqrt();
@@ -236,16 +246,14 @@ fn touch(pair: &LayerPair, scene: &PairScene<'_>, i: u32, found: &NearestPoint) 
     if mesh.on_border(found.triangle, SurfaceMesh::feature(found.shares)) && beyond2 > BEYOND_M * BEYOND_M {
         return Err(Distant(beyond2.sqrt() - BEYOND_M));
     }
-    let normal = normal(pair.wearing_at(i, corners), scene, i, corners[0], front, height).ok_or(Distant(0.0))?;
+    let normal = pair.normal(scene, i, corners, front, height).ok_or(Distant(0.0))?;
     let apart = away.dot(normal) - pair.thickness;
     let relative = get(of.v, i as usize) - (at(faces.v, 0) + at(faces.v, 1) + at(faces.v, 2));
-    let near = MARGIN_M + FASTER * scene.step_seconds * (-relative.dot(normal)).max(0.0);
+    let near = scene.near(-relative.dot(normal));
     if apart.is_nan() || apart >= near {
         return Err(Distant(apart - near));
     }
-    let none = LayerContact::default();
-    let gap = pair.thickness;
-    Ok(LayerContact { particle: i, corners, shares: found.shares, normal, gap, anchor: away, ..none })
+    Ok((LayerContact::with_face(i, corners, found.shares, pair.thickness, away), normal))
 }
 
 /// How far particles and what they are nearest to have moved against each other in a step is taken from their slack; those without
@@ -292,25 +300,5 @@ impl Kernel for SpendSlack<'_> {
             }
             from += n;
         }
-    }
-}
-
-/// The normal of a contact, towards the side on which the particle belongs; none where that cannot be told. `front` is the
-/// normal of the face, `height` how far in front of it the particle is (m).
-///
-/// Layers look the same way, and their contact is square to the mean of both: where one of them is crumpled, its faces look
-/// anywhere, and the smooth one shows the way out.
-fn normal(wearing: Wearing, scene: &PairScene<'_>, i: u32, corner: u32, front: Vec3A, height: f32) -> Option<Vec3A> {
-    let [of, faces] = scene.surfaces;
-    let own = scene.motions[0].normals[i as usize];
-    let opposite = opposite(of.parts[i as usize], faces.parts[corner as usize]);
-    let turned = own.dot(front) < FACING;
-    match (wearing, opposite) {
-        (_, Some(true)) => Some(front),
-        (Wearing::Outer | Wearing::Folded, _) => Some(if turned { front } else { (front + own).normalize_or_zero() }),
-        (Wearing::Inner, _) if !turned => Some(-(front + own).normalize_or_zero()),
-        // Rolled up cloth does not tell, nor does cloth of parts that nobody knows.
-        (Wearing::Inner, Some(false)) => None,
-        (Wearing::Inner, None) => (height > -FACING_M).then_some(front),
     }
 }

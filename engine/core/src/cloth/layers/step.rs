@@ -5,7 +5,7 @@ use toile_assets::limits::MAX_GARMENTS;
 
 use super::Layers;
 use super::pace::PairPace;
-use super::work::{LayerParts, LayerPhase, LayerWork};
+use super::work::{LayerParts, LayerWork};
 use crate::cloth::{Cloth, Settings, Step};
 use crate::workers::{SharePanicked, WorkerPool};
 
@@ -21,7 +21,8 @@ impl Layers {
         self.paces.iter_mut().for_each(PairPace::forget);
     }
 
-    /// One step of the garments that these layers were made of, each worker its garments: the same bits with one worker.
+    /// One step of the garments that these layers were made of, each worker its owner's particles of each: the same bits with one
+    /// worker.
     /// All take as many substeps as the garment that asks for most.
     ///
     /// # Errors
@@ -44,25 +45,17 @@ impl Layers {
             let _ = works.push(cloth.work(garment, step, carried));
         }
         let substeps = asked as usize;
-        let Self { surfaces, motions, pairs, paces, shares, touching, worker, turns, tick, .. } = self;
+        let Self { surfaces, motions, pairs, paces, shares, touching, bearing, worker, turns, tick, .. } = self;
         for (place, (pair, pace)) in pairs.iter().zip(paces.iter_mut()).enumerate() {
             pace.decide(pair.every(settings.contact()), *tick, place);
         }
-        let parts = LayerParts { surfaces, pairs, paces, worker, turns: *turns, motions, shares, touching };
+        let parts = LayerParts { surfaces, pairs, paces, worker, turns: *turns, motions, shares, touching, bearing };
         let work = LayerWork::new(&works, parts, substeps);
-        let done = match &works[..] {
-            // One garment is shared by the workers; several are one worker's each.
-            [one] => {
-                let stages = one.prepared.program.of_substep();
-                let phases = LayerPhase::count_of_one(stages, substeps);
-                pool.run(phases, |phase, share| work.run(LayerPhase::of_one(phase, stages), share))
-            }
-            _ => pool.run(LayerPhase::count(substeps, turns.count()), |phase, share| {
-                work.run(LayerPhase::of(phase, substeps, turns.count()), share);
-            }),
-        };
+        let phases = work.phases();
+        let done = pool.run(phases.count(), |phase, share| work.run(phases.at(phase), share));
         let limited: heapless::Vec<u64, MAX_GARMENTS> = works.iter().map(|w| w.limited()).collect();
         let times = work.times();
+        drop(work);
         drop(works);
         if step.settings.timed {
             // Those of all garments are the first one's.

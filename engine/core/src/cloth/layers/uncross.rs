@@ -8,6 +8,7 @@
 use glam::Vec3A;
 
 use super::contact::LayerContact;
+use super::contact_list::ContactList;
 use crate::cloth::state::get;
 use crate::lanes::WriteColumn;
 use crate::surface::SurfaceMesh;
@@ -112,7 +113,7 @@ impl Uncross {
 
     /// Adds contacts that draw apart what crosses. `told` says of a particle and a triangle whether the parts of the body tell where
     /// the particle belongs: then their contact knows better.
-    pub fn draw_out(&mut self, tangle: Tangle<'_>, told: impl Fn(u32, u32) -> bool, contacts: &mut Vec<LayerContact>) {
+    pub fn draw_out(&mut self, tangle: Tangle<'_>, told: impl Fn(u32, u32) -> bool, contacts: &mut ContactList) {
         self.most = self.most.max(self.active.len());
         let Self { active, unsure, .. } = self;
         for crossing in active.iter().filter(|c| !c.edge.iter().any(|&i| told(i, c.triangle))) {
@@ -122,10 +123,9 @@ impl Uncross {
                 let corners = tangle.mesh.corners(crossing.triangle);
                 let ends = crossing.edge.into_iter().zip([1.0 - hit.along, hit.along]);
                 for (particle, share) in ends.filter(|(_, share)| *share > 0.01) {
-                    let (shares, apart) = (hit.shares, way * (APART_M_S * share));
-                    let normal = way.normalize_or_zero();
-                    let (drawn, none) = (apart.length(), LayerContact::default());
-                    contacts.push(LayerContact { particle, corners, shares, normal, drawn, ..none });
+                    let drawn = (way * (APART_M_S * share)).length();
+                    let contact = LayerContact::drawn_from(particle, corners, hit.shares, drawn);
+                    contacts.push(contact, way.normalize_or_zero());
                 }
             }
         }

@@ -1,13 +1,20 @@
 //! What each worker does in each phase of a step of several garments.
 //!
-//! Between two phases the workers meet. Within one, what a worker writes belongs to it alone: garments to the worker that
-//! steps them, contacts to the worker whose half of the particles they are of.
+//! Between two phases the workers meet. Within one, what a worker writes belongs to it alone: particles to the worker of their
+//! owner's share, or of their garment where one worker owns it whole; contacts to the worker whose half of the particles they are of;
+//! what contacts do to particles to the worker of one half of those that are touched.
 
 use std::marker::PhantomData;
 use std::sync::atomic::AtomicU64;
 use std::sync::atomic::Ordering::Relaxed;
 use std::time::Instant;
 
+use toile_assets::garment::layout::OWNERS;
+use toile_assets::limits::MAX_GARMENTS;
+
+use super::bearing::{Bearing, GarmentBearing, Pushes, give_way};
+use super::contact::{ContactPush, Resting, VERTICES};
+use super::contact_list::ContactList;
 use super::garment_surface::{GarmentMotion, GarmentSurface};
 use super::pace::{PairPace, Search};
 use super::pair::{LayerPair, PairScene, Wearing};
@@ -28,71 +35,74 @@ pub enum LayerPhase {
     Find,
     /// Which contacts act on each particle.
     Lists,
-    /// A substep of each garment up to where garments meet, after the end of the one before.
-    Substep(usize),
+    /// What comes before the first substep of each garment.
+    Before(Stage),
+    /// The end of a shared garment's substep: contact with the body, last as ever, and the velocities.
+    Finish(usize, usize),
+    /// A stage of a shared garment before contact, counted within the substep, in a substep.
+    Stage(usize, usize, usize),
+    /// The same of all that are one worker's: the end of the substep before, then the stages of this one.
+    Whole(usize),
     /// What the contacts make of it, in a substep and in one of its turns.
     Solve(usize, usize),
-    /// What they do to the garments, between two turns.
+    /// What they do to the garments in a turn.
     Apply(usize),
-    /// The end of the last substep.
+    /// The end of the last substep of all garments.
     End,
-    /// A stage of a substep of the only garment, shared by the owners of its particles.
-    Stage(Stage, usize),
-    /// What the contacts do to the only garment, before contact with the body.
-    Gather,
-    /// Where the body has held it.
-    Note,
 }
 
-impl LayerPhase {
-    /// Phases of a step of so many substeps with so many solves each.
-    pub fn count(substeps: usize, solves: usize) -> usize {
-        4 + 2 * solves * substeps
+/// The phases of a step. A garment that both workers own particles of is stepped by both, one stage after the other; each of the
+/// others is one worker's, which takes it through all of a substep at once, so that what it needs of it stays near.
+#[derive(Debug, Clone)]
+pub struct LayerPhases {
+    /// The garments that the workers share, and their stages of a substep before contact with the body.
+    pub shared: heapless::Vec<(usize, usize), MAX_GARMENTS>,
+    /// Whether there are others.
+    pub whole: bool,
+    /// Turns of a substep.
+    pub turns: usize,
+    /// Substeps.
+    pub substeps: usize,
+}
+
+impl LayerPhases {
+    fn of_substep(&self) -> usize {
+        let shared = self.shared.iter().map(|(_, stages)| 1 + stages).sum::<usize>();
+        shared + usize::from(self.whole) + 2 * self.turns
     }
 
-    /// Phases of a step of so many substeps where there is one garment only, with these stages of a substep.
-    pub fn count_of_one(stages: &[Stage], substeps: usize) -> usize {
-        3 + BEFORE.len() + (stages.len() + 3) * substeps
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        4 + BEFORE.len() + self.of_substep() * self.substeps
     }
 
-    /// One of them: its stages are phases, so that two workers share it.
-    pub fn of_one(phase: usize, stages: &[Stage]) -> Self {
+    /// One of them.
+    pub fn at(&self, phase: usize) -> LayerPhase {
         match phase {
-            0 => Self::Motions,
-            1 => Self::Find,
-            2 => Self::Lists,
-            before if before < 3 + BEFORE.len() => Self::Stage(BEFORE[before - 3], 0),
+            0 => LayerPhase::Motions,
+            1 => LayerPhase::Find,
+            2 => LayerPhase::Lists,
+            before if before < 3 + BEFORE.len() => LayerPhase::Before(BEFORE[before - 3]),
+            last if last + 1 == self.count() => LayerPhase::End,
             later => {
                 let later = later - 3 - BEFORE.len();
-                let (substep, at) = (later / (stages.len() + 3), later % (stages.len() + 3));
-                let last = stages.len() - 1;
-                match at {
-                    at if at < last => Self::Stage(stages[at], substep),
-                    at if at == last => Self::Solve(substep, 0),
-                    at if at == last + 1 => Self::Gather,
-                    at if at == last + 2 => Self::Stage(stages[last], substep),
-                    _ => Self::Note,
-                }
+                self.within(later / self.of_substep(), later % self.of_substep())
             }
         }
     }
 
-    /// One of them. A substep is the garments' own stages, then solves and what they do in turn; what the last one does is part
-    /// of what comes after.
-    pub fn of(phase: usize, substeps: usize, solves: usize) -> Self {
-        match phase {
-            0 => Self::Motions,
-            1 => Self::Find,
-            2 => Self::Lists,
-            last if last + 1 == Self::count(substeps, solves) => Self::End,
-            later => {
-                let (substep, at) = ((later - 3) / (2 * solves), (later - 3) % (2 * solves));
-                match at {
-                    0 => Self::Substep(substep),
-                    odd if odd % 2 == 1 => Self::Solve(substep, odd / 2),
-                    even => Self::Apply(even / 2 - 1),
-                }
+    fn within(&self, substep: usize, mut at: usize) -> LayerPhase {
+        for &(garment, stages) in &self.shared {
+            match at {
+                0 => return LayerPhase::Finish(garment, substep),
+                _ if at <= stages => return LayerPhase::Stage(garment, at - 1, substep),
+                _ => at -= 1 + stages,
             }
+        }
+        match at.checked_sub(usize::from(self.whole)) {
+            None => LayerPhase::Whole(substep),
+            Some(at) if at.is_multiple_of(2) => LayerPhase::Solve(substep, at / 2),
+            Some(at) => LayerPhase::Apply(at / 2),
         }
     }
 }
@@ -122,6 +132,14 @@ impl<'a, T> Cells<'a, T> {
     }
 
     /// # Safety
+    /// Until the workers next meet, nobody else reads or writes any of them.
+    #[expect(clippy::mut_from_ref, reason = "all are one worker's")]
+    unsafe fn own_all(&self) -> &mut [T] {
+        // SAFETY: the slice that it was made of; see above.
+        unsafe { std::slice::from_raw_parts_mut(self.data, self.len) }
+    }
+
+    /// # Safety
     /// Until the workers next meet, nobody writes the item.
     unsafe fn read(&self, i: usize) -> &T {
         assert!(i < self.len, "there is no such item");
@@ -141,6 +159,8 @@ pub struct LayerWork<'a> {
     motions: Cells<'a, GarmentMotion>,
     shares: Cells<'a, PairShare>,
     touching: Cells<'a, TouchLists>,
+    resting: heapless::Vec<Cells<'a, Resting>, MAX_GARMENTS>,
+    bearing: heapless::Vec<Cells<'a, Bearing>, MAX_GARMENTS>,
     substeps: usize,
     /// Time of the stages of all garments (ns), where they are timed.
     times: [AtomicU64; METERED_STAGES.len()],
@@ -164,13 +184,17 @@ pub struct LayerParts<'a> {
     pub shares: &'a mut [PairShare],
     /// Touches of the garments.
     pub touching: &'a mut [TouchLists],
+    /// What holds their particles, and what these bear.
+    pub bearing: &'a mut [GarmentBearing],
 }
 
 impl<'a> LayerWork<'a> {
     /// The work of a step.
     pub fn new(works: &'a [StepWork<'a>], parts: LayerParts<'a>, substeps: usize) -> Self {
-        let LayerParts { surfaces, pairs, paces, worker, turns, motions, shares, touching } = parts;
+        let LayerParts { surfaces, pairs, paces, worker, turns, motions, shares, touching, bearing } = parts;
         let (motions, shares, touching) = (Cells::new(motions), Cells::new(shares), Cells::new(touching));
+        let (resting, bearing) =
+            bearing.iter_mut().map(|b| (Cells::new(&mut b.resting), Cells::new(&mut b.bearing))).unzip();
         Self {
             works,
             surfaces,
@@ -181,6 +205,8 @@ impl<'a> LayerWork<'a> {
             motions,
             shares,
             touching,
+            resting,
+            bearing,
             substeps,
             times: Default::default(),
         }
@@ -204,46 +230,52 @@ impl<'a> LayerWork<'a> {
     /// Does one worker's share of a phase; no share of a phase is done twice.
     pub fn run(&self, phase: LayerPhase, share: usize) {
         match phase {
-            LayerPhase::Substep(_) | LayerPhase::End | LayerPhase::Stage(..) => self.part(phase, share),
-            _ => self.meter(LAYERS_METERED, || self.part(phase, share)),
+            LayerPhase::Motions => self.meter(LAYERS_METERED, || {
+                self.each_garment(share, |g| {
+                    self.give_way(g);
+                    self.motion(g);
+                });
+            }),
+            LayerPhase::Find => self.meter(LAYERS_METERED, || {
+                self.each_pair(share, |p, own| match self.paces[p].search {
+                    Search::Anew(steps) => own.find(&self.pairs[p], &self.scene(p, steps)),
+                    Search::Keep => own.asked = 0,
+                    Search::Off => own.rest(),
+                });
+            }),
+            LayerPhase::Lists => self.meter(LAYERS_METERED, || self.each_garment(share, |g| self.fill_lists(g))),
+            LayerPhase::Before(stage) => (0..self.works.len()).for_each(|g| self.stage(g, stage, 0, share)),
+            LayerPhase::Finish(g, substep) => self.finish_before(g, substep, share),
+            LayerPhase::Stage(g, at, substep) => self.stage(g, self.stages(g).1[at], substep, share),
+            LayerPhase::Whole(substep) => (0..self.works.len()).filter(|&g| !self.is_shared(g)).for_each(|g| {
+                self.finish_before(g, substep, share);
+                self.stages(g).1.iter().for_each(|&stage| self.stage(g, stage, substep, share));
+            }),
+            LayerPhase::Solve(substep, at) => self.meter(LAYERS_METERED, || self.turn(substep, at, share)),
+            LayerPhase::Apply(at) => self.meter(LAYERS_METERED, || {
+                (0..self.works.len()).for_each(|g| self.apply(g, self.turns.at(at), share));
+            }),
+            LayerPhase::End => (0..self.works.len()).for_each(|g| self.finish(g, self.substeps - 1, share)),
         }
     }
 
-    fn part(&self, phase: LayerPhase, share: usize) {
-        match phase {
-            LayerPhase::Motions => self.each_garment(share, |g| {
-                self.give_way(g);
-                self.motion(g);
-            }),
-            LayerPhase::Find => self.each_pair(share, |p, own| match self.paces[p].search {
-                Search::Anew(steps) => own.find(&self.pairs[p], &self.scene(p, steps)),
-                Search::Keep => own.asked = 0,
-                Search::Off => own.rest(),
-            }),
-            LayerPhase::Lists => self.each_garment(share, |g| self.fill_lists(g)),
-            LayerPhase::Substep(k) => self.each_garment(share, |g| {
-                if k > 0 {
-                    self.finish(g, k - 1);
-                }
-                self.begin(g, k);
-            }),
-            LayerPhase::Solve(k, at) => {
-                let turn = self.turns.at(at);
-                self.each_pair(share, |p, own| match (self.pairs[p].level == turn.level, turn.up) {
-                    (false, _) => {}
-                    (true, true) => self.solve(p, own, k == 0),
-                    (true, false) => self.pass(p, own),
-                });
-            }
-            LayerPhase::Apply(at) => self.each_garment(share, |g| self.gather(g, self.turns.at(at))),
-            LayerPhase::End => self.each_garment(share, |g| self.finish(g, self.substeps - 1)),
-            LayerPhase::Stage(stage, substep) => {
-                let work = &self.works[0];
-                self.meter(stage.metered(), || work.run(stage, substep as u32, share));
-            }
-            LayerPhase::Gather => self.each_garment(share, |g| self.gather(g, self.turns.last())),
-            LayerPhase::Note => self.each_garment(share, |g| self.touching(g).note_support(self.particles(g))),
-        }
+    /// The phases of the step.
+    pub fn phases(&self) -> LayerPhases {
+        let all = || 0..self.works.len();
+        let shared = all().filter(|&g| self.is_shared(g)).map(|g| (g, self.stages(g).1.len())).collect();
+        let whole = all().any(|g| !self.is_shared(g));
+        LayerPhases { shared, whole, turns: self.turns.count(), substeps: self.substeps }
+    }
+
+    /// Whether both workers own particles of a garment.
+    fn is_shared(&self, garment: usize) -> bool {
+        !self.works[garment].garment.layout().spans[1].is_empty()
+    }
+
+    /// The last stage of a garment's substep, which is contact with the body, and those before.
+    fn stages(&self, garment: usize) -> (Stage, &[Stage]) {
+        let stages = self.works[garment].prepared.program.of_substep();
+        stages.split_last().map_or((Stage::ContactAndVelocities, stages), |(last, others)| (*last, others))
     }
 
     fn each_garment(&self, share: usize, act: impl Fn(usize)) {
@@ -258,11 +290,12 @@ impl<'a> LayerWork<'a> {
         }
     }
 
-    /// Particles of a garment. In a phase that writes some, by the garment's worker alone; in one that only reads them, by
-    /// all.
+    /// Particles of a garment. In a phase that writes some, each worker opens what it owns; in one that only reads them, all.
     fn particles(&self, garment: usize) -> ParticleColumns<'_> {
-        // SAFETY: positions and velocities are written in `Substep`, `Apply` and `End`, where each worker opens the garments
-        // that it steps and no other; they are read by both in `Find` and `Solve`, in which nobody writes them.
+        // SAFETY: positions and velocities are written in `Before`, `Stage`, `Whole`, `Finish` and `End`, where each worker writes the
+        // particles of its owner's share, as `StepWork::run` says, or of the garments that are its own, and in `Apply`, where each
+        // writes those of its part; `Motions` writes what the body gives, by the garment's
+        // worker; they are read by both in `Find`, `Lists` and `Solve`, in which nobody writes them.
         unsafe { self.works[garment].columns.open() }.particles
     }
 
@@ -270,10 +303,14 @@ impl<'a> LayerWork<'a> {
         self.works[0].width
     }
 
-    /// What the last step has shown of where the body is in its own way. Its contacts stand until `Find`.
+    /// What the last step has shown of where the body is in its own way.
     fn give_way(&self, garment: usize) {
         let seconds = self.works[0].step.settings.step_seconds;
-        self.touching(garment).give_way(self.particles(garment), seconds, |list| self.contacts(list));
+        let (given, touching) = (self.particles(garment).given, self.touching(garment));
+        if touching.gives || touching.any() {
+            // SAFETY: in this phase the garment's worker alone has them.
+            touching.gives = give_way(given, unsafe { self.bearing[garment].own_all() }, seconds);
+        }
     }
 
     fn motion(&self, garment: usize) {
@@ -304,75 +341,182 @@ impl<'a> LayerWork<'a> {
     }
 
     /// The contacts of a list, in phases that do not write them.
-    fn contacts(&self, list: usize) -> &[super::contact::LayerContact] {
+    fn contacts(&self, list: usize) -> &ContactList {
         // SAFETY: contacts are written in `Find` and `Solve`, which do not call this.
         unsafe { &self.shares.read(list).contacts }
     }
 
     fn fill_lists(&self, garment: usize) {
-        self.touching(garment).fill(self.pairs, |list| self.contacts(list));
+        let touching = self.touching(garment);
+        touching.fill(self.pairs, |list| self.contacts(list).contacts());
+        // SAFETY: in this phase the garment's worker alone has them.
+        let all = unsafe { (self.bearing[garment].own_all(), self.resting[garment].own_all()) };
+        for (i, (bearing, resting)) in all.0.iter_mut().zip(all.1).enumerate() {
+            if !touching.touches(i) {
+                bearing.rest(resting);
+            }
+        }
     }
 
     /// The touches of a garment, in phases in which its worker alone has them.
     #[expect(clippy::mut_from_ref, reason = "each garment is one worker's")]
     fn touching(&self, garment: usize) -> &mut TouchLists {
-        // SAFETY: written in `Lists`, `Substep`, `Apply` and `End` by the garment's worker, read in `Solve`.
+        // SAFETY: written in `Motions` and `Lists` by the garment's worker, read in the others.
         unsafe { self.touching.own(garment) }
     }
 
-    fn stage(&self, garment: usize, stage: Stage, substep: usize) {
-        let work = &self.works[garment];
-        self.meter(stage.metered(), || (0..2).for_each(|owner| work.run(stage, substep as u32, owner)));
+    /// The same in phases that write none.
+    fn touches(&self, garment: usize) -> &TouchLists {
+        // SAFETY: see above.
+        unsafe { self.touching.read(garment) }
     }
 
-    /// A substep up to where garments meet.
-    fn begin(&self, garment: usize, substep: usize) {
-        let before: &[_] = if substep == 0 { &BEFORE } else { &[] };
-        let stages = self.works[garment].prepared.program.of_substep();
-        let own = &stages[..stages.len() - 1];
-        before.iter().chain(own).for_each(|&stage| self.stage(garment, stage, substep));
-    }
-
-    /// What the contacts between the garments do, then contact with the body, last as ever, and the velocities.
-    fn finish(&self, garment: usize, substep: usize) {
-        self.meter(LAYERS_METERED, || self.gather(garment, self.turns.last()));
-        self.stage(garment, Stage::ContactAndVelocities, substep);
-        self.meter(LAYERS_METERED, || self.touching(garment).note_support(self.particles(garment)));
-    }
-
-    fn gather(&self, garment: usize, turn: Turn) {
-        let (touching, columns) = (self.touching(garment), self.particles(garment));
-        match turn.up {
-            true => touching.gather(columns, turn.level, |list| self.contacts(list)),
-            false => touching.take_over(turn.level, |list| self.contacts(list)),
+    /// A worker's share of a stage: of a garment that is one worker's all or nothing.
+    fn stage(&self, garment: usize, stage: Stage, substep: usize, share: usize) {
+        let run = |owner: usize| self.works[garment].run(stage, substep as u32, owner);
+        match self.is_shared(garment) {
+            true => self.meter(stage.metered(), || run(share)),
+            false if self.worker[garment] == share => self.meter(stage.metered(), || (0..OWNERS).for_each(run)),
+            false => {}
         }
+    }
+
+    /// The end of the substep before this one, if there is one.
+    fn finish_before(&self, garment: usize, substep: usize, share: usize) {
+        substep.checked_sub(1).into_iter().for_each(|before| self.finish(garment, before, share));
+    }
+
+    /// Contact with the body and the velocities, and what was seen of what holds what. Of a shared garment one owner's particles,
+    /// which nobody else's depend on.
+    fn finish(&self, garment: usize, substep: usize, share: usize) {
+        self.stage(garment, self.stages(garment).0, substep, share);
+        let note = |part: usize| {
+            self.each_touched(garment, part, |i, resting, bearing, columns| bearing.note_support(resting, i, columns));
+        };
+        match self.is_shared(garment) {
+            true => self.meter(LAYERS_METERED, || note(share)),
+            false if self.worker[garment] == share => self.meter(LAYERS_METERED, || (0..OWNERS).for_each(note)),
+            false => {}
+        }
+    }
+
+    /// Does something to each particle of a part of a garment that anything touches.
+    fn each_touched(
+        &self,
+        garment: usize,
+        part: usize,
+        act: impl Fn(usize, &mut Resting, &mut Bearing, ParticleColumns<'_>),
+    ) {
+        let (touches, columns) = (self.touches(garment), self.particles(garment));
+        for touched in touches.touched(touches.own_level(), part) {
+            let i = touched.particle as usize;
+            // SAFETY: each particle is in one part, whose worker alone has them in the phases that call this: `Apply`,
+            // `Finish`, `Whole` and `End`.
+            let (resting, bearing) = unsafe { (self.resting[garment].own(i), self.bearing[garment].own(i)) };
+            act(i, resting, bearing, columns);
+        }
+    }
+
+    /// What the contacts of a turn do to the particles of a part of a garment; after the last turn these get what they bear.
+    fn apply(&self, garment: usize, turn: Turn, part: usize) {
+        self.gather(garment, turn, part);
         if turn == self.turns.last() {
-            touching.bear(columns);
+            self.each_touched(garment, part, |i, _, bearing, columns| bearing.bear(i, columns));
         }
+    }
+
+    fn gather(&self, garment: usize, turn: Turn, part: usize) {
+        let (touches, columns) = (self.touches(garment), self.particles(garment));
+        let is_own = turn.level == touches.own_level();
+        if !turn.up && touches.height() == turn.level {
+            return self.each_touched(garment, part, |_, _, bearing, _| bearing.let_go());
+        }
+        if !turn.up && touches.height() > turn.level {
+            return;
+        }
+        for touched in touches.touched(turn.level, part) {
+            let i = touched.particle as usize;
+            // SAFETY: as in `each_touched`.
+            let (resting, bearing) = unsafe { (self.resting[garment].own(i), self.bearing[garment].own(i)) };
+            let own = touches.of(touched);
+            match turn.up {
+                true => bearing.gather(resting, i, own, is_own, columns, self),
+                false => own.iter().for_each(|touch| {
+                    let contacts = self.contacts(touch.list.into()).contacts();
+                    bearing.take_over(touch, &contacts[touch.contact as usize]);
+                }),
+            }
+        }
+    }
+
+    /// One turn's share of the contacts.
+    fn turn(&self, substep: usize, at: usize, share: usize) {
+        let turn = self.turns.at(at);
+        self.each_pair(share, |p, own| match (self.pairs[p].level == turn.level, turn.up) {
+            (false, _) => {}
+            (true, true) => self.solve(p, own, substep == 0),
+            (true, false) => self.pass(p, own),
+        });
     }
 
     fn pass(&self, pair: usize, own: &mut PairShare) {
         let pair = &self.pairs[pair];
-        let above = if pair.wearing == Wearing::Outer { pair.particles } else { pair.faces };
-        if !pair.is_fold() {
-            // SAFETY: nobody writes them in `Solve`.
-            let (bears, held_by) = unsafe { self.touching.read(above) }.borne();
-            own.contacts.iter_mut().for_each(|c| c.pass(above == pair.particles, bears, held_by));
+        if pair.is_fold() {
+            return;
         }
+        let (above, of) = if pair.wearing == Wearing::Outer { (0, pair.particles) } else { (1, pair.faces) };
+        let borne = |i: u32| {
+            // SAFETY: nobody writes them in `Solve`.
+            let bearing = unsafe { self.bearing[of].read(i as usize) };
+            (bearing.owed, bearing.held_by)
+        };
+        own.contacts.pairs_mut().for_each(|(contact, push)| contact.pass(push, above, borne));
     }
 
     fn solve(&self, pair: usize, own: &mut PairShare, first: bool) {
-        let LayerPair { particles, faces, .. } = self.pairs[pair];
-        let columns = [particles, faces].map(|g| self.particles(g));
-        // SAFETY: nobody writes them in `Solve`.
-        let touching = [particles, faces].map(|g| unsafe { self.touching.read(g) });
+        let LayerPair { particles, faces, level, .. } = self.pairs[pair];
+        let of = [particles, faces];
+        let columns = of.map(|g| self.particles(g));
         if first {
-            let load = touching.map(|t| t.load(self.pairs[pair].level));
-            own.contacts.iter_mut().for_each(|c| c.weigh(columns, load));
+            let load = of.map(|g| self.touches(g).load(level));
+            own.contacts.pairs_mut().for_each(|(contact, _)| contact.weigh(columns, load));
         }
-        let rest = touching.map(TouchLists::resting);
         let settings = self.works[0].step.settings;
         let law = self.pairs[pair].law(settings.step_seconds / self.substeps as f32, settings.static_friction);
-        own.contacts.iter_mut().for_each(|c| c.solve(columns, rest, law));
+        let resting = of.map(|g| &self.resting[g]);
+        for (contact, push) in own.contacts.pairs_mut() {
+            let mut rest = [Resting::default(); VERTICES];
+            for (k, rest) in rest.iter_mut().enumerate() {
+                // SAFETY: nobody writes them in `Solve`.
+                *rest = *unsafe { resting[contact.side(k)].read(contact.vertices[k] as usize) };
+            }
+            contact.solve(columns, &rest, law, push);
+        }
+    }
+}
+
+impl Pushes for LayerWork<'_> {
+    fn of(&self, list: u16) -> &[ContactPush] {
+        self.contacts(list.into()).pushes()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_garment_ends_a_substep_before_it_begins_the_next_and_all_end_the_last() {
+        use LayerPhase::{Apply, End, Finish, Solve, Stage, Whole};
+        let shared = [(0, 2), (3, 1)].into_iter().collect();
+        let phases = LayerPhases { shared, whole: true, turns: 3, substeps: 2 };
+        let all: Vec<LayerPhase> = (3 + BEFORE.len()..phases.count()).map(|phase| phases.at(phase)).collect();
+        let substep = |k| {
+            let shared = [Finish(0, k), Stage(0, 0, k), Stage(0, 1, k), Finish(3, k), Stage(3, 0, k)];
+            let turns = [Whole(k), Solve(k, 0), Apply(0), Solve(k, 1), Apply(1), Solve(k, 2), Apply(2)];
+            shared.into_iter().chain(turns)
+        };
+        assert_eq!(all, substep(0).chain(substep(1)).chain([End]).collect::<Vec<_>>());
+        assert_eq!(phases.at(0), LayerPhase::Motions);
     }
 }
