@@ -15,6 +15,9 @@ const ALONG_COS: f64 = 0.82;
 /// Least pitch of a row in parts of the spacing: steeper edges would make rows too dense.
 const LEAST_PITCH: f64 = 0.72;
 
+/// What a metre of a bent edge counts beside one of a straight edge: its points lie on no even rows.
+const BENT_WORTH: f64 = 0.5;
+
 /// Lines of the lattice across one direction: `first + k * pitch` (m).
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Lines {
@@ -34,8 +37,8 @@ pub struct Lattice {
 }
 
 impl Lattice {
-    /// Lays the lattice into an outline at a spacing (m); `inset` keeps it from the outline, in parts of the smaller pitch.
-    pub fn new(panel: &Panel, boundary: &Boundary, spacing: f64, inset: f64) -> Self {
+    /// Lays the lattice into an outline at a spacing (m).
+    pub fn new(panel: &Panel, boundary: &Boundary, spacing: f64) -> Self {
         let warp = panel.grain;
         let axes = [DVec2::new(warp.y, -warp.x), warp];
         let lines = axes.map(|axis| lines(panel, boundary, axis, spacing));
@@ -44,7 +47,7 @@ impl Lattice {
         let least = [0, 1].map(|k| ((range[k].0 - lines[k].first) / lines[k].pitch).floor());
         let counts = [0, 1].map(|k| ((range[k].1 - lines[k].first) / lines[k].pitch - least[k]).ceil().max(0.0) as usize + 1);
         let at = |k: usize, i: usize| lines[k].first + (least[k] + i as f64) * lines[k].pitch;
-        let distance = inset * lines[0].pitch.min(lines[1].pitch);
+        let distance = INSET * lines[0].pitch.min(lines[1].pitch);
         let ring: Vec<DVec2> = boundary.points.iter().map(|p| DVec2::new(p.dot(axes[0]), p.dot(axes[1]))).collect();
         let mut points = vec![None; counts[0] * counts[1]];
         for j in 0..counts[1] {
@@ -57,11 +60,6 @@ impl Lattice {
             }
         }
         Self { axes, counts, points }
-    }
-
-    /// The same at the inset that keeps every whole cell in the triangulation.
-    pub fn usual(panel: &Panel, boundary: &Boundary, spacing: f64) -> Self {
-        Self::new(panel, boundary, spacing, INSET)
     }
 
     /// Unit vectors along weft and warp.
@@ -82,11 +80,6 @@ impl Lattice {
     /// Takes a point away.
     pub fn remove(&mut self, place: usize) -> Option<DVec2> {
         self.points[place].take()
-    }
-
-    /// Puts a point back that was taken away.
-    pub fn put_back(&mut self, place: usize, point: DVec2) {
-        self.points[place] = Some(point);
     }
 
     /// Whether the cell whose lower left corner is a place is whole.
@@ -115,7 +108,8 @@ fn lines(panel: &Panel, boundary: &Boundary, axis: DVec2, spacing: f64) -> Lines
         // Where a seam has more points than the lattice needs, each line meets every second or third.
         let chord = length.abs() / points as f64;
         let pitch = chord * (spacing * 1.02 / chord).floor().max(1.0);
-        (along && pitch >= LEAST_PITCH * spacing).then(|| (length.abs(), Lines { first: start.dot(axis), pitch }))
+        let worth = length.abs() * if panel.edges[e].curve.is_straight() { 1.0 } else { BENT_WORTH };
+        (along && pitch >= LEAST_PITCH * spacing).then(|| (worth, Lines { first: start.dot(axis), pitch }))
     };
     let longest = (0..panel.edges.len()).filter_map(edge).max_by(|a, b| a.0.total_cmp(&b.0));
     longest.map_or_else(

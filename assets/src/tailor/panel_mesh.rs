@@ -24,7 +24,8 @@ pub struct PanelMesh {
     pub faces: Vec<Face>,
     /// True where a quad is split along b-d, its shorter diagonal `[faces]`.
     pub split: Vec<bool>,
-    /// True for what lies on a warp and a weft fiber: the vertices of quads `[vertices]`.
+    /// True for what lies on a warp and a weft fiber: the points of the lattice that are corners of quads, which
+    /// none of the outline counts as `[vertices]`.
     pub regular: Vec<bool>,
     /// Unit vectors along weft and warp in the drawing.
     pub axes: [DVec2; 2],
@@ -57,7 +58,7 @@ pub fn mesh(panel: &Panel, boundary: &Boundary, spacing: f64, extra: &[DVec2], r
     if let Some((i, _)) = crossing(outline) {
         return Err(narrow(outline[i]));
     }
-    let lattice = Lattice::usual(panel, boundary, spacing);
+    let lattice = Lattice::new(panel, boundary, spacing);
     let mut points = Points { boundary, counter_clockwise: area > 0.0, lattice, free: extra.to_vec(), held: extra.len() };
     let filled = points.fill().ok_or_else(|| narrow(outline[0]))?;
     let filled = improve(&mut points, filled, spacing);
@@ -88,6 +89,9 @@ fn assemble(points: &Points<'_>, filled: Filled) -> PanelMesh {
     faces.iter_mut().flatten().filter(|v| **v != NO_VERTEX).for_each(|v| *v = number[*v as usize]);
     let mut regular = vec![false; kept.len()];
     faces.iter().filter(|f| f[3] != NO_VERTEX).flatten().for_each(|v| regular[*v as usize] = true);
+    let free = used[points.of_free(0) as usize..].iter().filter(|u| **u).count();
+    let places = outline..kept.len() - free;
+    regular.iter_mut().enumerate().filter(|(v, _)| !places.contains(v)).for_each(|(_, regular)| *regular = false);
     let length = |a: u32, b: u32| kept[a as usize].distance(kept[b as usize]);
     let split = faces.iter().map(|f| f[3] != NO_VERTEX && length(f[1], f[3]) < length(f[0], f[2]) * (1.0 - 1e-6)).collect();
     PanelMesh { points: kept, boundary: points.boundary.clone(), faces, split, regular, axes }
