@@ -22,8 +22,10 @@ const ROW: f64 = 1.6;
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let (mut spacing, mut seams, mut folder) = (0.015, None, None);
-    println!("| pattern | panels | seams | particles | inner | regular | smallest angle | sharpest corner | area error | ms |");
-    println!("|---|---|---|---|---|---|---|---|---|---|");
+    println!(
+        "| pattern | panels | seams | particles | inner | regular | smallest angle | sharpest corner | area error | largest gather | ms |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|---|---|");
     while let Some(argument) = arguments.next() {
         let mut value = || arguments.next().ok_or(format!("{argument} needs a value"));
         match argument.as_str() {
@@ -52,9 +54,13 @@ fn row(pattern: &Pattern, sewn: &SewnMesh) -> String {
     let all: Vec<PanelQuality> = sewn.panels.iter().zip(pattern.panels()).map(|(m, p)| m.quality(p)).collect();
     let sum = |of: fn(&PanelQuality) -> usize| all.iter().map(of).sum::<usize>();
     let least = |of: fn(&PanelQuality) -> f64| all.iter().map(of).fold(f64::MAX, f64::min);
+    let gathers = pattern.seams().iter().map(|seam| {
+        let [a, b] = seam.sides.map(|side| side.length(pattern.panels()));
+        (a / b).max(b / a)
+    });
     let worst_area = all.iter().map(|q| q.area_error.abs()).fold(0.0, f64::max);
     format!(
-        "{} | {} | {} | {} | {:.1} % | {:.1} | {:.1} | {:.3} %",
+        "{} | {} | {} | {} | {:.1} % | {:.1} | {:.1} | {:.3} % | {:.2}",
         pattern.panels().len(),
         pattern.seams().len(),
         sewn.members.len(),
@@ -62,7 +68,8 @@ fn row(pattern: &Pattern, sewn: &SewnMesh) -> String {
         100.0 * sum(|q| q.regular) as f64 / sum(|q| q.inner).max(1) as f64,
         least(|q| q.least_angle),
         least(|q| q.sharpest_corner),
-        100.0 * worst_area
+        100.0 * worst_area,
+        gathers.fold(1.0, f64::max)
     )
 }
 
@@ -83,19 +90,33 @@ fn svg(pattern: &Pattern, sewn: &SewnMesh) -> String {
         for face in &mesh.faces {
             let ring: Vec<String> = face.iter().filter(|v| **v != u32::MAX).map(|v| place(*v)).collect();
             let inner = face.iter().all(|v| *v as usize >= mesh.boundary.points.len());
-            let colour = if ring.len() == 3 { "#f2d9a6" } else if inner { "#bcd6f2" } else { "#c4e3bf" };
+            let colour = if ring.len() == 3 {
+                "#f2d9a6"
+            } else if inner {
+                "#bcd6f2"
+            } else {
+                "#c4e3bf"
+            };
             let _ = writeln!(body, "<polygon points=\"{}\" fill=\"{colour}\"/>", ring.join(" "));
         }
-        for v in (0..mesh.boundary.points.len() as u32).filter(|v| sewn.members[sewn.number[index][*v as usize] as usize].len() > 1) {
+        for v in (0..mesh.boundary.points.len() as u32)
+            .filter(|v| sewn.members[sewn.number[index][*v as usize] as usize].len() > 1)
+        {
             let p = place(v);
             let (x, y) = p.split_once(',').unwrap_or_default();
             let _ = writeln!(body, "<circle cx=\"{x}\" cy=\"{y}\" r=\"3\" fill=\"#b03030\"/>");
         }
         let (x, y) = (at[0] * PIXELS, (at[1] + size.y + MARGIN) * PIXELS);
-        let _ = writeln!(body, "<text x=\"{x:.0}\" y=\"{y:.0}\" font-size=\"24\" stroke=\"none\" fill=\"#222\">{}</text>", panel.name);
+        let _ = writeln!(
+            body,
+            "<text x=\"{x:.0}\" y=\"{y:.0}\" font-size=\"24\" stroke=\"none\" fill=\"#222\">{}</text>",
+            panel.name
+        );
         at[0] += size.x + 2.0 * MARGIN;
         (height, width) = (height.max(size.y), width.max(at[0]));
     }
     let (w, h) = (width * PIXELS, (at[1] + height + 2.0 * MARGIN) * PIXELS);
-    format!("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w:.0}\" height=\"{h:.0}\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n<g stroke=\"#456\" stroke-width=\"1\">\n{body}</g>\n</svg>\n")
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w:.0}\" height=\"{h:.0}\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n<g stroke=\"#456\" stroke-width=\"1\">\n{body}</g>\n</svg>\n"
+    )
 }

@@ -7,9 +7,7 @@ use glam::DVec2;
 use super::crossing::crossing;
 use super::curve::Curve;
 use super::flaw::PatternFlaw;
-use super::limits::{
-    LEAST_EDGE_M, LEAST_PANEL_M2, MAX_EDGES, MAX_PANEL_EDGES, MAX_PANELS, MAX_REACH_M, MAX_SEAMS,
-};
+use super::limits::{LEAST_EDGE_M, LEAST_PANEL_M2, MAX_EDGES, MAX_PANEL_EDGES, MAX_PANELS, MAX_REACH_M, MAX_SEAMS};
 use super::panel::Panel;
 use super::seam::{Seam, SeamSide};
 

@@ -59,7 +59,10 @@ mod tests {
     fn simple_polygons_pass() {
         assert_eq!(crossing(&polygon(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])), None);
         // A dart: two legs that meet at its tip.
-        assert_eq!(crossing(&polygon(&[[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [2.1, 4.0], [2.0, 1.0], [1.9, 4.0], [0.0, 4.0]])), None);
+        assert_eq!(
+            crossing(&polygon(&[[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [2.1, 4.0], [2.0, 1.0], [1.9, 4.0], [0.0, 4.0]])),
+            None
+        );
         assert_eq!(crossing(&polygon(&[[0.0, 0.0], [1.0, 0.0], [0.5, 1.0]])), None);
     }
 

@@ -106,11 +106,9 @@ impl Curve {
         match self.clone() {
             Self::Line(p) => Self::Line(p.map(place)),
             Self::Cubic(p) => Self::Cubic(p.map(place)),
-            Self::Arc { ends, centre, sweep } => Self::Arc {
-                ends: ends.map(place),
-                centre: place(centre),
-                sweep: sweep * turn.determinant().signum(),
-            },
+            Self::Arc { ends, centre, sweep } => {
+                Self::Arc { ends: ends.map(place), centre: place(centre), sweep: sweep * turn.determinant().signum() }
+            }
             Self::Polyline(p) => Self::Polyline(p.into_iter().map(place).collect()),
         }
     }
@@ -317,7 +315,7 @@ mod tests {
             let points: Vec<DVec2> = (0..=20).map(|i| curve.point(length.parameter(i as f64 / 20.0))).collect();
             let chords: Vec<f64> = points.windows(2).map(|p| p[0].distance(p[1])).collect();
             let mean = chords.iter().sum::<f64>() / 20.0;
-            assert!(chords.iter().all(|c| (c / mean - 1.0).abs() < 0.02), "{curve:?}: {chords:?}");
+            assert!(chords.iter().all(|c| (c / mean - 1.0).abs() < 0.03), "{curve:?}: {chords:?}");
         }
     }
 }

@@ -11,7 +11,9 @@ pub enum PatternFlaw {
     #[error("the pattern has no panels; export it with its panels as closed outlines")]
     Empty,
     /// More of something than is read.
-    #[error("{place} has {count} {what}, more than the {most} of {limit}; leave out what is not cloth, or split the pattern")]
+    #[error(
+        "{place} has {count} {what}, more than the {most} of {limit}; leave out what is not cloth, or split the pattern"
+    )]
     TooMany {
         /// What holds them: "the pattern", or a panel.
         place: String,
@@ -69,7 +71,9 @@ pub enum PatternFlaw {
         gap_mm: f64,
     },
     /// A circle arc that cannot reach from its start to its end.
-    #[error("panel {panel}: edge {edge} is an arc of {radius} m, too small a radius for its ends; give at least half of the distance between them")]
+    #[error(
+        "panel {panel}: edge {edge} is an arc of {radius} m, too small a radius for its ends; give at least half of the distance between them"
+    )]
     Radius {
         /// The panel.
         panel: String,
@@ -125,7 +129,9 @@ pub enum PatternFlaw {
         count: usize,
     },
     /// An edge in two seams, or on both sides of one.
-    #[error("{first} and {second} both sew {edge} of panel {panel}; sew each edge once, and split it where two others meet at it")]
+    #[error(
+        "{first} and {second} both sew {edge} of panel {panel}; sew each edge once, and split it where two others meet at it"
+    )]
     SewnTwice {
         /// The panel.
         panel: String,
@@ -137,7 +143,9 @@ pub enum PatternFlaw {
         second: String,
     },
     /// A seam that turns the cloth inside out.
-    #[error("{seam} sews the outside of panel {panel} to an inside, against the other seams; swap the ends of one of its sides")]
+    #[error(
+        "{seam} sews the outside of panel {panel} to an inside, against the other seams; swap the ends of one of its sides"
+    )]
     Twisted {
         /// The seam.
         seam: String,

@@ -24,5 +24,5 @@ pub const LEAST_PANEL_M2: f64 = 1e-4;
 /// Largest file of a pattern or of its seams that is read (bytes): a hundred times the largest of our examples.
 pub const MAX_PATTERN_BYTES: u64 = 4 << 20;
 
-/// Points of all digitised curves of a pattern: a piece digitised every millimetre around has some thousand.
-pub const MAX_POINTS: usize = 65_536;
+/// Points and marks of a digitised pattern: a piece digitised every millimetre around has some thousand.
+pub const MAX_POINTS: usize = 32_768;

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::limits::{MAX_PARTICLES, SPACING_M};
+use super::limits::{MAX_OUTLINE_POINTS, MAX_PARTICLES, SPACING_M};
 
 /// Why a pattern cannot be meshed.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -14,13 +14,17 @@ pub enum TailorError {
         spacing: f64,
     },
     /// More particles than a garment may have.
-    #[error("panel {panel} would take the pattern past the {MAX_PARTICLES} particles of MAX_PARTICLES; mesh it at a larger spacing")]
+    #[error(
+        "panel {panel} takes the pattern past {MAX_PARTICLES} particles (MAX_PARTICLES) or {MAX_OUTLINE_POINTS} on its outlines (MAX_OUTLINE_POINTS); mesh it at a larger spacing"
+    )]
     TooMany {
         /// The panel at which they were too many.
         panel: String,
     },
     /// A part of a panel that is narrower than the mesh can show.
-    #[error("panel {panel} has a part too narrow for a spacing of {spacing_mm:.1} mm, near ({x:.3}, {y:.3}) m of its drawing; mesh it at a smaller spacing")]
+    #[error(
+        "panel {panel} has a part too narrow for a spacing of {spacing_mm:.1} mm, near ({x:.3}, {y:.3}) m of its drawing; mesh it at a smaller spacing"
+    )]
     Narrow {
         /// The panel.
         panel: String,
@@ -32,7 +36,9 @@ pub enum TailorError {
         y: f64,
     },
     /// A seam that joins what must stay apart.
-    #[error("the seams of panel {panel} fold one of its faces flat or join three faces at an edge, near ({x:.3}, {y:.3}) m of its drawing; mesh it at a smaller spacing or round the corner")]
+    #[error(
+        "the seams of panel {panel} fold one of its faces flat or join three faces at an edge, near ({x:.3}, {y:.3}) m of its drawing; mesh it at a smaller spacing or round the corner"
+    )]
     Folded {
         /// The panel.
         panel: String,

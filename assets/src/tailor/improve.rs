@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use glam::DVec2;
 
 use super::angles::{angles, interior};
-use super::limits::AIM_DEG;
+use super::limits::{AIM_DEG, MAX_IMPROVEMENT};
 use super::ring::{Filled, Points};
 
 /// Most triangles that are looked at in a panel: a usual one has fewer than ten.
@@ -51,12 +51,16 @@ pub fn improve(points: &mut Points<'_>, filled: Filled, pitch: f64) -> Filled {
     let cost = cost(points, &filled, &most);
     let mut best = Judged { filled, cost };
     let mut given_up: BTreeSet<[u32; 3]> = BTreeSet::new();
+    let each = points.lattice.places() + points.boundary.points.len() + 1;
+    let mut tries = MAX_IMPROVEMENT / each;
     for _ in 0..MAX_ROUNDS {
         let Some(sharpest) = sharpest(&best.filled, &most, &given_up) else { break };
-        let near = additions(&best.filled, sharpest);
-        let simple = near.into_iter().chain(removals(points, sharpest));
-        let found = choose(points, &best, &most, simple)
-            .or_else(|| choose(points, &best, &most, moves(points, &best.filled, sharpest, pitch).into_iter()));
+        let mut simple = additions(&best.filled, sharpest);
+        simple.extend(removals(points, sharpest));
+        let found = choose(points, &best, &most, &simple, &mut tries).or_else(|| {
+            let moves = moves(points, &best.filled, sharpest, pitch);
+            choose(points, &best, &most, &moves, &mut tries)
+        });
         match found {
             Some((changed, judged)) => (*points, best) = (changed, judged),
             None => {
@@ -67,14 +71,17 @@ pub fn improve(points: &mut Points<'_>, filled: Filled, pitch: f64) -> Filled {
     best.filled
 }
 
-/// The least costly of some changes, if it is better than what there is.
+/// The least costly of some changes, if it is better than what there is; `tries` counts how many may still be tried.
 fn choose<'b>(
     points: &Points<'b>,
     best: &Judged,
     most: &[f64],
-    changes: impl Iterator<Item = Change>,
+    changes: &[Change],
+    tries: &mut usize,
 ) -> Option<(Points<'b>, Judged)> {
-    let tried = changes.filter_map(|change| {
+    let changes = &changes[..changes.len().min(*tries)];
+    *tries -= changes.len();
+    let tried = changes.iter().filter_map(|change| {
         let changed = change.applied(points)?;
         let filled = changed.fill()?;
         let cost = cost(&changed, &filled, most);
@@ -152,7 +159,10 @@ fn additions(filled: &Filled, triangle: [u32; 3]) -> Vec<Change> {
 fn circumcentre([a, b, c]: [DVec2; 3]) -> Option<DVec2> {
     let (p, q) = (b - a, c - a);
     let twice = 2.0 * p.perp_dot(q);
-    let centre = DVec2::new(q.y * p.length_squared() - p.y * q.length_squared(), p.x * q.length_squared() - q.x * p.length_squared());
+    let centre = DVec2::new(
+        q.y * p.length_squared() - p.y * q.length_squared(),
+        p.x * q.length_squared() - q.x * p.length_squared(),
+    );
     (twice.abs() > 1e-12).then(|| a + centre / twice)
 }
 

@@ -5,7 +5,7 @@
 
 use glam::DVec2;
 
-use super::limits::INSET;
+use super::limits::{INSET, MAX_PLACES};
 use super::sampling::Boundary;
 use crate::pattern::Panel;
 
@@ -37,15 +37,19 @@ pub struct Lattice {
 }
 
 impl Lattice {
-    /// Lays the lattice into an outline at a spacing (m).
-    pub fn new(panel: &Panel, boundary: &Boundary, spacing: f64) -> Self {
+    /// Lays the lattice into an outline at a spacing (m); `None` where the box around the panel has too many places.
+    pub fn new(panel: &Panel, boundary: &Boundary, spacing: f64) -> Option<Self> {
         let warp = panel.grain;
         let axes = [DVec2::new(warp.y, -warp.x), warp];
         let lines = axes.map(|axis| lines(panel, boundary, axis, spacing));
         let along = |k: usize| boundary.points.iter().map(move |p| p.dot(axes[k]));
         let range = [0, 1].map(|k| (along(k).fold(f64::MAX, f64::min), along(k).fold(f64::MIN, f64::max)));
         let least = [0, 1].map(|k| ((range[k].0 - lines[k].first) / lines[k].pitch).floor());
-        let counts = [0, 1].map(|k| ((range[k].1 - lines[k].first) / lines[k].pitch - least[k]).ceil().max(0.0) as usize + 1);
+        let counts =
+            [0, 1].map(|k| ((range[k].1 - lines[k].first) / lines[k].pitch - least[k]).ceil().max(0.0) as usize + 1);
+        if counts[0].saturating_mul(counts[1]) > MAX_PLACES {
+            return None;
+        }
         let at = |k: usize, i: usize| lines[k].first + (least[k] + i as f64) * lines[k].pitch;
         let distance = INSET * lines[0].pitch.min(lines[1].pitch);
         let ring: Vec<DVec2> = boundary.points.iter().map(|p| DVec2::new(p.dot(axes[0]), p.dot(axes[1]))).collect();
@@ -59,7 +63,7 @@ impl Lattice {
                 }
             }
         }
-        Self { axes, counts, points }
+        Some(Self { axes, counts, points })
     }
 
     /// Unit vectors along weft and warp.
@@ -137,9 +141,8 @@ impl Row {
 
     /// Whether a point of the row lies inside, at least so far from the outline (m).
     fn holds(&self, p: DVec2, distance: f64) -> bool {
-        let crosses = |[a, b]: &[DVec2; 2]| {
-            (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y)
-        };
+        let crosses =
+            |[a, b]: &[DVec2; 2]| (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y);
         let inside = self.near.iter().filter(|s| crosses(s)).count() % 2 == 1;
         let far = |[a, b]: &[DVec2; 2]| {
             let t = ((p - *a).dot(*b - *a) / (*b - *a).length_squared()).clamp(0.0, 1.0);

@@ -20,3 +20,15 @@ pub const AIM_DEG: f64 = 22.0;
 
 /// The largest turn of a curve between two of its points (rad): 35 degrees.
 pub const CHORD_TURN: f64 = 0.61;
+
+/// Places of a panel's lattice, those outside of the panel too: a narrow strip across its box has many of them. Twice what a
+/// whole pattern may have of particles, 12 MiB.
+pub const MAX_PLACES: usize = 2 * MAX_PARTICLES;
+
+/// Points on the outlines of all panels. Whether an outline crosses itself is looked for between all pairs in the worst case;
+/// ten times what the largest of our examples has at 5 mm.
+pub const MAX_OUTLINE_POINTS: usize = 32_768;
+
+/// Points that may be looked at while a panel is improved, all attempts together: some tenths of a second. A panel of five
+/// thousand particles may try four thousand changes, of which a usual one needs a hundred.
+pub const MAX_IMPROVEMENT: usize = 20_000_000;

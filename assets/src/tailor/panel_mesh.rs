@@ -6,7 +6,6 @@ use super::angles::{angles, interior};
 use super::error::TailorError;
 use super::improve::improve;
 use super::lattice::Lattice;
-use super::limits::MAX_PARTICLES;
 use super::quads;
 use super::ring::{Filled, Points};
 use super::sampling::Boundary;
@@ -48,18 +47,27 @@ pub struct PanelQuality {
 
 /// Meshes a panel whose outline was sampled; `extra` are further points to go through (m), `room` is how many particles the
 /// pattern may still have.
-pub fn mesh(panel: &Panel, boundary: &Boundary, spacing: f64, extra: &[DVec2], room: usize) -> Result<PanelMesh, TailorError> {
+pub fn mesh(
+    panel: &Panel,
+    boundary: &Boundary,
+    spacing: f64,
+    extra: &[DVec2],
+    room: usize,
+) -> Result<PanelMesh, TailorError> {
     let outline = &boundary.points;
-    let narrow = |at: DVec2| TailorError::Narrow { panel: panel.name.clone(), spacing_mm: spacing * 1e3, x: at.x, y: at.y };
+    let narrow =
+        |at: DVec2| TailorError::Narrow { panel: panel.name.clone(), spacing_mm: spacing * 1e3, x: at.x, y: at.y };
+    let too_many = || TailorError::TooMany { panel: panel.name.clone() };
     let area = 0.5 * twice_area(outline);
-    if area.abs() / (spacing * spacing) + outline.len() as f64 > room.min(MAX_PARTICLES) as f64 {
-        return Err(TailorError::TooMany { panel: panel.name.clone() });
+    if area.abs() / (spacing * spacing) + outline.len() as f64 > room as f64 {
+        return Err(too_many());
     }
     if let Some((i, _)) = crossing(outline) {
         return Err(narrow(outline[i]));
     }
-    let lattice = Lattice::new(panel, boundary, spacing);
-    let mut points = Points { boundary, counter_clockwise: area > 0.0, lattice, free: extra.to_vec(), held: extra.len() };
+    let lattice = Lattice::new(panel, boundary, spacing).ok_or_else(too_many)?;
+    let mut points =
+        Points { boundary, counter_clockwise: area > 0.0, lattice, free: extra.to_vec(), held: extra.len() };
     let filled = points.fill().ok_or_else(|| narrow(outline[0]))?;
     let filled = improve(&mut points, filled, spacing);
     Ok(assemble(&points, filled))
@@ -93,7 +101,8 @@ fn assemble(points: &Points<'_>, filled: Filled) -> PanelMesh {
     let places = outline..kept.len() - free;
     regular.iter_mut().enumerate().filter(|(v, _)| !places.contains(v)).for_each(|(_, regular)| *regular = false);
     let length = |a: u32, b: u32| kept[a as usize].distance(kept[b as usize]);
-    let split = faces.iter().map(|f| f[3] != NO_VERTEX && length(f[1], f[3]) < length(f[0], f[2]) * (1.0 - 1e-6)).collect();
+    let split =
+        faces.iter().map(|f| f[3] != NO_VERTEX && length(f[1], f[3]) < length(f[0], f[2]) * (1.0 - 1e-6)).collect();
     PanelMesh { points: kept, boundary: points.boundary.clone(), faces, split, regular, axes }
 }
 

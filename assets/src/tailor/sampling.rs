@@ -105,7 +105,8 @@ pub fn sample<'p>(pattern: &'p Pattern, spacing: f64) -> Vec<Boundary> {
 fn place_on_seam(all: &mut [Measured<'_>], seam: &Seam, spacing: f64) {
     let sides = seam.sides;
     let corners = sides.map(|side| all[side.panel].corners(&side));
-    let length = sides.map(|side| side.run(all[side.panel].lengths.len()).map(|e| all[side.panel].lengths[e].whole()).sum());
+    let length =
+        sides.map(|side| side.run(all[side.panel].lengths.len()).map(|e| all[side.panel].lengths[e].whole()).sum());
     let stops = stops(&corners[0], &corners[1], f64::max(length[0], length[1]), spacing);
     for pair in stops.windows(2) {
         let chords = [0, 1].map(|k| {

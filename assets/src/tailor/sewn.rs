@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::{DVec2, Vec2};
 
 use super::error::TailorError;
-use super::limits::{MAX_PARTICLES, SPACING_M};
+use super::limits::{MAX_OUTLINE_POINTS, MAX_PARTICLES, SPACING_M};
 use super::panel_mesh::{PanelMesh, mesh};
 use super::sampling::sample;
 use crate::garment::check::corners;
@@ -46,6 +46,13 @@ pub struct SewnMesh {
 pub fn sew(pattern: &Pattern, spacing: f64) -> Result<SewnMesh, TailorError> {
     if !SPACING_M.contains(&spacing) {
         return Err(TailorError::Spacing { spacing });
+    }
+    let mut outlines = 0.0;
+    for panel in pattern.panels() {
+        outlines += panel.lengths().iter().map(|l| 1.0 + l / spacing).sum::<f64>();
+        if outlines > MAX_OUTLINE_POINTS as f64 {
+            return Err(TailorError::TooMany { panel: panel.name.clone() });
+        }
     }
     let boundaries = sample(pattern, spacing);
     let mut extra: Vec<Vec<DVec2>> = vec![Vec::new(); boundaries.len()];

@@ -40,7 +40,8 @@ pub fn pieces(text: &str) -> Result<Vec<Piece>, Fault> {
         let (place, what, limit) = ("the file".to_owned(), "pieces", "MAX_PANELS");
         return Err(PatternFlaw::TooMany { place, what, count: cloth.len(), most: MAX_PANELS, limit }.into());
     }
-    let points: usize = cloth.iter().flat_map(|b| &b.lines).map(|l| l.points.len()).sum();
+    let points: usize =
+        cloth.iter().map(|b| b.points.len() + b.lines.iter().map(|l| l.points.len()).sum::<usize>()).sum();
     if points > MAX_POINTS {
         let (place, what, limit) = ("the file".to_owned(), "points", "MAX_POINTS");
         return Err(PatternFlaw::TooMany { place, what, count: points, most: MAX_POINTS, limit }.into());
@@ -167,14 +168,17 @@ mod tests {
     /// A half front in millimetres: fold at x = 0, a neckline of three sides, grain along the fold.
     fn file() -> String {
         let head = entity(&[(0, "SECTION"), (2, "BLOCKS"), (0, "BLOCK"), (8, "1"), (2, "P1")]);
-        let text = entity(&[(0, "TEXT"), (8, "1"), (1, "Piece Name: FRONT"), (0, "TEXT"), (8, "1"), (1, "Units: METRIC")]);
-        let outline = [["0", "0"], ["250", "0"], ["250", "400"], ["120", "420"], ["110", "380"], ["80", "350"], ["0", "340"]];
+        let text =
+            entity(&[(0, "TEXT"), (8, "1"), (1, "Piece Name: FRONT"), (0, "TEXT"), (8, "1"), (1, "Units: METRIC")]);
+        let outline =
+            [["0", "0"], ["250", "0"], ["250", "400"], ["120", "420"], ["110", "380"], ["80", "350"], ["0", "340"]];
         let turns = [["0", "0"], ["250", "0"], ["250", "400"], ["120", "420"], ["0", "340"]];
         let turns: String = turns.iter().map(|[x, y]| entity(&[(0, "POINT"), (8, "2"), (10, x), (20, y)])).collect();
         let notch = entity(&[(0, "POINT"), (8, "4"), (10, "250.5"), (20, "200")]);
         let line = |layer, x, y| entity(&[(0, "LINE"), (8, layer), (10, x), (20, "10"), (11, x), (21, y)]);
         let foot = entity(&[(0, "ENDBLK"), (0, "ENDSEC"), (0, "EOF")]);
-        [head, text, polyline("1", &outline), turns, notch, line("6", "0", "300"), line("7", "50", "300"), foot].concat()
+        [head, text, polyline("1", &outline), turns, notch, line("6", "0", "300"), line("7", "50", "300"), foot]
+            .concat()
     }
 
     fn message(text: &str) -> String {

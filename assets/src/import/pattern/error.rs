@@ -4,6 +4,7 @@ use thiserror::Error;
 
 use crate::file::FileError;
 use crate::pattern::PatternFlaw;
+use crate::toml_keys::nearest;
 
 /// Why a pattern cannot be read.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -58,4 +59,13 @@ impl From<PatternFlaw> for Fault {
     fn from(flaw: PatternFlaw) -> Self {
         Self::Flaw(flaw)
     }
+}
+
+/// Names longer than this (bytes) are compared with no other: that takes time by the product of both lengths.
+const COMPARED_NAME: usize = 64;
+
+/// The cure of a name that is not known: the one that may have been meant, or what else to do.
+pub(super) fn meant<'n>(name: &str, known: impl Iterator<Item = &'n str>, otherwise: &str) -> String {
+    let short = known.filter(|k| k.len() <= COMPARED_NAME && name.len() <= COMPARED_NAME);
+    nearest(name, short).map_or_else(|| otherwise.to_owned(), |meant| format!("did you mean {meant}?"))
 }

@@ -20,13 +20,19 @@ const OUTLINE: &str = "seam";
 
 /// Reads the pieces of a file that holds `parts`; parts without an outline are notes.
 pub fn pieces(file: &Value) -> Result<Vec<Piece>, Fault> {
-    let parts = file["parts"].as_object().ok_or("parts is no table of drafted parts; export the draft again".to_owned())?;
+    let parts =
+        file["parts"].as_object().ok_or("parts is no table of drafted parts; export the draft again".to_owned())?;
     let drawn: Vec<_> = parts.iter().filter(|(_, part)| part["paths"][OUTLINE].is_object()).collect();
     if drawn.is_empty() {
-        return Err(Fault::Content(format!("no part has a path named {OUTLINE}; draft the pattern before exporting it")));
+        return Err(Fault::Content(format!(
+            "no part has a path named {OUTLINE}; draft the pattern before exporting it"
+        )));
     }
     if drawn.len() > MAX_PANELS {
-        return Err(Fault::Content(format!("it has {} parts, more than the {MAX_PANELS} of MAX_PANELS; split it", drawn.len())));
+        return Err(Fault::Content(format!(
+            "it has {} parts, more than the {MAX_PANELS} of MAX_PANELS; split it",
+            drawn.len()
+        )));
     }
     drawn.into_iter().map(|(name, part)| piece(name, &part["paths"][OUTLINE])).collect()
 }

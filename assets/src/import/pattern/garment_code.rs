@@ -6,11 +6,10 @@
 use glam::{DQuat, DVec2, DVec3, EulerRot};
 use serde_json::{Map, Value};
 
-use super::error::Fault;
+use super::error::{Fault, meant};
 use super::json::{index, list, pair, text, triple};
 use crate::pattern::limits::{MAX_PANEL_EDGES, MAX_PANELS, MAX_SEAMS};
 use crate::pattern::{Curve, Panel, PanelEdge, Pattern, PatternFlaw, Placement, Seam, SeamSide};
-use crate::toml_keys::nearest;
 
 /// What a stitch says whose outside meets an inside: it is sewn from both beginnings.
 const RIGHT_TO_WRONG: &str = "right_wrong";
@@ -33,7 +32,8 @@ pub fn parse(file: &Value) -> Result<Pattern, Fault> {
     })?;
     let dialect = Dialect { unit: 1.0 / units, absolute: properties["curvature_coords"] == "absolute" };
     let pattern = &file["pattern"];
-    let panels = pattern["panels"].as_object().ok_or("pattern.panels is no table of panels; export it again".to_owned())?;
+    let panels =
+        pattern["panels"].as_object().ok_or("pattern.panels is no table of panels; export it again".to_owned())?;
     if panels.len() > MAX_PANELS {
         return Err(too_many("the pattern", "panels", panels.len(), MAX_PANELS, "MAX_PANELS"));
     }
@@ -106,7 +106,9 @@ fn curve(panel: &str, number: usize, edge: &Value, vertices: &[DVec2], dialect: 
         (Some("circle"), [radius, large, right]) => {
             let number_of = |v: &Value| v.as_f64().or_else(|| v.as_bool().map(f64::from));
             let numbers = [radius, large, right].map(number_of);
-            let [Some(r), Some(large), Some(right)] = numbers else { return Err(wrong("a circle's params are no numbers")) };
+            let [Some(r), Some(large), Some(right)] = numbers else {
+                return Err(wrong("a circle's params are no numbers"));
+            };
             let radius = r * dialect.unit;
             let arc = Curve::arc([start, end], radius, large != 0.0, right != 0.0);
             arc.ok_or_else(|| PatternFlaw::Radius { panel: panel.into(), edge: number, radius }.into())
@@ -118,7 +120,9 @@ fn curve(panel: &str, number: usize, edge: &Value, vertices: &[DVec2], dialect: 
 fn placement(panel: &str, value: &Value, dialect: &Dialect) -> Result<Option<Placement>, Fault> {
     let vector = |key: &str| match &value[key] {
         Value::Null => Ok(None),
-        v => triple(v).map(Some).ok_or_else(|| format!("panel {panel}: its {key} is not three numbers; export it again")),
+        v => {
+            triple(v).map(Some).ok_or_else(|| format!("panel {panel}: its {key} is not three numbers; export it again"))
+        }
     };
     let (Some(translation), rotation) = (vector("translation")?, vector("rotation")?.unwrap_or(DVec3::ZERO)) else {
         return Ok(None);
@@ -155,10 +159,7 @@ fn side(seam: &str, value: &Value, panels: &Map<String, Value>) -> Result<SeamSi
         return Err(Fault::Content(format!("{seam} has a side without panel and edge; export it again")));
     };
     let Some(panel) = panels.keys().position(|k| k == name) else {
-        let cure = match nearest(name, panels.keys().map(String::as_str)) {
-            Some(meant) => format!("did you mean {meant}?"),
-            None => "export the pattern with all of its panels".to_owned(),
-        };
+        let cure = meant(name, panels.keys().map(String::as_str), "export the pattern with all of its panels");
         return Err(PatternFlaw::NoPanel { seam: seam.into(), name: name.into(), cure }.into());
     };
     Ok(SeamSide { panel, first: edge, count: 1, reversed: false })
@@ -224,7 +225,7 @@ mod tests {
             ("/pattern/panels/front/edges/2/curvature", json!({"type": "spiral"}), "quadratic, cubic or circle"),
             ("/pattern/panels/front/edges/2/curvature/params/0", json!(9), "too small a radius"),
             ("/pattern/panels/front/edges/0/curvature", json!([0.5, 2.0]), "crosses or touches"),
-            ("/pattern/panels/front/vertices/2", json!([1e9, 1]), "reaches beyond"),
+            ("/pattern/panels/front/vertices/1", json!([1e9, 1]), "reaches beyond"),
             ("/pattern/panels/back/rotation", json!([1, 2]), "rotation is not three numbers"),
             ("/pattern/stitches/0", json!([]), "stitch 0 is no pair"),
             ("/pattern/stitches/0/0/panel", json!("frnt"), "did you mean front?"),

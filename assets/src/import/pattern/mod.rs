@@ -54,7 +54,9 @@ pub fn parse(name: &str, text: &str, seams: Option<(&str, &str)>) -> Result<Patt
             return garment_code::parse(&file).map_err(here);
         }
         if !file["parts"].is_object() {
-            return Err(here(Fault::Content("it holds neither a pattern nor parts; give GarmentCode's specification or FreeSewing's draft".into())));
+            return Err(here(Fault::Content(
+                "it holds neither a pattern nor parts; give GarmentCode's specification or FreeSewing's draft".into(),
+            )));
         }
         freesewing::pieces(&file).map_err(here)?
     } else {
@@ -67,8 +69,6 @@ pub fn parse(name: &str, text: &str, seams: Option<(&str, &str)>) -> Result<Patt
 fn sew(pieces: &[Piece], name: &str, seams: Option<(&str, &str)>) -> Result<Pattern, PatternError> {
     match seams {
         None => seam_file::unsewn(pieces).map_err(|fault| fault.of(name)),
-        Some((file, text)) => {
-            SeamFile::parse(text).and_then(|seams| seams.sew(pieces)).map_err(|fault| fault.of(file))
-        }
+        Some((file, text)) => SeamFile::parse(text).and_then(|seams| seams.sew(pieces)).map_err(|fault| fault.of(file)),
     }
 }

@@ -78,7 +78,12 @@ const SAME_POSITION: f64 = 1e-6;
 impl UnfoldedPiece {
     /// Unfolds a piece along one of its edges, or takes it as it is; `mirrored` is its mirror image as a whole.
     pub fn new(piece: &Piece, fold: Option<usize>, mirrored: bool) -> Result<Self, String> {
-        let whole = |(number, curve): &(usize, Curve)| UnfoldedEdge { curve: curve.clone(), number: *number, span: [0.0, 1.0], half: Half::Drawn };
+        let whole = |(number, curve): &(usize, Curve)| UnfoldedEdge {
+            curve: curve.clone(),
+            number: *number,
+            span: [0.0, 1.0],
+            half: Half::Drawn,
+        };
         let mut edges: Vec<UnfoldedEdge> = piece.edges.iter().map(whole).collect();
         if let Some(fold) = fold {
             let Some(at) = edges.iter().position(|e| e.number == fold) else {

@@ -8,11 +8,11 @@ use glam::DVec2;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
-use super::error::Fault;
+use super::error::{Fault, meant};
 use super::piece::{EdgeRange, Half, Piece, UnfoldedPiece};
 use crate::pattern::limits::{MAX_PANELS, MAX_SEAMS};
 use crate::pattern::{Panel, Pattern, PatternFlaw, Seam, SeamSide};
-use crate::toml_keys::{nearest, place};
+use crate::toml_keys::place;
 
 /// A seam file as it stands.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -71,7 +71,8 @@ impl SeamFile {
 
     /// The panels and seams of a draft.
     pub fn sew(&self, pieces: &[Piece]) -> Result<Pattern, Fault> {
-        let too_many = |what, count, most, limit| PatternFlaw::TooMany { place: "the seam file".into(), what, count, most, limit };
+        let too_many =
+            |what, count, most, limit| PatternFlaw::TooMany { place: "the seam file".into(), what, count, most, limit };
         if self.panel.len() > MAX_PANELS {
             return Err(too_many("panels", self.panel.len(), MAX_PANELS, "MAX_PANELS").into());
         }
@@ -85,9 +86,10 @@ impl SeamFile {
             unfolded[*panel].1.divide(range);
         }
         let side = |(panel, range): (usize, EdgeRange), seam: &str| {
-            let (first, count, reversed) = unfolded[panel].1.find(&range).map_err(|reason| {
-                format!("seam {seam}: of panel {}, {reason}", self.panel[panel].name)
-            })?;
+            let (first, count, reversed) = unfolded[panel]
+                .1
+                .find(&range)
+                .map_err(|reason| format!("seam {seam}: of panel {}, {reason}", self.panel[panel].name))?;
             Ok::<SeamSide, Fault>(SeamSide { panel, first, count, reversed })
         };
         let seams = self.seam.iter().zip(runs.chunks_exact(2)).map(|(seam, runs)| {
@@ -116,10 +118,7 @@ impl SeamFile {
         }
         let names = self.panel.iter().map(|p| p.name.as_str());
         let Some(panel) = names.clone().position(|name| name == run.panel) else {
-            let cure = match nearest(&run.panel, names) {
-                Some(meant) => format!("did you mean {meant}?"),
-                None => "add a [[panel]] of that name".to_owned(),
-            };
+            let cure = meant(&run.panel, names, "add a [[panel]] of that name");
             return Err(PatternFlaw::NoPanel { seam: format!("seam {seam}"), name: run.panel.clone(), cure }.into());
         };
         Ok((panel, EdgeRange { from, to, half: run.half }))
@@ -162,7 +161,9 @@ fn from_toml<T: DeserializeOwned>(text: &str) -> Result<T, Fault> {
     toml::from_str(text).map_err(|e| {
         let (line, column) = place(text, e.span().map_or(0, |s| s.start));
         let reason = e.message().split_whitespace().collect::<Vec<_>>().join(" ");
-        Fault::Content(format!("line {line}, column {column}: {reason}; see docs/garments.md for what a seam file holds"))
+        Fault::Content(format!(
+            "line {line}, column {column}: {reason}; see docs/garments.md for what a seam file holds"
+        ))
     })
 }
 
@@ -200,12 +201,24 @@ mod tests {
         let cases = [
             ("fold = 0 }, { name = \"back\"", "fold = 9 }, { name = \"back\"", "panel front: its fold is edge 9"),
             ("piece = \"half\", fold = 0 }]", "piece = \"hlaf\" }]", "name one of half"),
-            ("sew = { panel = \"front\", edges = [2, 3] }", "sew = { panel = \"frnt\", edges = [2, 3] }", "did you mean front?"),
+            (
+                "sew = { panel = \"front\", edges = [2, 3] }",
+                "sew = { panel = \"frnt\", edges = [2, 3] }",
+                "did you mean front?",
+            ),
             ("edges = [2, 3], half = \"mirrored\" } },", "edges = [2, 2] } },", "no run of edges"),
-            ("sew = { panel = \"front\", edges = [2, 3] }", "sew = { panel = \"front\", edges = [8, 9] }", "its edges are 1 to 3"),
+            (
+                "sew = { panel = \"front\", edges = [2, 3] }",
+                "sew = { panel = \"front\", edges = [8, 9] }",
+                "its edges are 1 to 3",
+            ),
             ("edges = [2, 3], half = \"mirrored\" } },", "edges = [3, 2], half = \"mirrored\" } },", "swap the ends"),
             ("name = \"right\"", "nam = \"right\"", "line 4"),
-            ("edges = [2, 3] }, to = { panel = \"back\", edges = [2, 3], half", "edges = [nan, 3] }, to = { panel = \"back\", edges = [2, 3], half", "no run"),
+            (
+                "edges = [2, 3] }, to = { panel = \"back\", edges = [2, 3], half",
+                "edges = [nan, 3] }, to = { panel = \"back\", edges = [2, 3], half",
+                "no run",
+            ),
         ];
         for (from, to, wanted) in cases {
             let text = TUBE.replacen(from, to, 1);

@@ -116,9 +116,8 @@ fn next_pair<'t>(lines: &mut Lines<'t>, number: &mut usize) -> Result<Option<(u3
     *number += 1;
     let line = *number;
     let found = code.trim().parse::<u32>().ok().filter(|c| *c < 2_000);
-    let code = found.ok_or_else(|| {
-        format!("line {line}: \"{}\" is no DXF group code; export it as ASCII DXF", shown(code))
-    })?;
+    let code = found
+        .ok_or_else(|| format!("line {line}: \"{}\" is no DXF group code; export it as ASCII DXF", shown(code)))?;
     let value = lines.next().ok_or_else(|| format!("line {line}: its value is missing; the file is cut short"))?;
     *number += 1;
     Ok(Some((code, value.trim())))
