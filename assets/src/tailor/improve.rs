@@ -9,11 +9,14 @@ use std::collections::BTreeSet;
 use glam::DVec2;
 
 use super::angles::{angles, interior};
-use super::limits::{AIM_DEG, MAX_IMPROVEMENT};
+use super::limits::AIM_DEG;
 use super::ring::{Filled, Points};
 
 /// Most triangles that are looked at in a panel: a usual one has fewer than ten.
 const MAX_ROUNDS: usize = 120;
+
+/// Most of them that nothing helps before the rest is left as it is.
+const MAX_GIVEN_UP: usize = 16;
 
 /// Angles below this count as sharp when changes are compared (degrees): some more than is aimed at, so that a change does
 /// not spoil what is beside it.
@@ -45,15 +48,19 @@ struct Judged {
     cost: f64,
 }
 
-/// Improves the points of a panel and triangulates them; `pitch` is the spacing (m).
-pub fn improve(points: &mut Points<'_>, filled: Filled, pitch: f64) -> Filled {
+/// Improves the points of a panel and triangulates them; `pitch` is the spacing (m), `effort` how many points may be looked
+/// at in all attempts together.
+pub fn improve(points: &mut Points<'_>, filled: Filled, pitch: f64, effort: usize) -> Filled {
     let most = interior(&points.boundary.points, points.counter_clockwise);
     let cost = cost(points, &filled, &most);
     let mut best = Judged { filled, cost };
     let mut given_up: BTreeSet<[u32; 3]> = BTreeSet::new();
     let each = points.lattice.places() + points.boundary.points.len() + 1;
-    let mut tries = MAX_IMPROVEMENT / each;
+    let mut tries = effort / each;
     for _ in 0..MAX_ROUNDS {
+        if given_up.len() > MAX_GIVEN_UP || tries == 0 {
+            break;
+        }
         let Some(sharpest) = sharpest(&best.filled, &most, &given_up) else { break };
         let mut simple = additions(&best.filled, sharpest);
         simple.extend(removals(points, sharpest));

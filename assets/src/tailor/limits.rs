@@ -29,6 +29,6 @@ pub const MAX_PLACES: usize = 2 * MAX_PARTICLES;
 /// ten times what the largest of our examples has at 5 mm.
 pub const MAX_OUTLINE_POINTS: usize = 32_768;
 
-/// Points that may be looked at while a panel is improved, all attempts together: some tenths of a second. A panel of five
-/// thousand particles may try four thousand changes, of which a usual one needs a hundred.
-pub const MAX_IMPROVEMENT: usize = 20_000_000;
+/// Points that may be looked at while a pattern is improved, all attempts and panels together: some seconds at the worst.
+/// A pattern of six panels of a thousand points may try eight hundred changes in each, of which a usual one needs fifty.
+pub const MAX_IMPROVEMENT: usize = 5_000_000;

@@ -45,21 +45,29 @@ pub struct PanelQuality {
     pub area_error: f64,
 }
 
-/// Meshes a panel whose outline was sampled; `extra` are further points to go through (m), `room` is how many particles the
-/// pattern may still have.
+/// What meshing a panel may take.
+#[derive(Debug, Clone, Copy)]
+pub struct Allowance {
+    /// Particles that the pattern may still have.
+    pub particles: usize,
+    /// Points that may be looked at while the panel is improved.
+    pub effort: usize,
+}
+
+/// Meshes a panel whose outline was sampled; `extra` are further points to go through (m).
 pub fn mesh(
     panel: &Panel,
     boundary: &Boundary,
     spacing: f64,
     extra: &[DVec2],
-    room: usize,
+    allowed: Allowance,
 ) -> Result<PanelMesh, TailorError> {
     let outline = &boundary.points;
     let narrow =
         |at: DVec2| TailorError::Narrow { panel: panel.name.clone(), spacing_mm: spacing * 1e3, x: at.x, y: at.y };
     let too_many = || TailorError::TooMany { panel: panel.name.clone() };
     let area = 0.5 * twice_area(outline);
-    if area.abs() / (spacing * spacing) + outline.len() as f64 > room as f64 {
+    if area.abs() / (spacing * spacing) + outline.len() as f64 > allowed.particles as f64 {
         return Err(too_many());
     }
     if let Some((i, _)) = crossing(outline) {
@@ -69,8 +77,8 @@ pub fn mesh(
     let mut points =
         Points { boundary, counter_clockwise: area > 0.0, lattice, free: extra.to_vec(), held: extra.len() };
     let filled = points.fill().ok_or_else(|| narrow(outline[0]))?;
-    let filled = improve(&mut points, filled, spacing);
-    Ok(assemble(&points, filled))
+    let filled = improve(&mut points, filled, spacing, allowed.effort);
+    Ok(assemble(&points, &filled))
 }
 
 fn twice_area(ring: &[DVec2]) -> f64 {
@@ -78,7 +86,7 @@ fn twice_area(ring: &[DVec2]) -> f64 {
 }
 
 /// Cells, quads beside the seams and triangles as one mesh, without the places that hold no point.
-fn assemble(points: &Points<'_>, filled: Filled) -> PanelMesh {
+fn assemble(points: &Points<'_>, filled: &Filled) -> PanelMesh {
     let axes = points.lattice.axes();
     let (quads, triangles) = quads::pair(&filled.at, &filled.triangles, axes);
     let cells = points.lattice.cells().map(|cell| cell.map(|place| points.of_lattice(place)));

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use glam::{DVec2, Vec2};
 
 use super::error::TailorError;
-use super::limits::{MAX_OUTLINE_POINTS, MAX_PARTICLES, SPACING_M};
-use super::panel_mesh::{PanelMesh, mesh};
+use super::limits::{MAX_IMPROVEMENT, MAX_OUTLINE_POINTS, MAX_PARTICLES, SPACING_M};
+use super::panel_mesh::{Allowance, PanelMesh, mesh};
 use super::sampling::sample;
 use crate::garment::check::corners;
 use crate::garment::shape::{Face, NO_VERTEX};
@@ -57,10 +57,10 @@ pub fn sew(pattern: &Pattern, spacing: f64) -> Result<SewnMesh, TailorError> {
     let boundaries = sample(pattern, spacing);
     let mut extra: Vec<Vec<DVec2>> = vec![Vec::new(); boundaries.len()];
     let mut panels: Vec<PanelMesh> = Vec::new();
-    let mut room = MAX_PARTICLES;
+    let mut allowed = Allowance { particles: MAX_PARTICLES, effort: MAX_IMPROVEMENT / boundaries.len().max(1) };
     for (panel, boundary) in pattern.panels().iter().zip(&boundaries) {
-        let meshed = mesh(panel, boundary, spacing, &[], room)?;
-        room = room.saturating_sub(meshed.points.len());
+        let meshed = mesh(panel, boundary, spacing, &[], allowed)?;
+        allowed.particles = allowed.particles.saturating_sub(meshed.points.len());
         panels.push(meshed);
     }
     for _ in 0..MAX_REPAIRS {
@@ -73,7 +73,8 @@ pub fn sew(pattern: &Pattern, spacing: f64) -> Result<SewnMesh, TailorError> {
             extra[panel].push(at);
         }
         for (i, panel) in pattern.panels().iter().enumerate().filter(|(i, _)| !extra[*i].is_empty()) {
-            panels[i] = mesh(panel, &boundaries[i], spacing, &extra[i], MAX_PARTICLES)?;
+            panels[i] =
+                mesh(panel, &boundaries[i], spacing, &extra[i], Allowance { particles: MAX_PARTICLES, ..allowed })?;
         }
     }
     let sewn = join(pattern, &panels);
