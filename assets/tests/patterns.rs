@@ -87,7 +87,8 @@ fn points_of_the_outline_follow_it_at_the_spacing() {
     each(|name, pattern, spacing, sewn| {
         for (mesh, panel) in sewn.panels.iter().zip(pattern.panels()) {
             for (e, edge) in panel.edges.iter().enumerate() {
-                assert_eq!(mesh.points[mesh.boundary.starts[e]], edge.curve.start(), "{name}, {}", panel.name);
+                let start = mesh.points[mesh.boundary.starts[e]];
+                assert!(start.distance(edge.curve.start()) < 1e-12, "{name}, {}", panel.name);
             }
             let outline = &mesh.boundary.points;
             let chords = outline.iter().zip(outline.iter().cycle().skip(1)).map(|(a, b)| a.distance(*b));

@@ -47,7 +47,7 @@ pub struct PanelQuality {
 
 /// What meshing a panel may take.
 #[derive(Debug, Clone, Copy)]
-pub struct Allowance {
+pub struct MeshBudget {
     /// Particles that the pattern may still have.
     pub particles: usize,
     /// Points that may be looked at while the panel is improved.
@@ -60,7 +60,7 @@ pub fn mesh(
     boundary: &Boundary,
     spacing: f64,
     extra: &[DVec2],
-    allowed: Allowance,
+    allowed: MeshBudget,
 ) -> Result<PanelMesh, TailorError> {
     let outline = &boundary.points;
     let narrow =
@@ -69,6 +69,9 @@ pub fn mesh(
     let area = 0.5 * twice_area(outline);
     if area.abs() / (spacing * spacing) + outline.len() as f64 > allowed.particles as f64 {
         return Err(too_many());
+    }
+    if outline.len() < 3 {
+        return Err(narrow(panel.edges[0].curve.start()));
     }
     if let Some((i, _)) = crossing(outline) {
         return Err(narrow(outline[i]));

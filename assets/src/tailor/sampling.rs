@@ -9,12 +9,17 @@ use crate::pattern::{Curve, Panel, Pattern, Seam, SeamSide};
 /// Corners of both sides of a seam that are nearer to each other than this part of a spacing are one point.
 const SAME_CORNER: f64 = 0.5;
 
+/// Edges shorter than this part of a spacing are left out, their ends made one point: traces of drafting, of a millimetre or
+/// two, which would ask for particles as small as they are.
+const LEAST_EDGE: f64 = 0.25;
+
 /// Points along a panel's outline.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Boundary {
     /// The points in the order of the outline (m).
     pub points: Vec<DVec2>,
-    /// Index of the point at which each edge starts `[edges + 1]`; the last is the number of points.
+    /// Index of the point at which each edge starts `[edges + 1]`; the last is the number of points. An edge that was left
+    /// out starts where the next one does.
     pub starts: Vec<usize>,
 }
 
@@ -28,7 +33,7 @@ impl Boundary {
             self.starts[e]..self.starts[e + 1]
         });
         let last = self.starts[(side.first + side.count) % edges];
-        let mut found: Vec<usize> = outline.chain([last % count]).collect();
+        let mut found: Vec<usize> = outline.chain([last % count.max(1)]).collect();
         if side.reversed {
             found.reverse();
         }
@@ -43,6 +48,8 @@ struct Measured<'p> {
     turns: Vec<f64>,
     /// Fractions of each edge's length at which it has points, its start and end left out `[edges]`.
     inner: Vec<Vec<f64>>,
+    /// Whether an edge is left out, because it is too short `[edges]`.
+    left_out: Vec<bool>,
 }
 
 impl Measured<'_> {
@@ -82,6 +89,7 @@ pub fn sample<'p>(pattern: &'p Pattern, spacing: f64) -> Vec<Boundary> {
             lengths: edges.iter().map(|c| ArcLength::of(c)).collect(),
             turns: edges.iter().map(|c| c.turn()).collect(),
             inner: vec![Vec::new(); edges.len()],
+            left_out: vec![false; edges.len()],
         }
     };
     let mut all: Vec<Measured<'_>> = pattern.panels().iter().map(measure).collect();
@@ -95,6 +103,7 @@ pub fn sample<'p>(pattern: &'p Pattern, spacing: f64) -> Vec<Boundary> {
     for (measured, sewn) in all.iter_mut().zip(&sewn) {
         for edge in (0..sewn.len()).filter(|&e| !sewn[e]) {
             let n = measured.chords(edge, 1.0, spacing);
+            measured.left_out[edge] = measured.lengths[edge].whole() < LEAST_EDGE * spacing;
             measured.inner[edge] = (1..n).map(|k| k as f64 / n as f64).collect();
         }
     }
@@ -109,23 +118,50 @@ fn place_on_seam(all: &mut [Measured<'_>], seam: &Seam, spacing: f64) {
         sides.map(|side| side.run(all[side.panel].lengths.len()).map(|e| all[side.panel].lengths[e].whole()).sum());
     let stops = stops(&corners[0], &corners[1], f64::max(length[0], length[1]), spacing);
     for pair in stops.windows(2) {
+        let spans = [0, 1].map(|k| Span {
+            ends: [pair[0][k], pair[1][k]],
+            corners: [pair[0][k], pair[1][k]].map(|at| corners[k].contains(&at)),
+            length: (pair[1][k] - pair[0][k]) * length[k],
+        });
+        let edges = [0, 1].map(|k| {
+            let middle = 0.5 * (spans[k].ends[0] + spans[k].ends[1]);
+            all[sides[k].panel].locate(&sides[k], &corners[k], middle).0
+        });
+        if spans.iter().all(|span| span.may_be_left_out(spacing)) {
+            let whole = (0..2).filter(|&k| spans[k].corners == [true, true]);
+            whole.for_each(|k| all[sides[k].panel].left_out[edges[k]] = true);
+            continue;
+        }
         let chords = [0, 1].map(|k| {
-            let (from, to) = (pair[0][k], pair[1][k]);
             let measured = &all[sides[k].panel];
-            let (edge, _) = measured.locate(&sides[k], &corners[k], 0.5 * (from + to));
-            let whole = measured.lengths[edge].whole();
-            measured.chords(edge, (to - from) * length[k] / whole, spacing)
+            measured.chords(edges[k], spans[k].length / measured.lengths[edges[k]].whole(), spacing)
         });
         let n = chords[0].max(chords[1]);
         for (k, side) in sides.iter().enumerate() {
-            let (from, to) = (pair[0][k], pair[1][k]);
-            let own_corner = corners[k].contains(&from);
+            let Span { ends: [from, to], corners: [own_corner, _], .. } = spans[k];
             for i in usize::from(own_corner)..n {
                 let at = from + (to - from) * i as f64 / n as f64;
                 let (edge, fraction) = all[side.panel].locate(side, &corners[k], at);
                 all[side.panel].inner[edge].push(fraction);
             }
         }
+    }
+}
+
+/// A part of one side of a seam, between two common points.
+struct Span {
+    /// Where it begins and ends, as parts of the side's length.
+    ends: [f64; 2],
+    /// Whether these are corners of the side's own.
+    corners: [bool; 2],
+    /// Its length (m).
+    length: f64,
+}
+
+impl Span {
+    /// Whether it is too short, and its beginning may go: with its whole edge, or because no corner needs it.
+    fn may_be_left_out(&self, spacing: f64) -> bool {
+        self.length < LEAST_EDGE * spacing && self.corners != [true, false]
     }
 }
 
@@ -157,10 +193,17 @@ fn stops(a: &[f64], b: &[f64], length: f64, spacing: f64) -> Vec<[f64; 2]> {
     pairs
 }
 
-/// The points of an outline. Those of a curve are moved out so far that their chords enclose what the curve does.
+/// The points of an outline. Those of a curve are moved out so far that their chords enclose what the curve does; where
+/// edges were left out, the next one starts in the middle of them.
 fn boundary(measured: &Measured<'_>) -> Boundary {
     let mut found = Boundary { points: Vec::new(), starts: Vec::new() };
-    for (i, edge) in measured.panel.edges.iter().enumerate() {
+    let edges = &measured.panel.edges;
+    let n = edges.len();
+    for (i, edge) in edges.iter().enumerate() {
+        found.starts.push(found.points.len());
+        if measured.left_out[i] {
+            continue;
+        }
         let mut inner = measured.inner[i].clone();
         inner.sort_by(f64::total_cmp);
         let at = |f: &f64| edge.curve.point(measured.lengths[i].parameter(*f));
@@ -171,7 +214,8 @@ fn boundary(measured: &Measured<'_>) -> Boundary {
             keep_area(&edge.curve, &mut points);
         }
         points.pop();
-        found.starts.push(found.points.len());
+        let before = (1..n).take_while(|k| measured.left_out[(i + n - k) % n]).last().unwrap_or(0);
+        points[0] = 0.5 * (points[0] + edges[(i + n - before) % n].curve.start());
         found.points.append(&mut points);
     }
     found.starts.push(found.points.len());

@@ -6,7 +6,7 @@ use glam::{DVec2, Vec2};
 
 use super::error::TailorError;
 use super::limits::{MAX_IMPROVEMENT, MAX_OUTLINE_POINTS, MAX_PARTICLES, SPACING_M};
-use super::panel_mesh::{Allowance, PanelMesh, mesh};
+use super::panel_mesh::{MeshBudget, PanelMesh, mesh};
 use super::sampling::sample;
 use crate::garment::check::corners;
 use crate::garment::shape::{Face, NO_VERTEX};
@@ -57,7 +57,7 @@ pub fn sew(pattern: &Pattern, spacing: f64) -> Result<SewnMesh, TailorError> {
     let boundaries = sample(pattern, spacing);
     let mut extra: Vec<Vec<DVec2>> = vec![Vec::new(); boundaries.len()];
     let mut panels: Vec<PanelMesh> = Vec::new();
-    let mut allowed = Allowance { particles: MAX_PARTICLES, effort: MAX_IMPROVEMENT / boundaries.len().max(1) };
+    let mut allowed = MeshBudget { particles: MAX_PARTICLES, effort: MAX_IMPROVEMENT / boundaries.len().max(1) };
     for (panel, boundary) in pattern.panels().iter().zip(&boundaries) {
         let meshed = mesh(panel, boundary, spacing, &[], allowed)?;
         allowed.particles = allowed.particles.saturating_sub(meshed.points.len());
@@ -74,7 +74,7 @@ pub fn sew(pattern: &Pattern, spacing: f64) -> Result<SewnMesh, TailorError> {
         }
         for (i, panel) in pattern.panels().iter().enumerate().filter(|(i, _)| !extra[*i].is_empty()) {
             panels[i] =
-                mesh(panel, &boundaries[i], spacing, &extra[i], Allowance { particles: MAX_PARTICLES, ..allowed })?;
+                mesh(panel, &boundaries[i], spacing, &extra[i], MeshBudget { particles: MAX_PARTICLES, ..allowed })?;
         }
     }
     let sewn = join(pattern, &panels);

@@ -4,6 +4,9 @@
 //! closes around the piece it is the outline, otherwise the boundary is, which then must carry no seam allowance. An edge
 //! goes from a turn point or notch to the next; without turn points, from corner to corner. Nothing says what is sewn to
 //! what: that stands in a seam file.
+//!
+//! Reads: the text of a file. Writes: its pieces, in metres. Budget: at load; points and pieces are bounded.
+//! Thread: the loading thread.
 
 mod blocks;
 
@@ -29,6 +32,9 @@ const CORNER: f64 = 0.52;
 /// How far a mark may lie beside the outline, and a fold beside its edge (m).
 const BESIDE_M: f64 = 2e-3;
 
+/// How near to a point of the outline a mark is that point (m): programs round both.
+const SAME_POINT_M: f64 = 1e-3;
+
 /// Reads the pieces of a file.
 pub fn pieces(text: &str) -> Result<Vec<Piece>, Fault> {
     let file = blocks::read(text)?;
@@ -46,11 +52,13 @@ pub fn pieces(text: &str) -> Result<Vec<Piece>, Fault> {
         let (place, what, limit) = ("the file".to_owned(), "points", "MAX_POINTS");
         return Err(PatternFlaw::TooMany { place, what, count: points, most: MAX_POINTS, limit }.into());
     }
-    cloth.into_iter().map(|block| piece(block, file.unit)).collect()
+    let title = |b: &Block| b.title.clone().unwrap_or_else(|| b.name.clone());
+    // A piece in several sizes is a block for each, under one title.
+    let alone = |b: &Block| cloth.iter().filter(|other| title(other) == title(b)).count() == 1;
+    cloth.iter().map(|b| piece(b, &if alone(b) { title(b) } else { b.name.clone() }, file.unit)).collect()
 }
 
-fn piece(block: &Block, unit: f64) -> Result<Piece, Fault> {
-    let name = block.title.as_ref().unwrap_or(&block.name);
+fn piece(block: &Block, name: &str, unit: f64) -> Result<Piece, Fault> {
     let wrong = |what: &str| Fault::Content(format!("piece {name}: {what}"));
     let on = |layer: u32| block.lines.iter().filter(move |l| l.layer == layer);
     let size = |l: &&Line| {
@@ -101,7 +109,7 @@ fn mark(ring: &mut Vec<DVec2>, ends: &mut Vec<bool>, at: DVec2) {
     let nearest = (0..ring.len()).map(on_side).min_by(|p, q| p.0.distance(at).total_cmp(&q.0.distance(at)));
     let Some((point, i)) = nearest.filter(|(p, _)| p.distance(at) < BESIDE_M) else { return };
     let next = (i + 1) % ring.len();
-    match [i, next].into_iter().find(|&k| ring[k].distance(point) < LEAST_EDGE_M) {
+    match [i, next].into_iter().find(|&k| ring[k].distance(point) < SAME_POINT_M) {
         Some(k) => ends[k] = true,
         None => {
             ring.insert(i + 1, point);
@@ -208,6 +216,27 @@ mod tests {
         let with = file().replace("  0\nENDBLK", &format!("{inner}  0\nENDBLK"));
         assert!((pieces(&with).unwrap()[0].edges[0].1.start() - DVec2::splat(0.01)).length() < 0.3);
         assert!(pieces(&with).unwrap()[0].edges.iter().all(|(_, c)| c.start().x < 0.241));
+    }
+
+    #[test]
+    fn lightweight_polylines_and_decimal_commas_are_read() {
+        let block = file();
+        let (begin, end) = (block.find("  0\nPOLYLINE").unwrap(), block.find("  0\nPOINT").unwrap());
+        let mut line = entity(&[(0, "LWPOLYLINE"), (8, "1"), (90, "4"), (70, "1")]);
+        for (x, y) in [("0", "0"), ("250,5", "0"), ("250", "400"), ("0", "340")] {
+            line += &entity(&[(10, x), (20, y)]);
+        }
+        let light = [&block[..begin], &line, &block[end..]].concat();
+        assert!(pieces(&light).unwrap()[0].edges.iter().any(|(_, c)| c.end() == DVec2::new(0.2505, 0.0)));
+    }
+
+    #[test]
+    fn a_piece_in_two_sizes_is_two_pieces() {
+        let one = file();
+        let block = &one[one.find("  0\nBLOCK\n").unwrap()..one.find("  0\nENDSEC").unwrap()];
+        let both = one.replace("  0\nENDSEC", &format!("{}  0\nENDSEC", block.replace("\nP1\n", "\nP2\n")));
+        let names: Vec<String> = pieces(&both).unwrap().into_iter().map(|p| p.name).collect();
+        assert_eq!(names, ["P1", "P2"]);
     }
 
     #[test]

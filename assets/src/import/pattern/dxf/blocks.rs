@@ -64,6 +64,8 @@ struct Entity {
     flags: i64,
     /// First and second point, as far as they were read.
     at: [[Option<f64>; 2]; 2],
+    /// All first points, of which a lightweight polyline has many.
+    points: Vec<DVec2>,
 }
 
 impl Entity {
@@ -81,12 +83,13 @@ pub fn read(text: &str) -> Result<Blocks, Fault> {
     let mut number = 0;
     while let Some((code, value)) = next_pair(&mut lines, &mut number)? {
         let coordinate = || {
-            let finite = value.parse::<f64>().ok().filter(|x| x.is_finite());
+            // Some programs write a decimal comma where their user's country does.
+            let finite = value.replace(',', ".").parse::<f64>().ok().filter(|x| x.is_finite());
             finite.ok_or_else(|| format!("line {number}: \"{}\" is no number; export the file again", shown(value)))
         };
         match code {
             0 => {
-                reader.take(&entity);
+                reader.take(&mut entity);
                 entity = Entity { kind: value.to_uppercase(), ..Entity::default() };
             }
             1 => entity.text = value.to_owned(),
@@ -94,11 +97,16 @@ pub fn read(text: &str) -> Result<Blocks, Fault> {
             8 => entity.layer = value.parse().unwrap_or(0),
             70 => entity.flags = value.parse().unwrap_or(0),
             10 | 11 => entity.at[usize::from(code == 11)][0] = Some(coordinate()?),
-            20 | 21 => entity.at[usize::from(code == 21)][1] = Some(coordinate()?),
+            20 | 21 => {
+                entity.at[usize::from(code == 21)][1] = Some(coordinate()?);
+                if code == 20 {
+                    entity.points.extend(entity.point(0));
+                }
+            }
             _ => {}
         }
     }
-    reader.take(&entity);
+    reader.take(&mut entity);
     if reader.open.is_some() || entity.kind != "EOF" {
         return Err(Fault::Content("it ends before its EOF; the file is cut short, export it again".into()));
     }
@@ -133,13 +141,19 @@ struct Reader {
 
 impl Reader {
     /// Takes an entity that has been read to its end.
-    fn take(&mut self, entity: &Entity) {
+    fn take(&mut self, entity: &mut Entity) {
         match entity.kind.as_str() {
             "BLOCK" => self.open = Some(Block { name: entity.name.clone(), ..Block::default() }),
             "ENDBLK" => self.blocks.extend(self.open.take()),
-            "TEXT" => self.take_text(&entity.text),
+            "TEXT" | "MTEXT" => self.take_text(&entity.text),
             "POLYLINE" => {
                 self.line = Some(Line { layer: entity.layer, closed: entity.flags & 1 != 0, points: Vec::new() });
+            }
+            "LWPOLYLINE" => {
+                if let Some(block) = &mut self.open {
+                    let points = std::mem::take(&mut entity.points);
+                    block.lines.push(Line { layer: entity.layer, closed: entity.flags & 1 != 0, points });
+                }
             }
             "VERTEX" => {
                 if let (Some(line), Some(at)) = (&mut self.line, entity.point(0)) {
