@@ -103,21 +103,21 @@ impl Change {
         let mut changed = points.clone();
         let outline = points.boundary.points.len();
         let free = outline + points.lattice.places();
+        let own = |number: u32| (number as usize).checked_sub(free);
         match *self {
             Self::Insert(at) => changed.free.push(at),
-            Self::Remove(number) | Self::Move(number, _) => match number as usize {
-                i if i < outline => return None,
-                i if i < free => {
-                    changed.lattice.remove(i - outline)?;
-                }
-                i if i < free + points.held => return None,
-                i => {
-                    changed.free.remove(i - free);
-                }
-            },
-        }
-        if let Self::Move(_, to) = *self {
-            changed.free.push(to);
+            Self::Move(number, to) if own(number).is_some() => changed.free[number as usize - free] = to,
+            Self::Remove(number) if own(number).is_some_and(|i| i < points.held) => return None,
+            Self::Remove(number) if own(number).is_some() => {
+                changed.free.remove(number as usize - free);
+            }
+            Self::Remove(number) => {
+                changed.lattice.remove((number as usize).checked_sub(outline)?)?;
+            }
+            Self::Move(number, to) => {
+                changed.lattice.remove((number as usize).checked_sub(outline)?)?;
+                changed.free.push(to);
+            }
         }
         Some(changed)
     }

@@ -16,6 +16,8 @@ mod quads;
 mod ring;
 mod sampling;
 mod sewn;
+#[cfg(test)]
+mod tests;
 
 pub use error::TailorError;
 pub use panel_mesh::{PanelMesh, PanelQuality};

@@ -34,7 +34,7 @@ pub struct Points<'b> {
     pub lattice: Lattice,
     /// Points on neither (m).
     pub free: Vec<DVec2>,
-    /// How many of them, from the first, must stay where they are.
+    /// How many of them, from the first, must not be taken away.
     pub held: usize,
 }
 

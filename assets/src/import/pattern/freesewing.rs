@@ -18,11 +18,12 @@ const UNIT: DVec2 = DVec2::new(1e-3, -1e-3);
 /// The path of a part that is its outline.
 const OUTLINE: &str = "seam";
 
-/// Reads the pieces of a file that holds `parts`; parts without an outline are notes.
+/// Reads the pieces of a file that holds `parts`; parts without an outline are notes, and hidden ones were only drafted for
+/// others to build on.
 pub fn pieces(file: &Value) -> Result<Vec<Piece>, Fault> {
     let parts =
         file["parts"].as_object().ok_or("parts is no table of drafted parts; export the draft again".to_owned())?;
-    let drawn: Vec<_> = parts.iter().filter(|(_, part)| part["paths"][OUTLINE].is_object()).collect();
+    let drawn: Vec<_> = parts.iter().filter(|(_, part)| is_drawn(part)).collect();
     if drawn.is_empty() {
         return Err(Fault::Content(format!(
             "no part has a path named {OUTLINE}; draft the pattern before exporting it"
@@ -35,6 +36,11 @@ pub fn pieces(file: &Value) -> Result<Vec<Piece>, Fault> {
         )));
     }
     drawn.into_iter().map(|(name, part)| piece(name, &part["paths"][OUTLINE])).collect()
+}
+
+fn is_drawn(part: &Value) -> bool {
+    let outline = &part["paths"][OUTLINE];
+    outline.is_object() && part["hidden"] != true && outline["hidden"] != true
 }
 
 fn piece(name: &str, path: &Value) -> Result<Piece, Fault> {
@@ -84,7 +90,8 @@ mod tests {
     use super::*;
 
     fn draft(ops: &Value) -> Result<Vec<Piece>, String> {
-        let file = json!({"parts": {"a": {"paths": {"seam": {"ops": ops}}}, "note": {"paths": {}}}});
+        let file = json!({"parts": {"a": {"paths": {"seam": {"ops": ops}}}, "note": {"paths": {}},
+            "base": {"paths": {"seam": {"hidden": true, "ops": []}}}}});
         pieces(&file).map_err(|fault| fault.of("draft.json").to_string())
     }
 
