@@ -7,6 +7,7 @@
 use std::error::Error;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 use toile_assets::import::pattern;
 use toile_assets::pattern::Pattern;
@@ -16,10 +17,23 @@ use toile_assets::tailor::{PanelQuality, SewnMesh, sew};
 const PIXELS: f64 = 1_600.0;
 const MARGIN: f64 = 0.03;
 
+/// What the program says with its exit code where a file is refused.
+const REFUSED: u8 = 4;
+
 /// Widest row of panels in a picture (m).
 const ROW: f64 = 1.6;
 
-fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(e) => {
+            eprintln!("{e}");
+            ExitCode::from(REFUSED)
+        }
+    }
+}
+
+fn run() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let (mut spacing, mut seams, mut folder) = (0.015, None, None);
     println!(

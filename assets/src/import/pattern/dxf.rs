@@ -13,6 +13,7 @@ mod blocks;
 use glam::DVec2;
 
 use super::error::Fault;
+use super::json::name;
 use super::piece::Piece;
 use crate::pattern::limits::{LEAST_EDGE_M, MAX_PANELS, MAX_POINTS};
 use crate::pattern::{Curve, PatternFlaw};
@@ -52,10 +53,10 @@ pub fn pieces(text: &str) -> Result<Vec<Piece>, Fault> {
         let (place, what, limit) = ("the file".to_owned(), "points", "MAX_POINTS");
         return Err(PatternFlaw::TooMany { place, what, count: points, most: MAX_POINTS, limit }.into());
     }
-    let title = |b: &Block| b.title.clone().unwrap_or_else(|| b.name.clone());
+    let title = |b: &Block| name(b.title.as_ref().unwrap_or(&b.name));
     // A piece in several sizes is a block for each, under one title.
     let alone = |b: &Block| cloth.iter().filter(|other| title(other) == title(b)).count() == 1;
-    cloth.iter().map(|b| piece(b, &if alone(b) { title(b) } else { b.name.clone() }, file.unit)).collect()
+    cloth.iter().map(|b| piece(b, &if alone(b) { title(b) } else { name(&b.name) }, file.unit)).collect()
 }
 
 fn piece(block: &Block, name: &str, unit: f64) -> Result<Piece, Fault> {
@@ -237,6 +238,19 @@ mod tests {
         let both = one.replace("  0\nENDSEC", &format!("{}  0\nENDSEC", block.replace("\nP1\n", "\nP2\n")));
         let names: Vec<String> = pieces(&both).unwrap().into_iter().map(|p| p.name).collect();
         assert_eq!(names, ["P1", "P2"]);
+    }
+
+    #[test]
+    fn damage_is_an_error_or_pieces_and_never_more() {
+        let good = file();
+        for end in 0..good.trim_end().len() {
+            assert!(pieces(&good[..end]).is_err(), "{end}");
+            for byte in [b'0', b'9', b'-', b'e', b'X', b'\n'] {
+                let mut bytes = good.clone().into_bytes();
+                bytes[end] = byte;
+                let _ = String::from_utf8(bytes).map(|text| pieces(&text));
+            }
+        }
     }
 
     #[test]

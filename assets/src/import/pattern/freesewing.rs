@@ -7,7 +7,7 @@ use glam::DVec2;
 use serde_json::Value;
 
 use super::error::Fault;
-use super::json::{list, pair};
+use super::json::{list, name, pair};
 use super::piece::Piece;
 use crate::pattern::Curve;
 use crate::pattern::limits::MAX_PANELS;
@@ -35,7 +35,7 @@ pub fn pieces(file: &Value) -> Result<Vec<Piece>, Fault> {
             drawn.len()
         )));
     }
-    drawn.into_iter().map(|(name, part)| piece(name, &part["paths"][OUTLINE])).collect()
+    drawn.into_iter().map(|(key, part)| piece(&name(key), &part["paths"][OUTLINE])).collect()
 }
 
 fn is_drawn(part: &Value) -> bool {
@@ -43,13 +43,13 @@ fn is_drawn(part: &Value) -> bool {
     outline.is_object() && part["hidden"] != true && outline["hidden"] != true
 }
 
-fn piece(name: &str, path: &Value) -> Result<Piece, Fault> {
+fn piece(own: &str, path: &Value) -> Result<Piece, Fault> {
     let mut steps = Vec::new();
     let mut at: Option<DVec2> = None;
     let mut start = DVec2::ZERO;
     let mut closed = false;
     for (i, step) in list(&path["ops"]).iter().enumerate() {
-        let wrong = |what: &str| format!("part {name}, step {i} of its outline: {what}; export the draft again");
+        let wrong = |what: &str| format!("part {own}, step {i} of its outline: {what}; export the draft again");
         let point = |key: &str| {
             let point = pair(&step[key]).map(|p| p * UNIT);
             point.ok_or_else(|| wrong(&format!("{key} is no pair of numbers")))
@@ -80,7 +80,7 @@ fn piece(name: &str, path: &Value) -> Result<Piece, Fault> {
             _ => return Err(wrong("it is none of move (first), line, curve and close").into()),
         }
     }
-    Piece::of_steps(name, &steps, Some(DVec2::Y))
+    Piece::of_steps(own, &steps, Some(DVec2::Y))
 }
 
 #[cfg(test)]

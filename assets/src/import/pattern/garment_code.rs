@@ -7,7 +7,7 @@ use glam::{DQuat, DVec2, DVec3, EulerRot};
 use serde_json::{Map, Value};
 
 use super::error::{Fault, meant};
-use super::json::{index, list, pair, text, triple};
+use super::json::{index, list, name, pair, text, triple};
 use crate::pattern::limits::{MAX_PANEL_EDGES, MAX_PANELS, MAX_SEAMS};
 use crate::pattern::{Curve, Panel, PanelEdge, Pattern, PatternFlaw, Placement, Seam, SeamSide};
 
@@ -40,7 +40,8 @@ pub fn parse(file: &Value) -> Result<Pattern, Fault> {
     if panels.is_empty() {
         return Err(PatternFlaw::Empty.into());
     }
-    let read: Result<Vec<Panel>, Fault> = panels.iter().map(|(name, value)| panel(name, value, &dialect)).collect();
+    let read: Result<Vec<Panel>, Fault> =
+        panels.iter().map(|(key, value)| panel(&name(key), value, &dialect)).collect();
     Ok(Pattern::checked(read?, stitches(&pattern["stitches"], panels)?)?)
 }
 
@@ -48,28 +49,28 @@ fn too_many(place: &str, what: &'static str, count: usize, most: usize, limit: &
     Fault::Flaw(PatternFlaw::TooMany { place: place.into(), what, count, most, limit })
 }
 
-fn panel(name: &str, value: &Value, dialect: &Dialect) -> Result<Panel, Fault> {
+fn panel(own: &str, value: &Value, dialect: &Dialect) -> Result<Panel, Fault> {
     let vertices = list(&value["vertices"]).iter().enumerate().map(|(i, v)| {
         let point = pair(v).map(|p| p * dialect.unit);
-        point.ok_or_else(|| format!("panel {name}: vertex {i} is no pair of numbers; export it again"))
+        point.ok_or_else(|| format!("panel {own}: vertex {i} is no pair of numbers; export it again"))
     });
     let vertices = vertices.collect::<Result<Vec<DVec2>, String>>()?;
     let edges = list(&value["edges"]);
     if edges.len() > MAX_PANEL_EDGES {
-        return Err(too_many(&format!("panel {name}"), "edges", edges.len(), MAX_PANEL_EDGES, "MAX_PANEL_EDGES"));
+        return Err(too_many(&format!("panel {own}"), "edges", edges.len(), MAX_PANEL_EDGES, "MAX_PANEL_EDGES"));
     }
     let edges = edges.iter().enumerate().map(|(number, edge)| {
-        let curve = curve(name, number, edge, &vertices, dialect)?;
-        Ok(PanelEdge { curve, number, label: text(&edge["label"]) })
+        let curve = curve(own, number, edge, &vertices, dialect)?;
+        Ok(PanelEdge { curve, number, label: text(&edge["label"]).map(|l| name(&l)) })
     });
     let edges = edges.collect::<Result<Vec<PanelEdge>, Fault>>()?;
     let panel = Panel {
-        name: name.to_owned(),
+        name: own.to_owned(),
         label: text(&value["label"]),
         edges,
         grain: DVec2::Y,
         behind: false,
-        placement: placement(name, value, dialect)?,
+        placement: placement(own, value, dialect)?,
     };
     // The order in which a panel is drawn says which side is the outside: from there its edges run counter-clockwise.
     Ok(Panel { behind: panel.signed_area() < 0.0, ..panel })
@@ -80,7 +81,7 @@ fn curve(panel: &str, number: usize, edge: &Value, vertices: &[DVec2], dialect: 
     let [from, to] = list(&edge["endpoints"]) else { return Err(wrong("endpoints is no pair of vertices")) };
     let vertex = |v: &Value| {
         let found = index(v).and_then(|i| vertices.get(i)).copied();
-        found.ok_or_else(|| wrong(&format!("it ends at vertex {v} of {}", vertices.len())))
+        found.ok_or_else(|| wrong(&format!("it ends at vertex {} of {}", name(&v.to_string()), vertices.len())))
     };
     let (start, end) = (vertex(from)?, vertex(to)?);
     let along = end - start;
@@ -139,23 +140,23 @@ fn stitches(value: &Value, panels: &Map<String, Value>) -> Result<Vec<Seam>, Fau
             [a, b, word] => (a, b, word.as_str()),
             _ => return Err(Fault::Content(format!("stitch {i} is no pair of edges; sew one edge to one other"))),
         };
-        let name = format!("stitch {i}");
-        let start = side(&name, a, panels)?;
-        let mut end = side(&name, b, panels)?;
+        let stitch = format!("stitch {i}");
+        let start = side(&stitch, a, panels)?;
+        let mut end = side(&stitch, b, panels)?;
         end.reversed = word != Some(RIGHT_TO_WRONG);
-        Ok(Seam { name, sides: [start, end] })
+        Ok(Seam { name: stitch, sides: [start, end] })
     };
     stitches.iter().enumerate().map(seam).collect()
 }
 
 fn side(seam: &str, value: &Value, panels: &Map<String, Value>) -> Result<SeamSide, Fault> {
-    let (name, edge) = (value["panel"].as_str(), index(&value["edge"]));
-    let (Some(name), Some(edge)) = (name, edge) else {
+    let (Some(key), Some(edge)) = (value["panel"].as_str(), index(&value["edge"])) else {
         return Err(Fault::Content(format!("{seam} has a side without panel and edge; export it again")));
     };
-    let Some(panel) = panels.keys().position(|k| k == name) else {
-        let cure = meant(name, panels.keys().map(String::as_str), "export the pattern with all of its panels");
-        return Err(PatternFlaw::NoPanel { seam: seam.into(), name: name.into(), cure }.into());
+    let Some(panel) = panels.keys().position(|k| k == key) else {
+        let names: Vec<String> = panels.keys().map(|k| name(k)).collect();
+        let cure = meant(key, names.iter().map(String::as_str), "export the pattern with all of its panels");
+        return Err(PatternFlaw::NoPanel { seam: seam.into(), name: name(key), cure }.into());
     };
     Ok(SeamSide { panel, first: edge, count: 1, reversed: false })
 }

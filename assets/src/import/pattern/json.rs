@@ -75,6 +75,14 @@ pub fn text(value: &Value) -> Option<String> {
     value.as_str().map(str::to_owned)
 }
 
+/// Most characters of a name that are kept.
+const MAX_NAME: usize = 80;
+
+/// A name as messages show it: in one line, and no longer than a line.
+pub fn name(text: &str) -> String {
+    text.chars().take(MAX_NAME).map(|c| if c.is_control() { ' ' } else { c }).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -84,6 +92,7 @@ mod tests {
         let value = read("{ // one\n \"a\": /* two\n lines */ [1, 2], \"b\": \"x // \\\" /* y\" }").unwrap();
         assert_eq!(pair(&value["a"]), Some(DVec2::new(1.0, 2.0)));
         assert_eq!(value["b"], "x // \" /* y");
+        assert_eq!((name("a\nb").as_str(), name(&"x".repeat(1_000)).len()), ("a b", MAX_NAME));
         assert!(read("{ /* never closed").is_err() && read("/").is_err());
     }
 }

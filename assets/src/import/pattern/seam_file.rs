@@ -9,6 +9,7 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
 use super::error::{Fault, meant};
+use super::json::name;
 use super::piece::{EdgeRange, Half, Piece, UnfoldedPiece};
 use crate::pattern::limits::{MAX_PANELS, MAX_SEAMS};
 use crate::pattern::{Panel, Pattern, PatternFlaw, Seam, SeamSide};
@@ -66,7 +67,16 @@ struct RunEntry {
 impl SeamFile {
     /// Reads a seam file.
     pub fn parse(text: &str) -> Result<Self, Fault> {
-        from_toml(text)
+        let mut file: Self = from_toml(text)?;
+        for panel in &mut file.panel {
+            panel.name = name(&panel.name);
+            panel.piece = name(&panel.piece);
+        }
+        for seam in &mut file.seam {
+            seam.name = name(&seam.name);
+            [&mut seam.sew, &mut seam.to].into_iter().for_each(|run| run.panel = name(&run.panel));
+        }
+        Ok(file)
     }
 
     /// The panels and seams of a draft.
