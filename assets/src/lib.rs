@@ -1,4 +1,4 @@
-//! What is baked and shared: limits, skeleton, body, rig, fabrics, sizes, garments.
+//! What is baked and shared: limits, skeleton, body, rig, fabrics, sizes, patterns, garments.
 //!
 //! Reads: TOML, OBJ and the data embedded under `data/`. Writes: immutable assets that every other room borrows.
 //! Budget: at load only; nothing here runs inside the frame.
@@ -18,6 +18,7 @@ pub mod skeleton;
 pub mod toml_keys;
 
 pub mod mesh;
+pub mod pattern;
 
 pub mod body;
 pub mod garment;
@@ -28,6 +29,7 @@ pub mod import;
 pub mod rig;
 pub mod scene;
 pub mod sizes;
+pub mod tailor;
 
 pub mod scene_file;
 pub mod wardrobe;

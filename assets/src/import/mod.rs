@@ -1,11 +1,12 @@
-//! Imports: meshes and bodies that others made.
+//! Imports: meshes, bodies and patterns that others made.
 //!
-//! Reads: OBJ, glTF and GLB, VRM, MakeHuman folders. Writes: [`Shape`](crate::garment::Shape), a mesh in its file's own
-//! order, or a [`Body`](crate::body::Body).
+//! Reads: OBJ, glTF and GLB, VRM, MakeHuman folders, sewn patterns. Writes: [`Shape`](crate::garment::Shape), a mesh in its file's own
+//! order, a [`Body`](crate::body::Body), or a [`Pattern`](crate::pattern::Pattern).
 //! Budget: at load only. Thread: the loading thread.
 
 pub mod avatar;
 pub mod gltf;
 pub mod makehuman;
 pub mod obj;
+pub mod pattern;
 pub mod plain;

@@ -1,0 +1,74 @@
+//! Sewn patterns from files: GarmentCode and Garment-Pattern-Generator JSON, FreeSewing drafts, DXF-AAMA and ASTM.
+//!
+//! Reads: a file of bounded size, and for formats without sewing a seam file beside it. Writes: a checked
+//! [`Pattern`]. Budget: at load; the limits of [`crate::pattern::limits`] bound time and memory.
+//! Thread: the loading thread.
+
+mod dxf;
+mod error;
+mod freesewing;
+mod garment_code;
+mod json;
+mod piece;
+mod seam_file;
+
+use std::path::Path;
+
+pub use error::PatternError;
+
+use crate::file::{self, FileKind};
+use crate::pattern::Pattern;
+use crate::pattern::limits::MAX_PATTERN_BYTES;
+use error::Fault;
+use piece::Piece;
+use seam_file::SeamFile;
+
+/// What is read as a pattern.
+const PATTERN_FILE: FileKind =
+    FileKind { name: "a pattern", max_bytes: MAX_PATTERN_BYTES, cure: "export one garment, without pictures" };
+
+/// What is read as the seams of a draft.
+const SEAMS: FileKind = FileKind { name: "a seam file", max_bytes: MAX_PATTERN_BYTES, cure: "name each seam once" };
+
+/// Reads a pattern; `seams` names the seam file of a draft.
+///
+/// # Errors
+/// One sentence: the file, what is wrong where, and the cure.
+pub fn read(path: &Path, seams: Option<&Path>) -> Result<Pattern, PatternError> {
+    let text = file::read_text(path, &PATTERN_FILE)?;
+    let name = path.display().to_string();
+    let Some(beside) = seams else { return parse(&name, &text, None) };
+    let seams = file::read_text(beside, &SEAMS)?;
+    parse(&name, &text, Some((&beside.display().to_string(), &seams)))
+}
+
+/// Reads a pattern from text; the names stand in error messages. What format it is, the text says itself.
+///
+/// # Errors
+/// As [`read`].
+pub fn parse(name: &str, text: &str, seams: Option<(&str, &str)>) -> Result<Pattern, PatternError> {
+    let here = |fault: Fault| fault.of(name);
+    let pieces = if text.trim_start().starts_with(['{', '/']) {
+        let file = json::read(text).map_err(here)?;
+        if file["pattern"].is_object() {
+            return garment_code::parse(&file).map_err(here);
+        }
+        if !file["parts"].is_object() {
+            return Err(here(Fault::Content(
+                "it holds neither a pattern nor parts; give GarmentCode's specification or FreeSewing's draft".into(),
+            )));
+        }
+        freesewing::pieces(&file).map_err(here)?
+    } else {
+        dxf::pieces(text).map_err(here)?
+    };
+    sew(&pieces, name, seams)
+}
+
+/// The pieces of a draft sewn by their seam file, if there is one.
+fn sew(pieces: &[Piece], name: &str, seams: Option<(&str, &str)>) -> Result<Pattern, PatternError> {
+    match seams {
+        None => seam_file::unsewn(pieces).map_err(|fault| fault.of(name)),
+        Some((file, text)) => SeamFile::parse(text).and_then(|seams| seams.sew(pieces)).map_err(|fault| fault.of(file)),
+    }
+}

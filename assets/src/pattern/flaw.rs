@@ -1,0 +1,155 @@
+//! What can be wrong with a pattern, whichever format it came in: what, where, and the cure.
+
+use thiserror::Error;
+
+use super::limits::{LEAST_EDGE_M, LEAST_PANEL_M2, MAX_REACH_M};
+
+/// The first flaw that was found in a pattern.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum PatternFlaw {
+    /// Nothing to sew.
+    #[error("the pattern has no panels; export it with its panels as closed outlines")]
+    Empty,
+    /// More of something than is read.
+    #[error(
+        "{place} has {count} {what}, more than the {most} of {limit}; leave out what is not cloth, or split the pattern"
+    )]
+    TooMany {
+        /// What holds them: "the pattern", or a panel.
+        place: String,
+        /// What there is too much of.
+        what: &'static str,
+        /// How many there are.
+        count: usize,
+        /// How many are read.
+        most: usize,
+        /// Name of the limit.
+        limit: &'static str,
+    },
+    /// Two panels of one name.
+    #[error("two panels are named {name}; give each panel a name of its own")]
+    SameName {
+        /// The name.
+        name: String,
+    },
+    /// A coordinate that is NaN, infinite or far away.
+    #[error(
+        "panel {panel}: {edge} reaches beyond {MAX_REACH_M} m; check the unit of the file and the numbers of this edge"
+    )]
+    TooFar {
+        /// The panel.
+        panel: String,
+        /// The edge.
+        edge: String,
+    },
+    /// An outline of fewer than two edges, or of two straight ones.
+    #[error("panel {panel} has {count} edges and encloses nothing; draw its whole outline")]
+    FewEdges {
+        /// The panel.
+        panel: String,
+        /// How many edges it has.
+        count: usize,
+    },
+    /// An edge without length.
+    #[error("panel {panel}: {edge} is shorter than {} mm; merge its ends", LEAST_EDGE_M * 1e3)]
+    ShortEdge {
+        /// The panel.
+        panel: String,
+        /// The edge.
+        edge: String,
+    },
+    /// An outline with a gap.
+    #[error("panel {panel}: {edge} ends {gap_mm:.1} mm from where {next} starts; close the outline")]
+    Open {
+        /// The panel.
+        panel: String,
+        /// The edge before the gap.
+        edge: String,
+        /// The edge after it.
+        next: String,
+        /// Width of the gap (mm).
+        gap_mm: f64,
+    },
+    /// A circle arc that cannot reach from its start to its end.
+    #[error(
+        "panel {panel}: edge {edge} is an arc of {radius} m, too small a radius for its ends; give at least half of the distance between them"
+    )]
+    Radius {
+        /// The panel.
+        panel: String,
+        /// Number of the edge.
+        edge: usize,
+        /// Radius of the file (m).
+        radius: f64,
+    },
+    /// An outline that crosses or touches itself.
+    #[error("panel {panel}: {first} crosses or touches {second}; draw an outline that goes once around the piece")]
+    Crossing {
+        /// The panel.
+        panel: String,
+        /// One edge.
+        first: String,
+        /// The other, or the same.
+        second: String,
+    },
+    /// A panel of next to no area.
+    #[error("panel {panel} has an area of {area_cm2:.2} cm2, less than {} cm2; delete it or check the unit of the file", LEAST_PANEL_M2 * 1e4)]
+    NoArea {
+        /// The panel.
+        panel: String,
+        /// Its area (cm2).
+        area_cm2: f64,
+    },
+    /// A grain that points nowhere.
+    #[error("panel {panel}: its grain has no direction; draw the grain line with two different ends")]
+    NoGrain {
+        /// The panel.
+        panel: String,
+    },
+    /// A seam of a panel that is not there.
+    #[error("{seam} names panel {name}, which is not there; {cure}")]
+    NoPanel {
+        /// The seam.
+        seam: String,
+        /// The name that it gives.
+        name: String,
+        /// What may have been meant.
+        cure: String,
+    },
+    /// A seam of an edge that is not there.
+    #[error("{seam} names edge {edge} of panel {panel}, which has {count}; name one of 0 to {}", count.saturating_sub(1))]
+    NoEdge {
+        /// The seam.
+        seam: String,
+        /// The panel.
+        panel: String,
+        /// The edge that it names.
+        edge: usize,
+        /// How many edges there are.
+        count: usize,
+    },
+    /// An edge in two seams, or on both sides of one.
+    #[error(
+        "{first} and {second} both sew {edge} of panel {panel}; sew each edge once, and split it where two others meet at it"
+    )]
+    SewnTwice {
+        /// The panel.
+        panel: String,
+        /// The edge.
+        edge: String,
+        /// One seam.
+        first: String,
+        /// The other, or the same.
+        second: String,
+    },
+    /// A seam that turns the cloth inside out.
+    #[error(
+        "{seam} sews the outside of panel {panel} to an inside, against the other seams; swap the ends of one of its sides"
+    )]
+    Twisted {
+        /// The seam.
+        seam: String,
+        /// The panel on its second side.
+        panel: String,
+    },
+}
