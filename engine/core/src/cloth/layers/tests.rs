@@ -348,6 +348,36 @@ fn a_fold_keeps_as_far_from_itself_as_the_edges_ask_for() {
     }
 }
 
+/// A strip one cell wide, 20 mm, along the x axis or across it, with particles every 40 mm; its ends may be held.
+fn strip(across: bool, height: f32, held: bool, layer: u8) -> Garment {
+    let mut fabric = Fabric::built_in("cotton-jersey").unwrap();
+    fabric.thickness_mm = 4.0;
+    let place = |r: u32, c: u32| {
+        let (along, aside) = (c as f32 * 0.04 - 0.1, r as f32 * 0.02 - 0.01);
+        let at = if across { Vec3::new(aside, height, -along) } else { Vec3::new(along, height, aside) };
+        (at, held && (c == 0 || c == 5))
+    };
+    let mut garment = bake("strip", "one", &Shape::sheet(2, 6, place), &fabric).unwrap();
+    garment.layer = layer;
+    garment
+}
+
+#[test]
+fn a_strip_lies_on_one_across_it_by_edges_alone() {
+    // No particle of one is before a face of the other: only borders meet borders.
+    let mut scene = Scene::new(vec![strip(false, 0.5, true, 1), strip(true, 0.506, false, 2)], 1, Width::widest());
+    scene.steps(60);
+    let edges = |s: &PairShare| s.contacts.contacts().iter().filter(|c| c.own == 2).count();
+    assert!(scene.layers.shares.iter().map(edges).sum::<usize>() >= 4, "four pairs of edges lie across each other");
+    let middle = |garment: usize| {
+        let near = scene.garments[garment].start.iter().zip(&scene.cloths[garment].positions);
+        let near: Vec<f32> = near.filter(|(p, _)| p.x.abs() + p.z.abs() < 0.04).map(|(_, p)| p.y).collect();
+        near.iter().sum::<f32>() / near.len() as f32
+    };
+    let gap = middle(1) - middle(0);
+    assert!((gap - 0.004).abs() < 0.001, "the upper strip lies {gap} m above the lower one");
+}
+
 #[test]
 fn what_is_looked_for_in_every_second_or_fourth_step_keeps_sheets_apart_in_all() {
     for every in [2, 4] {
