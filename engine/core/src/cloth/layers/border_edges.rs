@@ -29,6 +29,19 @@ const MOST_HOPS: [usize; 2] = [4, 6];
 #[derive(Debug, Clone)]
 pub struct BorderEdges {
     edges: Box<[[u32; 2]]>,
+    /// What the last contact of each has left behind `[edges]`.
+    left: Box<[Left]>,
+    /// Of each contact of this step, in their order, which edge made it.
+    made: Vec<u32>,
+}
+
+/// What a contact leaves behind for the next step.
+#[derive(Debug, Clone, Copy, Default)]
+struct Left {
+    /// How far it has slid from where it sticks (m), if it touched.
+    slip: Option<Vec3A>,
+    /// What was passed on between the two (kg m).
+    passed: f32,
 }
 
 /// An edge that looks for others, along a normal.
@@ -52,7 +65,9 @@ impl BorderEdges {
     /// Those of a range of particles. At load.
     pub fn new(surface: &GarmentSurface, particles: Range<usize>) -> Self {
         let own = surface.border_edges.iter().filter(|edge| particles.contains(&(edge[0] as usize)));
-        Self { edges: own.copied().collect() }
+        let edges: Box<[[u32; 2]]> = own.copied().collect();
+        let made = Vec::with_capacity(CONTACTS_AN_EDGE * edges.len());
+        Self { left: vec![Left::default(); edges.len()].into(), made, edges }
     }
 
     /// Most contacts that they make in a step.
@@ -60,41 +75,64 @@ impl BorderEdges {
         CONTACTS_AN_EDGE * self.edges.len()
     }
 
+    /// Keeps in mind where each sticks, from their contacts of the last step.
+    pub fn remember(&mut self, scene: &PairScene<'_>, contacts: &ContactList) {
+        self.left.fill(Left::default());
+        let own = contacts.pairs().filter(|(contact, _)| contact.own == 2);
+        for ((contact, push), &edge) in own.zip(&self.made) {
+            let left = &mut self.left[edge as usize];
+            // The deepest comes first.
+            left.slip = left.slip.or_else(|| contact.slip(scene.columns, push.normal));
+            left.passed = left.passed.max(contact.passed.dot(push.normal).abs());
+        }
+    }
+
     /// Finds their contacts with the edges of the other garment. `near` is the triangle that is nearest to a vertex, if any is
     /// near.
     pub fn find(
-        &self,
+        &mut self,
         pair: &LayerPair,
         scene: &PairScene<'_>,
         near: impl Fn(u32) -> Option<u32>,
         contacts: &mut ContactList,
     ) {
-        for &edge in &self.edges {
-            if let Some(triangle) = near(edge[0]) {
-                find_of(pair, scene, edge, triangle, contacts);
+        self.made.clear();
+        for (e, (&edge, left)) in self.edges.iter().zip(&self.left).enumerate() {
+            let Some(triangle) = near(edge[0]) else { continue };
+            let Some((normal, found)) = find_of(pair, scene, edge, triangle) else { continue };
+            for (_, mut contact) in found {
+                contact.passed = normal * left.passed;
+                contact.sticks = left.slip.is_some();
+                contact.anchor -= left.slip.unwrap_or_default();
+                contacts.push(contact, normal);
+                self.made.push(e as u32);
             }
         }
     }
 
     /// Memory that they hold (bytes).
     pub fn bytes(&self) -> usize {
-        size_of_val(&*self.edges)
+        size_of_val(&*self.edges) + size_of_val(&*self.left) + size_of::<u32>() * self.made.capacity()
     }
 }
 
-/// The contacts of one edge, from the triangle that is nearest to its first end: of those that it lies across the deepest.
-fn find_of(pair: &LayerPair, scene: &PairScene<'_>, edge: [u32; 2], triangle: u32, contacts: &mut ContactList) {
+/// Contacts of one edge with how deep each is (m), the deepest first.
+type Deepest = heapless::Vec<(f32, LayerContact), CONTACTS_AN_EDGE>;
+
+/// The contacts of one edge and their normal, from the triangle that is nearest to its first end: of those that it lies across the
+/// deepest.
+fn find_of(pair: &LayerPair, scene: &PairScene<'_>, edge: [u32; 2], triangle: u32) -> Option<(Vec3A, Deepest)> {
     let (mesh, [of, faces]) = (&scene.surfaces[1].mesh, scene.columns);
     let corners = mesh.corners(triangle);
     let front = corners.iter().map(|&v| scene.motions[1].normals[v as usize]).sum::<Vec3A>().normalize_or_zero();
     let ends = edge.map(|v| get(of.x, v as usize));
     let height = (ends[0] - get(faces.x, corners[0] as usize)).dot(front);
     if pair.wearing_at(edge[0], corners) != pair.wearing_at(edge[1], corners) {
-        return;
+        return None;
     }
-    let Some(normal) = pair.normal(scene, edge[0], corners, front, height) else { return };
+    let normal = pair.normal(scene, edge[0], corners, front, height)?;
     let looking = Looking { ends, normal };
-    let mut deepest = heapless::Vec::<(f32, LayerContact), CONTACTS_AN_EDGE>::new();
+    let mut deepest = Deepest::new();
     looking.each_across(scene, looking.before(scene, triangle), |other, across| {
         let depth = pair.thickness - across.away.dot(normal);
         let speed = |columns: [_; 3], [a, b]: [u32; 2], t: f32| {
@@ -112,7 +150,7 @@ fn find_of(pair: &LayerPair, scene: &PairScene<'_>, edge: [u32; 2], triangle: u3
             let _ = deepest.insert(place, (depth, contact));
         }
     });
-    deepest.into_iter().for_each(|(_, contact)| contacts.push(contact, normal));
+    Some((normal, deepest))
 }
 
 impl Looking {

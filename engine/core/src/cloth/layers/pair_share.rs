@@ -145,6 +145,7 @@ impl PairShare {
             remembered.passed = contact.passed.dot(push.normal).abs();
             remembered.slip = contact.slip(scene.columns, push.normal);
         }
+        self.borders.remember(scene, &self.contacts);
     }
 
     /// Has no contacts in this step.
