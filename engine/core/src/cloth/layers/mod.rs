@@ -23,6 +23,7 @@ mod order;
 mod pace;
 mod pair;
 mod pair_share;
+mod phases;
 mod step;
 #[cfg(test)]
 mod tests;
