@@ -111,11 +111,15 @@ impl Chain<'_> {
         self.rows().last().is_some_and(|row| self.lane + lanes <= row.lanes as usize)
     }
 
-    /// First particle of a row for these lanes, and how many of them reach so far.
+    /// First particle of a row for these lanes, and how many of them reach so far; the row's end where none does, since what
+    /// lies beyond may not be there.
     #[inline(always)]
     fn place<L: Numbers, const FULL: bool>(&self, row: BundleRow) -> (usize, usize) {
-        let at = row.first as usize + self.lane;
-        (at, if FULL { L::N } else { (row.lanes as usize).saturating_sub(self.lane).min(L::N) })
+        if FULL {
+            return (row.first as usize + self.lane, L::N);
+        }
+        let lane = self.lane.min(row.lanes as usize);
+        (row.first as usize + lane, (row.lanes as usize - lane).min(L::N))
     }
 
     /// Weights of a row's particles.
