@@ -198,6 +198,26 @@ fn an_irregular_skirt_has_the_same_bits_with_two_workers_and_at_every_width() {
     }
 }
 
+#[test]
+fn fibers_that_end_before_others_of_their_bundle_have_the_same_bits_at_every_width() {
+    // The last rows of a small irregular mesh have fewer fibers than a vector has lanes, at the very end of its particles.
+    for verts in [196, 256, 484, 576] {
+        let play = |width: Width| {
+            let mesh = SkirtMesh::Irregular;
+            let mut scene = scene(&SkirtOptions { mesh, lanes: Some(width), verts, ..SkirtOptions::default() });
+            for _ in 0..8 {
+                scene.prepare();
+                scene.step();
+            }
+            scene.state_hash()
+        };
+        let plain = play(Width::One);
+        for width in Width::ALL.into_iter().filter(|w| w.available()) {
+            assert_eq!(play(width), plain, "{verts} vertices, {width:?}");
+        }
+    }
+}
+
 /// Hash of the skirt of 9,216 vertices after [`GOLDEN_STEPS`] of walking. A change of it is a change of what every user
 /// sees: it has to be meant, and said in the changelog. (Sines of the scene come from the platform's library; the hash is
 /// that of Linux on x86-64.)

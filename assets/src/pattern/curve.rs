@@ -11,7 +11,7 @@ const CROSSING_CHORDS: usize = 16;
 /// A curve in the plane (m). A quadratic Bezier curve is kept as the cubic that it equals.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Curve {
-    /// Straight.
+    /// A straight line from the first point to the second (m).
     Line([DVec2; 2]),
     /// A cubic Bezier curve: start, two control points, end.
     Cubic([DVec2; 4]),

@@ -29,7 +29,7 @@ pub enum PatternFlaw {
     /// Two panels of one name.
     #[error("two panels are named {name}; give each panel a name of its own")]
     SameName {
-        /// The name.
+        /// The name that two panels have.
         name: String,
     },
     /// A coordinate that is NaN, infinite or far away.
@@ -37,15 +37,15 @@ pub enum PatternFlaw {
         "panel {panel}: {edge} reaches beyond {MAX_REACH_M} m; check the unit of the file and the numbers of this edge"
     )]
     TooFar {
-        /// The panel.
+        /// Name of the panel.
         panel: String,
-        /// The edge.
+        /// The edge, as its file counts or labels it.
         edge: String,
     },
     /// An outline of fewer than two edges, or of two straight ones.
     #[error("panel {panel} has {count} edges and encloses nothing; draw its whole outline")]
     FewEdges {
-        /// The panel.
+        /// Name of the panel.
         panel: String,
         /// How many edges it has.
         count: usize,
@@ -53,15 +53,15 @@ pub enum PatternFlaw {
     /// An edge without length.
     #[error("panel {panel}: {edge} is shorter than {} mm; merge its ends", LEAST_EDGE_M * 1e3)]
     ShortEdge {
-        /// The panel.
+        /// Name of the panel.
         panel: String,
-        /// The edge.
+        /// The edge, as its file counts or labels it.
         edge: String,
     },
     /// An outline with a gap.
     #[error("panel {panel}: {edge} ends {gap_mm:.1} mm from where {next} starts; close the outline")]
     Open {
-        /// The panel.
+        /// Name of the panel.
         panel: String,
         /// The edge before the gap.
         edge: String,
@@ -75,7 +75,7 @@ pub enum PatternFlaw {
         "panel {panel}: edge {edge} is an arc of {radius} m, too small a radius for its ends; give at least half of the distance between them"
     )]
     Radius {
-        /// The panel.
+        /// Name of the panel.
         panel: String,
         /// Number of the edge.
         edge: usize,
@@ -85,9 +85,9 @@ pub enum PatternFlaw {
     /// An outline that crosses or touches itself.
     #[error("panel {panel}: {first} crosses or touches {second}; draw an outline that goes once around the piece")]
     Crossing {
-        /// The panel.
+        /// Name of the panel.
         panel: String,
-        /// One edge.
+        /// The first of the two edges, as its file counts or labels it.
         first: String,
         /// The other, or the same.
         second: String,
@@ -95,7 +95,7 @@ pub enum PatternFlaw {
     /// A panel of next to no area.
     #[error("panel {panel} has an area of {area_cm2:.2} cm2, less than {} cm2; delete it or check the unit of the file", LEAST_PANEL_M2 * 1e4)]
     NoArea {
-        /// The panel.
+        /// Name of the panel.
         panel: String,
         /// Its area (cm2).
         area_cm2: f64,
@@ -103,13 +103,13 @@ pub enum PatternFlaw {
     /// A grain that points nowhere.
     #[error("panel {panel}: its grain has no direction; draw the grain line with two different ends")]
     NoGrain {
-        /// The panel.
+        /// Name of the panel.
         panel: String,
     },
     /// A seam of a panel that is not there.
     #[error("{seam} names panel {name}, which is not there; {cure}")]
     NoPanel {
-        /// The seam.
+        /// Name of the seam.
         seam: String,
         /// The name that it gives.
         name: String,
@@ -119,9 +119,9 @@ pub enum PatternFlaw {
     /// A seam of an edge that is not there.
     #[error("{seam} names edge {edge} of panel {panel}, which has {count}; name one of 0 to {}", count.saturating_sub(1))]
     NoEdge {
-        /// The seam.
+        /// Name of the seam.
         seam: String,
-        /// The panel.
+        /// Name of the panel.
         panel: String,
         /// The edge that it names.
         edge: usize,
@@ -133,11 +133,11 @@ pub enum PatternFlaw {
         "{first} and {second} both sew {edge} of panel {panel}; sew each edge once, and split it where two others meet at it"
     )]
     SewnTwice {
-        /// The panel.
+        /// Name of the panel.
         panel: String,
-        /// The edge.
+        /// The edge, as its file counts or labels it.
         edge: String,
-        /// One seam.
+        /// Name of the seam that was read first.
         first: String,
         /// The other, or the same.
         second: String,
@@ -147,7 +147,7 @@ pub enum PatternFlaw {
         "{seam} sews the outside of panel {panel} to an inside, against the other seams; swap the ends of one of its sides"
     )]
     Twisted {
-        /// The seam.
+        /// Name of the seam.
         seam: String,
         /// The panel on its second side.
         panel: String,

@@ -35,6 +35,6 @@ impl SeamSide {
 pub struct Seam {
     /// How messages name it.
     pub name: String,
-    /// Both sides.
+    /// The two runs of edges, sewn from beginning to beginning.
     pub sides: [SeamSide; 2],
 }

@@ -26,13 +26,13 @@ pub enum TailorError {
         "panel {panel} has a part too narrow for a spacing of {spacing_mm:.1} mm, near ({x:.3}, {y:.3}) m of its drawing; mesh it at a smaller spacing"
     )]
     Narrow {
-        /// The panel.
+        /// Name of the panel.
         panel: String,
         /// The spacing (mm).
         spacing_mm: f64,
-        /// Where (m).
+        /// Place in the drawing of the panel, to the right (m).
         x: f64,
-        /// Where (m).
+        /// Place in the drawing of the panel, upwards (m).
         y: f64,
     },
     /// A seam that joins what must stay apart.
@@ -40,11 +40,11 @@ pub enum TailorError {
         "the seams of panel {panel} fold one of its faces flat or join three faces at an edge, near ({x:.3}, {y:.3}) m of its drawing; mesh it at a smaller spacing or round the corner"
     )]
     Folded {
-        /// The panel.
+        /// Name of the panel.
         panel: String,
-        /// Where (m).
+        /// Place in the drawing of the panel, to the right (m).
         x: f64,
-        /// Where (m).
+        /// Place in the drawing of the panel, upwards (m).
         y: f64,
     },
 }

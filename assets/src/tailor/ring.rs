@@ -26,7 +26,7 @@ impl HasPosition for Node {
 /// numbered in this order.
 #[derive(Debug, Clone)]
 pub struct Points<'b> {
-    /// The outline.
+    /// Points of the outline, which all stay.
     pub boundary: &'b Boundary,
     /// True where the outline runs counter-clockwise.
     pub counter_clockwise: bool,

@@ -19,9 +19,7 @@ use crate::toml_keys::place;
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SeamFile {
-    /// The panels.
     panel: Vec<PanelEntry>,
-    /// The seams.
     #[serde(default)]
     seam: Vec<SeamEntry>,
 }

@@ -71,36 +71,30 @@ impl GarmentBearing {
     }
 }
 
-/// Lists of what contacts do, by the lists of contacts.
-pub trait Pushes {
-    /// Those of a list.
-    fn of(&self, list: u16) -> &[ContactPush];
-}
-
 impl Bearing {
-    /// Nothing touches it.
+    /// Forgets what held it, because no contact touches it.
     pub fn rest(&mut self, resting: &mut Resting) {
         (resting.support, self.body, self.missing) = (Vec3A::ZERO, Vec3A::ZERO, f32::NEG_INFINITY);
     }
 
-    /// Gives the particle `i` what the contacts of one level do to it. What does not give way bears it until the end of
+    /// Gives the particle `i` what the contacts of one level do to it; `pushes` are those of a list. What does not give way bears it until the end of
     /// the substep's turns, or passes it on: what holds it puts it back, and no solve sees a gap that is none. At its own level it
     /// learns what holds it, which may be nothing any more.
     #[inline(always)]
-    pub fn gather(
+    pub fn gather<'c>(
         &mut self,
         resting: &mut Resting,
         i: usize,
         touches: &[Touch],
         is_own: bool,
         columns: ParticleColumns<'_>,
-        pushes: &impl Pushes,
+        pushes: impl Fn(u16) -> &'c [ContactPush],
     ) {
         let (mut push, mut carry, mut support) = (Vec3A::ZERO, Vec3A::ZERO, Vec3A::ZERO);
         let (mut owed, mut held_by) = (self.owed, 0.0);
         let mut missing = if is_own { f32::NEG_INFINITY } else { self.missing };
         for touch in touches {
-            let contact = &pushes.of(touch.list)[touch.contact as usize];
+            let contact = &pushes(touch.list)[touch.contact as usize];
             let part = contact.push * touch.share;
             let carried = contact.normal * (contact.carry * touch.share);
             if contact.holds(resting.support, touch.share) {

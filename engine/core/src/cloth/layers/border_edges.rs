@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use glam::Vec3A;
 
-use super::contact::{CONTACTS_AN_EDGE, LayerContact};
+use super::contact::{CONTACTS_AN_EDGE, ContactMemory, LayerContact};
 use super::contact_list::ContactList;
 use super::garment_surface::GarmentSurface;
 use super::pair::{LayerPair, PairScene};
@@ -22,26 +22,20 @@ const DEEPEST_M: f32 = 0.015;
 /// Sine of the angle between two edges, as seen along the normal, under which they lie along each other and not across.
 const ACROSS: f32 = 0.05;
 
-/// Most triangles that are looked at to find the one before an edge's first end, and most that the edge lies across.
-const MOST_HOPS: [usize; 2] = [4, 6];
+/// Most triangles that are walked over to the one before an edge's first end: the nearest was found a few steps ago.
+const MOST_HOPS: usize = 4;
+
+/// Most triangles that an edge lies across: both meshes have edges of about one length, so that it is two or three.
+const MOST_ACROSS: usize = 6;
 
 /// The edges of a garment's borders whose first vertices are among some of its particles.
 #[derive(Debug, Clone)]
 pub struct BorderEdges {
     edges: Box<[[u32; 2]]>,
-    /// What the last contact of each has left behind `[edges]`.
-    left: Box<[Left]>,
+    /// What the contacts of each in the last step have left behind `[edges]`.
+    remembered: Box<[ContactMemory]>,
     /// Of each contact of this step, in their order, which edge made it.
     made: Vec<u32>,
-}
-
-/// What a contact leaves behind for the next step.
-#[derive(Debug, Clone, Copy, Default)]
-struct Left {
-    /// How far it has slid from where it sticks (m), if it touched.
-    slip: Option<Vec3A>,
-    /// What was passed on between the two (kg m).
-    passed: f32,
 }
 
 /// An edge that looks for others, along a normal.
@@ -67,7 +61,7 @@ impl BorderEdges {
         let own = surface.border_edges.iter().filter(|edge| particles.contains(&(edge[0] as usize)));
         let edges: Box<[[u32; 2]]> = own.copied().collect();
         let made = Vec::with_capacity(CONTACTS_AN_EDGE * edges.len());
-        Self { left: vec![Left::default(); edges.len()].into(), made, edges }
+        Self { remembered: vec![ContactMemory::default(); edges.len()].into(), made, edges }
     }
 
     /// Most contacts that they make in a step.
@@ -77,13 +71,11 @@ impl BorderEdges {
 
     /// Keeps in mind where each sticks, from their contacts of the last step.
     pub fn remember(&mut self, scene: &PairScene<'_>, contacts: &ContactList) {
-        self.left.fill(Left::default());
+        self.remembered.fill(ContactMemory::default());
         let own = contacts.pairs().filter(|(contact, _)| contact.own == 2);
         for ((contact, push), &edge) in own.zip(&self.made) {
-            let left = &mut self.left[edge as usize];
-            // The deepest comes first.
-            left.slip = left.slip.or_else(|| contact.slip(scene.columns, push.normal));
-            left.passed = left.passed.max(contact.passed.dot(push.normal).abs());
+            let remembered = &mut self.remembered[edge as usize];
+            *remembered = remembered.with(contact.memory(scene.columns, push.normal));
         }
     }
 
@@ -97,14 +89,11 @@ impl BorderEdges {
         contacts: &mut ContactList,
     ) {
         self.made.clear();
-        for (e, (&edge, left)) in self.edges.iter().zip(&self.left).enumerate() {
+        for (e, (&edge, &remembered)) in self.edges.iter().zip(&self.remembered).enumerate() {
             let Some(triangle) = near(edge[0]) else { continue };
             let Some((normal, found)) = find_of(pair, scene, edge, triangle) else { continue };
-            for (_, mut contact) in found {
-                contact.passed = normal * left.passed;
-                contact.sticks = left.slip.is_some();
-                contact.anchor -= left.slip.unwrap_or_default();
-                contacts.push(contact, normal);
+            for (_, contact) in found {
+                contacts.push(contact.going_on(remembered, normal), normal);
                 self.made.push(e as u32);
             }
         }
@@ -112,7 +101,7 @@ impl BorderEdges {
 
     /// Memory that they hold (bytes).
     pub fn bytes(&self) -> usize {
-        size_of_val(&*self.edges) + size_of_val(&*self.left) + size_of::<u32>() * self.made.capacity()
+        size_of_val(&*self.edges) + size_of_val(&*self.remembered) + size_of::<u32>() * self.made.capacity()
     }
 }
 
@@ -158,7 +147,7 @@ impl Looking {
     fn before(&self, scene: &PairScene<'_>, from: u32) -> u32 {
         let mesh = &scene.surfaces[1].mesh;
         let mut triangle = from;
-        for _ in 0..MOST_HOPS[0] {
+        for _ in 0..MOST_HOPS {
             let corners = mesh.corners(triangle).map(|v| get(scene.columns[1].x, v as usize));
             // How far the end is behind each edge, as seen along the normal, by which side of it the third corner is.
             let behind = |k: usize| {
@@ -179,7 +168,7 @@ impl Looking {
     fn each_across(&self, scene: &PairScene<'_>, from: u32, mut act: impl FnMut([u32; 2], Across)) {
         let mesh = &scene.surfaces[1].mesh;
         let (mut triangle, mut reached, mut through) = (from, f32::NEG_INFINITY, [u32::MAX; 2]);
-        for _ in 0..MOST_HOPS[1] {
+        for _ in 0..MOST_ACROSS {
             let (corners, mut next) = (mesh.corners(triangle), NO_TRIANGLE);
             for k in 0..3 {
                 let (c, d) = (corners[(k + 1) % 3], corners[(k + 2) % 3]);

@@ -68,6 +68,22 @@ pub struct LayerContact {
     pub anchor: Vec3A,
 }
 
+/// What a contact leaves behind for the next step.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct ContactMemory {
+    /// How far the first side has slid from where it sticks (m), if it touched.
+    slip: Option<Vec3A>,
+    /// What was passed on between the two (kg m).
+    passed: f32,
+}
+
+impl ContactMemory {
+    /// That of several contacts of one edge, of which this is the deepest that was looked at so far.
+    pub fn with(self, other: Self) -> Self {
+        Self { slip: self.slip.or(other.slip), passed: self.passed.max(other.passed) }
+    }
+}
+
 /// What a contact does to its vertices, as they gather it.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ContactPush {
@@ -203,10 +219,18 @@ impl LayerContact {
         [x, before]
     }
 
-    /// How far the first side is from where it sticks (m), if it touches.
-    pub fn slip(&self, of: [ParticleColumns<'_>; 2], normal: Vec3A) -> Option<Vec3A> {
+    /// What it leaves behind, as the last step has left the garments.
+    pub fn memory(&self, of: [ParticleColumns<'_>; 2], normal: Vec3A) -> ContactMemory {
         let at = |k: usize| get(of[self.side(k)].x, self.vertices[k] as usize) * self.shares[k];
-        self.sticks.then(|| (at(0) + at(1) + at(2) + at(3) - self.anchor).reject_from_normalized(normal))
+        let slip = || (at(0) + at(1) + at(2) + at(3) - self.anchor).reject_from_normalized(normal);
+        ContactMemory { slip: self.sticks.then(slip), passed: self.passed.dot(normal).abs() }
+    }
+
+    /// The same contact, going on from what one of the step before has left behind.
+    pub fn going_on(self, memory: ContactMemory, normal: Vec3A) -> Self {
+        let ContactMemory { slip, passed } = memory;
+        let anchor = self.anchor - slip.unwrap_or_default();
+        Self { passed: normal * passed, sticks: slip.is_some(), anchor, ..self }
     }
 
     /// Solves the contact as the constraints of a substep have left the garments; `rest` is what holds its vertices.

@@ -3,7 +3,7 @@
 use glam::Vec3A;
 
 use super::border_edges::BorderEdges;
-use super::contact::LayerContact;
+use super::contact::{ContactMemory, LayerContact};
 use super::contact_list::ContactList;
 use super::fold_share::{FoldCounts, FoldScene, FoldShare};
 use super::garment_surface::GarmentSurface;
@@ -34,10 +34,8 @@ struct Remembered {
     triangle: u32,
     /// How far it was from the face when it was last looked at (m).
     distance: f32,
-    /// What was passed on between the two in the last substep (kg m).
-    passed: f32,
-    /// How far it has slid from where it sticks (m), if it touched.
-    slip: Option<Vec3A>,
+    /// What its contact of the last step has left behind.
+    contact: ContactMemory,
 }
 
 /// One worker's share of a pair: half of the particles.
@@ -118,12 +116,9 @@ impl PairShare {
             self.corner[k] = scene.surfaces[1].mesh.corners(found.triangle)[0];
             remembered.distance = found.distance2.sqrt().min(FARTHEST_M);
             match touch(pair, scene, i, found) {
-                Ok((mut contact, normal)) => {
-                    contact.passed = normal * remembered.passed;
-                    contact.sticks = remembered.slip.is_some();
-                    contact.anchor -= remembered.slip.unwrap_or_default();
+                Ok((contact, normal)) => {
                     self.slack.as_mut()[k] = 0.0;
-                    self.contacts.push(contact, normal);
+                    self.contacts.push(contact.going_on(remembered.contact, normal), normal);
                 }
                 Err(Distant(slack)) => self.slack.as_mut()[k] = slack,
             }
@@ -139,11 +134,10 @@ impl PairShare {
     /// Keeps in mind what the contacts of the last step have shown of each particle.
     fn remember(&mut self, scene: &PairScene<'_>) {
         let Self { first, remembered, contacts, .. } = self;
-        remembered.iter_mut().for_each(|r| (r.passed, r.slip) = (0.0, None));
+        remembered.iter_mut().for_each(|r| r.contact = ContactMemory::default());
         for (contact, push) in contacts.pairs().filter(|(contact, _)| contact.own == 1) {
             let remembered = &mut remembered[contact.vertices[0] as usize - *first];
-            remembered.passed = contact.passed.dot(push.normal).abs();
-            remembered.slip = contact.slip(scene.columns, push.normal);
+            remembered.contact = contact.memory(scene.columns, push.normal);
         }
         self.borders.remember(scene, &self.contacts);
     }

@@ -12,8 +12,8 @@ use std::time::Instant;
 use toile_assets::garment::layout::OWNERS;
 use toile_assets::limits::MAX_GARMENTS;
 
-use super::bearing::{Bearing, GarmentBearing, Pushes, give_way};
-use super::contact::{ContactPush, Resting, VERTICES};
+use super::bearing::{Bearing, GarmentBearing, give_way};
+use super::contact::{Resting, VERTICES};
 use super::contact_list::ContactList;
 use super::garment_surface::{GarmentMotion, GarmentSurface};
 use super::pace::{PairPace, Search};
@@ -360,7 +360,7 @@ impl<'a> LayerWork<'a> {
             let (resting, bearing) = unsafe { (self.resting[garment].own(i), self.bearing[garment].own(i)) };
             let own = touches.of(touched);
             match turn.up {
-                true => bearing.gather(resting, i, own, is_own, columns, self),
+                true => bearing.gather(resting, i, own, is_own, columns, |list| self.contacts(list.into()).pushes()),
                 false => own.iter().for_each(|touch| {
                     let contacts = self.contacts(touch.list.into()).contacts();
                     bearing.take_over(touch, &contacts[touch.contact as usize]);
@@ -412,11 +412,5 @@ impl<'a> LayerWork<'a> {
             }
             contact.solve(columns, &rest, law, push);
         }
-    }
-}
-
-impl Pushes for LayerWork<'_> {
-    fn of(&self, list: u16) -> &[ContactPush] {
-        self.contacts(list.into()).pushes()
     }
 }
