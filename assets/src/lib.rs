@@ -31,6 +31,8 @@ pub mod scene;
 pub mod sizes;
 pub mod tailor;
 
+pub mod adapt;
+
 pub mod scene_file;
 pub mod wardrobe;
 

@@ -14,7 +14,7 @@ mod fit;
 mod plan;
 mod report;
 mod shell;
-mod skin;
+pub(crate) mod skin;
 mod system;
 mod union;
 mod zones;

@@ -9,7 +9,7 @@ use glam::Vec3;
 use super::shape::{Face, NO_VERTEX};
 
 /// Faces smaller than this have no direction to bend or to stretch in (m2): a tenth of a millimetre squared.
-const LEAST_AREA_M2: f32 = 1e-8;
+pub(crate) const LEAST_AREA_M2: f32 = 1e-8;
 
 /// Vertices a garment may have: the memory of one frame's garments stays under 64 MiB.
 pub const MAX_VERTICES: usize = 262_144;

@@ -5,7 +5,7 @@ use glam::Vec3;
 use crate::body::Body;
 
 /// A body's vertices by height, and the triangles around each.
-pub(super) struct SkinByHeight<'a> {
+pub(crate) struct SkinByHeight<'a> {
     body: &'a Body,
     /// Vertices, lowest first.
     order: Vec<u32>,
@@ -15,7 +15,7 @@ pub(super) struct SkinByHeight<'a> {
 }
 
 impl<'a> SkinByHeight<'a> {
-    pub(super) fn new(body: &'a Body) -> Self {
+    pub(crate) fn new(body: &'a Body) -> Self {
         let mesh = &body.mesh;
         let at = |v: &u32| mesh.positions[*v as usize].y;
         let mut order: Vec<u32> = (0..mesh.positions.len() as u32).collect();
@@ -32,6 +32,11 @@ impl<'a> SkinByHeight<'a> {
     /// The vertex nearest to a point, and how far it is (m). Looks down and up from the point's height for as long as
     /// height alone leaves room for a nearer one.
     pub(super) fn nearest(&self, p: Vec3) -> Option<(usize, f32)> {
+        self.nearest_of(p, |_| true)
+    }
+
+    /// The same among the vertices that `admits` names.
+    fn nearest_of(&self, p: Vec3, admits: impl Fn(usize) -> bool) -> Option<(usize, f32)> {
         let at = |v: u32| self.body.mesh.positions[v as usize];
         let (down, up) = self.order.split_at(self.order.partition_point(|v| at(*v).y < p.y));
         let mut best = (None, f32::INFINITY);
@@ -39,20 +44,29 @@ impl<'a> SkinByHeight<'a> {
             if (p.y - at(*v).y).powi(2) >= best.1 {
                 break;
             }
-            best = nearer(best, *v, at(*v).distance_squared(p));
+            if admits(*v as usize) {
+                best = nearer(best, *v, at(*v).distance_squared(p));
+            }
         }
         for v in up {
             if (at(*v).y - p.y).powi(2) >= best.1 {
                 break;
             }
-            best = nearer(best, *v, at(*v).distance_squared(p));
+            if admits(*v as usize) {
+                best = nearer(best, *v, at(*v).distance_squared(p));
+            }
         }
         best.0.map(|v: u32| (v as usize, best.1.sqrt()))
     }
 
     /// The vertex nearest to a point, and the distance to the triangles around it (m), positive outside.
     pub(super) fn distance(&self, p: Vec3) -> Option<(usize, f32)> {
-        let (v, far) = self.nearest(p)?;
+        self.distance_of(p, |_| true)
+    }
+
+    /// The same among the vertices that `admits` names.
+    pub(crate) fn distance_of(&self, p: Vec3, admits: impl Fn(usize) -> bool) -> Option<(usize, f32)> {
+        let (v, far) = self.nearest_of(p, admits)?;
         let outside = (p - self.body.mesh.positions[v]).dot(self.body.normals[v]) >= 0.0;
         let triangles = &self.around[self.start[v] as usize..self.start[v + 1] as usize];
         let to = |t: &u32| {
@@ -69,7 +83,7 @@ fn nearer(best: (Option<u32>, f32), v: u32, square: f32) -> (Option<u32>, f32) {
 }
 
 /// The point of a triangle that is closest to `p`: its foot on the plane if that lies inside, else on the nearest side.
-fn closest(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
+pub(crate) fn closest(p: Vec3, [a, b, c]: [Vec3; 3]) -> Vec3 {
     let normal = (b - a).cross(c - a);
     let foot = p - normal * ((p - a).dot(normal) / normal.length_squared().max(f32::MIN_POSITIVE));
     let sides = [(a, b), (b, c), (c, a)];

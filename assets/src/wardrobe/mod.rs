@@ -6,6 +6,7 @@
 
 pub mod drape;
 pub mod jacket;
+pub mod own;
 pub mod section;
 pub mod style;
 pub mod sun_dress;
@@ -13,15 +14,13 @@ pub mod t_shirt;
 pub mod upper_body;
 pub mod wide_trousers;
 
-use std::path::Path;
-
 use thiserror::Error;
 
+use crate::adapt::AdaptError;
 use crate::bake::{bake, weights};
 use crate::body::{Body, BodyError, Measures, Sex};
 use crate::fabric::{Fabric, FabricError};
 use crate::garment::{Garment, MeshError, Shape};
-use crate::import::obj::{self, ObjError};
 use crate::sizes::{Girth, Population, SizeBody, SizeError, SizeTable};
 use style::{Cut, Style};
 
@@ -71,9 +70,9 @@ pub enum WardrobeError {
         /// What is wrong with the mesh.
         source: MeshError,
     },
-    /// An OBJ file that cannot be read.
+    /// A mesh of the user's own, or a file beside it, that cannot be used.
     #[error(transparent)]
-    Obj(#[from] ObjError),
+    Own(#[from] AdaptError),
     /// A fabric that cannot be used.
     #[error(transparent)]
     Fabric(#[from] FabricError),
@@ -183,25 +182,4 @@ impl Style {
         garment.layer = self.layer;
         Ok(garment)
     }
-}
-
-/// A user's mesh on a shopper, baked: made for the average woman, scaled to the shopper as Gultepe 2013 (section 6.4)
-/// scales a garment: its height by stature, its breadth by the hip, its depth by the mean of both.
-pub fn dress_mesh(path: &Path, fabric: &str, shopper: &Body) -> Result<Garment, WardrobeError> {
-    let fabric = Fabric::built_in(fabric)?;
-    let shape = draft_mesh(path, shopper)?;
-    let name = path.display().to_string();
-    bake(&name, "one size", &shape, &fabric).map_err(|source| WardrobeError::Mesh { name, source })
-}
-
-/// The same before it is baked.
-pub fn draft_mesh(path: &Path, shopper: &Body) -> Result<Shape, WardrobeError> {
-    let mut shape = obj::read(path)?;
-    let average = Measures::average(Sex::Female);
-    let tall = shopper.measures.stature / average.stature;
-    let wide = shopper.measures.hip_girth / average.hip_girth;
-    let scale = glam::Vec3::new(wide, tall, 0.5 * (wide + tall));
-    shape.cut.iter_mut().chain(&mut shape.worn).for_each(|p| *p *= scale);
-    shape.weights = weights::transfer(shopper, &shape.worn, |_, _| true);
-    Ok(shape)
 }

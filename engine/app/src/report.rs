@@ -7,6 +7,7 @@
 use std::path::PathBuf;
 
 use serde::Serialize;
+use toile_assets::adapt::MeshReport;
 use toile_fitting::scene::StepTimes;
 use toile_fitting::scene::contact::ContactReport;
 
@@ -226,6 +227,9 @@ pub struct TryOn {
     /// What contact of cloth with cloth did; none where no garment can meet anything.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contact: Option<ContactReport>,
+    /// What was repaired in meshes of the user's own and what became of their pieces; left out where none is worn.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub meshes: Vec<MeshReport>,
     /// How far skin or inner cloth stood out of what covers it, which the pictures hide; none where there are no pictures.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hidden_mm: Option<Penetration>,

@@ -50,7 +50,7 @@ const HIPS: GirthRow = GirthRow { first: [4_226, 4_227], last: None, back: &[], 
 const MAX_ROW: usize = 400;
 
 /// Metres in a decimetre.
-const DECIMETRE: f32 = 0.1;
+pub(super) const DECIMETRE: f32 = 0.1;
 
 impl MakehumanGirths {
     /// Reads the rows of a body's faces; `positions` are of the whole base (dm).

@@ -5,6 +5,7 @@
 //! Budget: at load only, about half a second.
 //! Thread: the loading thread.
 
+pub mod clothes;
 mod files;
 pub mod girths;
 mod mesh;
@@ -60,6 +61,16 @@ pub fn read(folder: &Path, choice: &MakehumanOptions, options: &ImportOptions) -
     let raw = raw(folder, &choice.rig, &base)?;
     let imported = settle(raw, options).map_err(|flaw| flaw.of(folder))?;
     Ok(MakehumanBody { imported, girths })
+}
+
+/// Where the origin of the base is in a body that was read from it (m): clothes are given about the origin.
+///
+/// # Errors
+/// As [`read`].
+pub fn origin(folder: &Path, choice: &MakehumanOptions, body: &crate::body::Body) -> Result<Vec3, AvatarError> {
+    let mut base = MakehumanMesh::read(folder)?;
+    targets(folder, &choice.targets, &mut base.positions)?;
+    Ok(base.positions[0] * girths::DECIMETRE - body.mesh.positions[0])
 }
 
 /// A rig's name is part of a file's name, and leads to no other folder.

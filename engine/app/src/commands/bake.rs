@@ -5,15 +5,15 @@ use std::path::Path;
 use std::time::Instant;
 
 use serde::Serialize;
+use toile_assets::adapt::{OwnMesh, source};
 use toile_assets::bake::survey::{MeshSurvey, survey};
-use toile_assets::bake::{self, weights};
+use toile_assets::bake;
 use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::fabric::Fabric;
 use toile_assets::file::{self, FileKind};
 use toile_assets::garment::{Garment, Shape};
-use toile_assets::import::obj;
 use toile_assets::sizes::Population;
-use toile_assets::wardrobe::{self, WardrobeError};
+use toile_assets::wardrobe::{self, WardrobeError, own};
 
 use crate::exit::AppError;
 use crate::report::Document;
@@ -41,9 +41,6 @@ pub struct BakeArgs {
     #[arg(long)]
     pub json: bool,
 }
-
-/// Fabric of a mesh where none is named.
-const MESH_FABRIC: &str = "cotton-lawn";
 
 /// A fabric file: a dozen lines.
 const FABRIC_FILE: FileKind = FileKind { name: "a fabric file", max_bytes: 1 << 16, cure: "give one fabric a file" };
@@ -191,6 +188,8 @@ struct DraftedShape {
     size: String,
     fabric: String,
     shape: Shape,
+    /// What became of a mesh of the user's own.
+    notes: Vec<String>,
 }
 
 fn bake(args: &BakeArgs) -> Result<BakeReport, AppError> {
@@ -201,21 +200,25 @@ fn bake(args: &BakeArgs) -> Result<BakeReport, AppError> {
     let garment = bake::bake(&drafted.name, &drafted.size, &drafted.shape, &fabric)
         .map_err(|source| AppError::input(WardrobeError::Mesh { name: drafted.name.clone(), source }))?;
     let bake_ms = start.elapsed().as_secs_f64() * 1e3;
-    Ok(report(&garment, survey(&drafted.shape, &fabric), bake_ms))
+    let mut report = report(&garment, survey(&drafted.shape, &fabric), bake_ms);
+    report.notes.splice(0..0, drafted.notes);
+    Ok(report)
 }
 
 /// Cuts the garment on the body of its size, or reads the mesh.
 fn draft(args: &BakeArgs) -> Result<DraftedShape, AppError> {
     let name = &args.garment;
-    let is_file = Path::new(name).exists() || name.to_lowercase().ends_with(".obj");
+    let is_file = Path::new(name).exists() || source::is_mesh(name);
     if is_file && !wardrobe::names().contains(&name.as_str()) {
         if let Some(size) = &args.size {
             return Err(AppError::input(WardrobeError::NoSizes { name: name.clone(), size: size.clone() }));
         }
-        let mut shape = obj::read(Path::new(name)).map_err(AppError::input)?;
-        let body = Body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(AppError::internal)?;
-        shape.weights = weights::transfer(&body, &shape.worn, |_, _| true);
-        return Ok(DraftedShape { name: name.clone(), size: "one size".into(), fabric: MESH_FABRIC.into(), shape });
+        let own = OwnMesh::read(Path::new(name)).map_err(AppError::input)?;
+        let sex = own.sex.unwrap_or(Sex::Female);
+        let body = Body::build(sex, &Measures::average(sex)).map_err(AppError::internal)?;
+        let drafted = own::draft(&own, None, &body).map_err(AppError::input)?;
+        let (fabric, notes) = (drafted.fabric.name, drafted.report.lines());
+        return Ok(DraftedShape { name: name.clone(), size: own::UNKNOWN.into(), fabric, shape: drafted.shape, notes });
     }
     let style = wardrobe::style(name).map_err(AppError::input)?;
     let table = style.sizes().map_err(AppError::input)?;
@@ -224,7 +227,7 @@ fn draft(args: &BakeArgs) -> Result<DraftedShape, AppError> {
     let wearer = if table.population == Population::Men { Sex::Male } else { Sex::Female };
     let body = style.body(&size, wearer).map_err(AppError::input)?;
     let shape = style.draft(&size, &body).map_err(AppError::input)?;
-    Ok(DraftedShape { name: style.name.clone(), size, fabric: style.fabric.clone(), shape })
+    Ok(DraftedShape { name: style.name.clone(), size, fabric: style.fabric.clone(), shape, notes: Vec::new() })
 }
 
 /// A fabric by its name, or from a file.

@@ -7,6 +7,7 @@ use toile_assets::body::Sex;
 use toile_engine::cloth::Quality;
 
 use glam::Affine3A;
+use toile_assets::adapt::MeshReport;
 use toile_assets::body::Body;
 use toile_assets::export::{self, DressedBody, glb};
 use toile_assets::garment::Garment;
@@ -167,7 +168,8 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     let track = session::standing(&session)?;
     let (body, note) = worn_body(args, &mut measured, &choices, has_joints)?;
     let notes: Vec<String> = note.into_iter().chain(measured.best.notes.iter().cloned()).collect();
-    let (mut garments, recommendations) = put_on(&choices, args.size.as_deref(), &measured, &body)?;
+    let PutOn { mut garments, recommendations, meshes } = put_on(&choices, args.size.as_deref(), &measured, &body)?;
+    meshes.iter().flat_map(MeshReport::lines).for_each(|line| words.print_line(&line));
     args.tuck.iter().try_for_each(|name| tuck(&mut garments, name))?;
 
     let rig = Rig::fit(&body);
@@ -193,6 +195,7 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
             physics: physics(&frame),
             crossings: played.crossings,
             contact: contact(&frame),
+            meshes,
             hidden_mm: played.hidden_mm.map(|max| report::Penetration { max }),
             state_hash: report::hash_text(frame.state_hash()),
             renderer: played.renderer,
@@ -236,28 +239,31 @@ fn worn_body(
     }
 }
 
+/// The garments that are worn, and what there is to say of them.
+struct PutOn {
+    garments: Vec<Garment>,
+    recommendations: Vec<Recommendation>,
+    /// Of the meshes of the user's own.
+    meshes: Vec<MeshReport>,
+}
+
 /// Sizes and bakes every garment.
-fn put_on(
-    choices: &[Choice],
-    size: Option<&str>,
-    measured: &Measured,
-    body: &Body,
-) -> Result<(Vec<Garment>, Vec<Recommendation>), AppError> {
-    let (mut garments, mut recommendations) = (Vec::new(), Vec::new());
+fn put_on(choices: &[Choice], size: Option<&str>, measured: &Measured, body: &Body) -> Result<PutOn, AppError> {
+    let mut put_on = PutOn { garments: Vec::new(), recommendations: Vec::new(), meshes: Vec::new() };
     for choice in choices {
         let worn = wish::put_on(choice, size, &measured.best, body)?;
-        recommendations.push(match (worn.fit, choice) {
-            (Some(fit), _) => fit.into(),
-            (None, Choice::Mesh(path)) => Recommendation {
-                garment: path.display().to_string(),
+        put_on.recommendations.push(match worn.fit {
+            Some(fit) => fit.into(),
+            None => Recommendation {
+                garment: worn.garment.name.clone(),
                 size: worn.garment.size.clone(),
                 ..Recommendation::default()
             },
-            (None, Choice::Style(_)) => Recommendation::default(),
         });
-        garments.push(worn.garment);
+        put_on.garments.push(worn.garment);
+        put_on.meshes.extend(worn.mesh);
     }
-    Ok((garments, recommendations))
+    Ok(put_on)
 }
 
 /// Tucks in a garment that is worn, by its name.

@@ -1,12 +1,14 @@
 //! What is to be worn.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
+use toile_assets::adapt::{MeshReport, OwnMesh, source};
 use toile_assets::body::{Body, Sex};
 use toile_assets::garment::Garment;
 use toile_assets::limits::MAX_GARMENTS;
 use toile_assets::sizes::Population;
 use toile_assets::wardrobe;
+use toile_assets::wardrobe::own;
 use toile_assets::wardrobe::style::Style;
 use toile_engine::cloth::Quality;
 use toile_track::measure::Measurements;
@@ -16,9 +18,6 @@ use toile_track::tape_readings::TapeReadings;
 use super::measured::ShopperFacts;
 use super::size;
 use crate::FittingError;
-
-/// Fabric of a mesh that a user brings without saying what it is made of.
-const MESH_FABRIC: &str = "cotton-lawn";
 
 /// Garments, size and quality that are asked for, and what the shopper says of themselves.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -50,7 +49,7 @@ pub enum Choice {
     /// A garment of the wardrobe.
     Style(Box<Style>),
     /// A mesh of the user's own.
-    Mesh(PathBuf),
+    Mesh(Box<OwnMesh>),
 }
 
 /// A garment on the body, and how its size fits; a mesh has no sizes.
@@ -60,6 +59,8 @@ pub struct Worn {
     pub garment: Garment,
     /// How it fits; none where it was not recommended.
     pub fit: Option<Recommendation>,
+    /// What became of a mesh of the user's own.
+    pub mesh: Option<MeshReport>,
 }
 
 impl Wish {
@@ -101,9 +102,10 @@ impl Wish {
 }
 
 fn choice(name: &str) -> Result<Choice, FittingError> {
-    let is_file = Path::new(name).exists() || name.to_lowercase().ends_with(".obj");
+    let is_file = Path::new(name).exists() || source::is_mesh(name);
     if is_file && !wardrobe::names().contains(&name) {
-        return Ok(Choice::Mesh(name.into()));
+        let own = OwnMesh::read(Path::new(name)).map_err(FittingError::input)?;
+        return Ok(Choice::Mesh(Box::new(own)));
     }
     wardrobe::style(name).map(|style| Choice::Style(Box::new(style))).map_err(FittingError::input)
 }
@@ -122,14 +124,21 @@ pub fn population<'a>(styles: impl IntoIterator<Item = &'a Style>) -> Result<Pop
     Ok(Population::Mixed)
 }
 
-/// The same for choices; a mesh is made for everybody.
+/// The same for choices; a mesh that does not say whose it is is made for everybody.
 ///
 /// # Errors
 /// As [`population`].
 pub fn population_of(choices: &[Choice]) -> Result<Population, FittingError> {
-    population(
-        choices.iter().filter_map(|choice| if let Choice::Style(style) = choice { Some(&**style) } else { None }),
-    )
+    for choice in choices {
+        let population = match choice {
+            Choice::Style(style) => population([&**style])?,
+            Choice::Mesh(own) => own.sex.into(),
+        };
+        if population != Population::Mixed {
+            return Ok(population);
+        }
+    }
+    Ok(Population::Mixed)
 }
 
 /// Sizes a garment for measures and bakes it onto a body.
@@ -137,19 +146,15 @@ pub fn population_of(choices: &[Choice]) -> Result<Population, FittingError> {
 /// # Errors
 /// A size that is not made, a size asked for of a mesh, a mesh that cannot be used.
 pub fn put_on(choice: &Choice, size: Option<&str>, measured: &Measurements, body: &Body) -> Result<Worn, FittingError> {
-    match (choice, size) {
-        (Choice::Style(style), size) => {
+    match choice {
+        Choice::Style(style) => {
             let fit = size::judge(style, size, measured)?;
             let garment = style.dress(&fit.size, body).map_err(FittingError::input)?;
-            Ok(Worn { garment, fit: Some(fit) })
+            Ok(Worn { garment, fit: Some(fit), mesh: None })
         }
-        (Choice::Mesh(path), Some(size)) => {
-            let (name, size) = (path.display().to_string(), size.to_owned());
-            Err(FittingError::input(wardrobe::WardrobeError::NoSizes { name, size }))
-        }
-        (Choice::Mesh(path), None) => {
-            let garment = wardrobe::dress_mesh(path, MESH_FABRIC, body).map_err(FittingError::input)?;
-            Ok(Worn { garment, fit: None })
+        Choice::Mesh(mesh) => {
+            let dressed = own::dress(mesh, size, body).map_err(FittingError::input)?;
+            Ok(Worn { garment: dressed.garment, fit: None, mesh: Some(dressed.report) })
         }
     }
 }

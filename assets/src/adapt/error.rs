@@ -1,0 +1,48 @@
+//! Why a mesh does not become a garment: what, where, and the cure.
+
+use thiserror::Error;
+
+use crate::body::BodyError;
+use crate::file::FileError;
+use crate::import::avatar::AvatarError;
+use crate::sizes::SizeError;
+
+/// What can be wrong with a mesh of the user's own, or with a file beside it.
+#[derive(Debug, Error)]
+pub enum AdaptError {
+    /// A file cannot be read, or is too large.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The mesh; the sentence names the cure.
+    #[error("{path}: {flaw}")]
+    Mesh {
+        /// The file's path as the user gave it.
+        path: String,
+        /// What is wrong with it, and the cure.
+        flaw: String,
+    },
+    /// The TOML file of its measures.
+    #[error("{path}: line {line}: {reason}; docs/meshes.md lists the keys")]
+    Measures {
+        /// The TOML file.
+        path: String,
+        /// Line of the text, from 1.
+        line: usize,
+        /// What is wrong.
+        reason: String,
+    },
+    /// The clothes file or the base mesh.
+    #[error(transparent)]
+    Clothes(#[from] AvatarError),
+    /// A size or size table that cannot be used.
+    #[error(transparent)]
+    Size(#[from] SizeError),
+    /// A body of which none can be made.
+    #[error("the body that {path} is made for cannot be built: {source}")]
+    Body {
+        /// The file's path as the user gave it.
+        path: String,
+        /// Why the body cannot be built.
+        source: BodyError,
+    },
+}

@@ -1,0 +1,33 @@
+//! Adapting: meshes that others made become garments that hold.
+//!
+//! Reads: an OBJ, glTF or GLB file, a MakeHuman clothes file and a file of measures beside it, a shopper's body. Writes: a
+//! [`Shape`](crate::garment::Shape) laid on the shopper, and a report of what was repaired and what became of each piece.
+//! Budget: 1 s for 8,000 vertices; at load only.
+//! Thread: the loading thread.
+//!
+//! In this order: the unit is recognised by whether a body stands in the mesh ([`unit`]); the mesh becomes surfaces of one layer
+//! ([`repair`], [`surface`], [`shells`], [`hems`]); the body that it is made for is found ([`made_for`]); and for each shopper it
+//! is laid on them ([`place`], [`lay`]), held where it lies on the skin ([`hold`]), and each piece judged ([`judge`]).
+
+mod error;
+pub mod hems;
+pub mod hold;
+pub mod judge;
+pub mod lay;
+pub mod made_for;
+pub mod measures;
+pub mod mesh;
+pub mod own_mesh;
+pub mod place;
+pub mod repair;
+pub mod report;
+mod sets;
+pub mod shells;
+pub mod source;
+pub mod surface;
+pub mod unit;
+pub mod wear;
+
+pub use error::AdaptError;
+pub use own_mesh::OwnMesh;
+pub use report::{MeshReport, PieceReport, Repair};

@@ -1,0 +1,172 @@
+//! A mesh of the user's own on a shopper: laid, held, judged, and reported.
+
+use glam::Vec3;
+
+use super::hold::{self, HeldVertices};
+use super::judge::{self, MOST_MOVING, PieceMeasures};
+use super::lay::{LaidMesh, lay};
+use super::mesh::ForeignMesh;
+use super::own_mesh::OwnMesh;
+use super::place::Below;
+use super::report::{Behaviour, MeshReport, PieceReport};
+use super::surface::{loops, pieces};
+use crate::body::Body;
+use crate::garment::Shape;
+use crate::import::obj::warp_upright;
+
+/// Borders below the crotch that lie this far beside the middle (m) are those of trouser legs.
+const LEG_BESIDE_M: f32 = 0.04;
+
+/// Cloth within this distance of a trim (m) is held with it, so that it stays where it is sewn on.
+const SEWN_M: f32 = 0.02;
+
+/// A mesh on a shopper.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WornMesh {
+    /// Ready to be baked.
+    pub shape: Shape,
+    /// What became of it.
+    pub report: MeshReport,
+}
+
+impl OwnMesh {
+    /// Puts the mesh on a shopper as it is made: nothing is stretched to fit.
+    pub fn wear(&self, shopper: &Body) -> WornMesh {
+        self.wear_cut(&self.mesh, shopper)
+    }
+
+    /// The same with the lengths of another cut of the same mesh.
+    pub fn wear_cut(&self, cut: &ForeignMesh, shopper: &Body) -> WornMesh {
+        let pieces = pieces(cut);
+        let below = below(&self.mesh, &pieces, self.made_for.body.levels.crotch);
+        let mut laid = lay(&self.mesh, &self.weights, &self.made_for.body, shopper, &below);
+        let (held, reports) = self.decide(cut, &mut laid, shopper, &pieces);
+        let shape = shape(cut, laid, held);
+        let mut notes = self.notes.clone();
+        notes.extend(no_cloth(&reports));
+        let report = MeshReport {
+            file: self.path.clone(),
+            unit: self.axes.words(),
+            made_for: self.made_for.report(),
+            repairs: self.repairs.clone(),
+            pieces: reports,
+            notes,
+        };
+        WornMesh { shape, report }
+    }
+
+    /// What is held of each piece, and why.
+    fn decide(
+        &self,
+        cut: &ForeignMesh,
+        laid: &mut LaidMesh,
+        shopper: &Body,
+        pieces: &[Vec<u32>],
+    ) -> (Vec<bool>, Vec<PieceReport>) {
+        let neighbours = cut.neighbours();
+        let mut held = vec![false; cut.positions.len()];
+        let mut reports = Vec::new();
+        let mut moving_so_far = 0;
+        let trims = trims(cut, laid, pieces);
+        for (piece, is_trim) in pieces.iter().zip(&trims) {
+            let mut inside = vec![false; cut.positions.len()];
+            piece.iter().for_each(|v| inside[*v as usize] = true);
+            let measures = PieceMeasures::of(cut, laid, &inside);
+            let HeldVertices { held: found, by } = match cut.says_what_moves {
+                true => HeldVertices { held: self.sticks(cut), by: "as its materials say" },
+                false => hold::hold(cut, laid, shopper, piece, &neighbours),
+            };
+            let free = piece.iter().filter(|v| !found[**v as usize]).count();
+            let verdict = if *is_trim {
+                (Behaviour::Rigid, "small".to_owned())
+            } else if let Some(flaw) = measures.flaw() {
+                (Behaviour::Skinned, flaw)
+            } else if judge::is_tight(free, piece.len()) {
+                (Behaviour::Skinned, "it lies on the skin".to_owned())
+            } else if moving_so_far + free > MOST_MOVING {
+                (Behaviour::Skinned, format!("more than {MOST_MOVING} vertices would move"))
+            } else {
+                moving_so_far += free;
+                (Behaviour::Simulated, by.to_owned())
+            };
+            let moves = verdict.0 == Behaviour::Simulated;
+            piece.iter().for_each(|v| held[*v as usize] = !moves || found[*v as usize]);
+            if *is_trim {
+                judge::stiffen(&mut laid.weights, piece);
+            }
+            let source = piece.iter().map(|v| cut.source[*v as usize]).min().unwrap_or_default();
+            reports.push(measures.report(source, piece.len(), if moves { free } else { 0 }, verdict));
+        }
+        sew_on(laid, pieces, &trims, &mut held);
+        for (piece, report) in pieces.iter().zip(&mut reports) {
+            report.moving = piece.iter().filter(|v| !held[**v as usize]).count();
+        }
+        (held, reports)
+    }
+
+    /// What touches a face whose material does not move.
+    fn sticks(&self, cut: &ForeignMesh) -> Vec<bool> {
+        let mut held = vec![false; cut.positions.len()];
+        let fixed = (0..cut.faces.len()).filter(|f| !cut.free[*f]);
+        fixed.flat_map(|f| crate::garment::check::corners(&cut.faces[f])).for_each(|v| held[*v as usize] = true);
+        held
+    }
+}
+
+/// What each piece hangs around below the crotch: legs where it ends beside the middle.
+fn below(mesh: &ForeignMesh, pieces: &[Vec<u32>], crotch: f32) -> Vec<Below> {
+    let mut of = vec![Below::Skirt; mesh.positions.len()];
+    let middle = |ring: &Vec<u32>| ring.iter().map(|v| mesh.positions[*v as usize]).sum::<Vec3>() / ring.len() as f32;
+    let is_leg = |ring: &Vec<u32>| {
+        let p = middle(ring);
+        p.y < crotch && p.x.abs() > LEG_BESIDE_M
+    };
+    let legs: Vec<u32> = loops(mesh).into_iter().filter(is_leg).map(|ring| ring[0]).collect();
+    for piece in pieces.iter().filter(|piece| legs.iter().any(|v| piece.binary_search(v).is_ok())) {
+        piece.iter().for_each(|v| of[*v as usize] = Below::Legs);
+    }
+    of
+}
+
+/// Which pieces are trims: small ones, of a mesh that has a larger one.
+fn trims(cut: &ForeignMesh, laid: &LaidMesh, pieces: &[Vec<u32>]) -> Vec<bool> {
+    let small = |piece: &Vec<u32>| {
+        let mut inside = vec![false; cut.positions.len()];
+        piece.iter().for_each(|v| inside[*v as usize] = true);
+        PieceMeasures::of(cut, laid, &inside).is_trim()
+    };
+    let found: Vec<bool> = pieces.iter().map(small).collect();
+    if found.iter().all(|trim| *trim) { vec![false; pieces.len()] } else { found }
+}
+
+/// Holds the cloth that trims are sewn on.
+fn sew_on(laid: &LaidMesh, pieces: &[Vec<u32>], trims: &[bool], held: &mut [bool]) {
+    let sewn: Vec<Vec3> = pieces.iter().zip(trims).filter(|(_, trim)| **trim).flat_map(|(p, _)| p).map(|v| laid.worn[*v as usize]).collect();
+    if sewn.is_empty() {
+        return;
+    }
+    for (p, held) in laid.worn.iter().zip(held.iter_mut()).filter(|(_, held)| !**held) {
+        *held = sewn.iter().any(|q| q.distance_squared(*p) < SEWN_M * SEWN_M);
+    }
+}
+
+/// Says that nothing moves, where it is so.
+fn no_cloth(pieces: &[PieceReport]) -> Option<String> {
+    let still = pieces.iter().all(|p| p.behaviour != Behaviour::Simulated);
+    still.then(|| "nothing of it moves as cloth: it follows the skin as drawn on, and is stretched with it".to_owned())
+}
+
+fn shape(cut: &ForeignMesh, laid: LaidMesh, fixed: Vec<bool>) -> Shape {
+    let upright = cut.faces.iter().zip(&cut.uvs).map(|(f, uv)| warp_upright(&cut.positions, *f, *uv));
+    let (faces, uvs) = upright.unzip();
+    Shape {
+        cut: cut.positions.clone(),
+        worn: laid.worn,
+        faces,
+        fixed,
+        parts: laid.parts,
+        weights: laid.weights,
+        uvs,
+        ..Shape::default()
+    }
+}

@@ -1,0 +1,62 @@
+//! Meshes of the user's own in the wardrobe: put on a shopper in a size, and baked.
+
+use super::WardrobeError;
+use crate::adapt::{MeshReport, OwnMesh};
+use crate::bake::bake;
+use crate::body::Body;
+use crate::fabric::Fabric;
+use crate::garment::{Garment, Shape};
+
+/// Fabric of a mesh that does not say what it is made of.
+const FABRIC: &str = "cotton-lawn";
+
+/// Layer of a mesh that does not say in which one it is worn: that of dresses and shirts.
+const LAYER: u8 = 3;
+
+/// The size of a mesh that says of none.
+pub const UNKNOWN: &str = "unknown";
+
+/// A mesh on a shopper, baked, and what became of it.
+#[derive(Debug, Clone)]
+pub struct DressedMesh {
+    /// Ready to be stepped.
+    pub garment: Garment,
+    /// What was repaired and what became of each piece.
+    pub report: MeshReport,
+}
+
+/// What a mesh becomes on a shopper before it is baked, with its fabric.
+pub struct DraftedMesh {
+    /// The shape.
+    pub shape: Shape,
+    /// Its fabric.
+    pub fabric: Fabric,
+    /// What became of it.
+    pub report: MeshReport,
+}
+
+/// Lays a mesh on a shopper in one of its sizes; none is as it was made.
+///
+/// # Errors
+/// A size of a mesh that has none, a fabric that there is not.
+pub fn draft(own: &OwnMesh, size: Option<&str>, shopper: &Body) -> Result<DraftedMesh, WardrobeError> {
+    let fabric = Fabric::built_in(own.measures.fabric.as_deref().unwrap_or(FABRIC))?;
+    let worn = match size {
+        Some(size) => return Err(WardrobeError::NoSizes { name: own.path.clone(), size: size.into() }),
+        None => own.wear(shopper),
+    };
+    Ok(DraftedMesh { shape: worn.shape, fabric, report: worn.report })
+}
+
+/// Lays a mesh on a shopper and bakes it.
+///
+/// # Errors
+/// As [`draft`].
+pub fn dress(own: &OwnMesh, size: Option<&str>, shopper: &Body) -> Result<DressedMesh, WardrobeError> {
+    let DraftedMesh { shape, fabric, report } = draft(own, size, shopper)?;
+    let name = own.measures.name.clone().unwrap_or_else(|| own.path.clone());
+    let baked = bake(&name, size.unwrap_or(UNKNOWN), &shape, &fabric);
+    let mut garment = baked.map_err(|source| WardrobeError::Mesh { name: own.path.clone(), source })?;
+    garment.layer = own.measures.layer.unwrap_or(LAYER);
+    Ok(DressedMesh { garment, report })
+}
