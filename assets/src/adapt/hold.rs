@@ -24,47 +24,99 @@ const BAND_M: f32 = 0.04;
 const LEAST_MOVING: usize = 24;
 const LEAST_HELD: usize = 12;
 
-/// What holds a piece, in a few words, and which of its vertices are held.
-pub struct HeldVertices {
-    /// True where a vertex is held `[vertices]`.
+/// Holds the pieces of a mesh, one after the other.
+pub struct Holding<'a> {
+    mesh: &'a ForeignMesh,
+    laid: &'a LaidMesh,
+    shopper: &'a Body,
+    neighbours: &'a [Vec<u32>],
+    /// Normals of the cloth as laid `[vertices]`.
+    normals: Vec<Vec3>,
+    /// Borders, each with the mean height of its vertices (m).
+    borders: Vec<(f32, Vec<u32>)>,
+    /// Distance from the upper edge, along the cloth (m) `[vertices]`.
+    far: Vec<f32>,
+    /// True where a vertex is held; only the entries of pieces that were held are written `[vertices]`.
     pub held: Vec<bool>,
-    /// What carries the piece.
-    pub by: &'static str,
+    /// True where a vertex carries its piece `[vertices]`.
+    carries: Vec<bool>,
 }
 
-/// Which vertices of a piece are held. `held` is filled for all of the mesh; only the piece's vertices are looked at.
-pub fn hold(mesh: &ForeignMesh, laid: &LaidMesh, shopper: &Body, piece: &[u32], neighbours: &[Vec<u32>]) -> HeldVertices {
-    let mut inside = vec![false; mesh.positions.len()];
-    piece.iter().for_each(|v| inside[*v as usize] = true);
-    let normals = normals(mesh, &laid.worn);
-    let on_shoulders = |v: u32| {
-        let (p, i) = (laid.worn[v as usize], v as usize);
-        let near = laid.clearance[i] < YOKE_NEAR_M && normals[i].y > YOKE_UP;
-        p.y > shopper.levels.shoulder - YOKE_BELOW_M && near || p.y > shopper.levels.neck
-    };
-    let yoke: Vec<u32> = piece.iter().copied().filter(|v| on_shoulders(*v)).collect();
-    let (carried, by) = match yoke.len() {
-        0..LEAST_HELD => (band(mesh, laid, piece, neighbours), "hangs from its upper edge"),
-        _ => (yoke, "hangs from the shoulders"),
-    };
-    let mut carries = vec![false; mesh.positions.len()];
-    carried.iter().for_each(|v| carries[*v as usize] = true);
-    let mut held = carries.clone();
-    for &v in piece {
-        // A vertex is as tight as it and its neighbours are in the mean.
-        let beside = &neighbours[v as usize];
-        let sum: f32 = beside.iter().map(|u| laid.clearance[*u as usize].min(2.0 * TIGHT_M)).sum();
-        let mean = 0.5 * (laid.clearance[v as usize].min(2.0 * TIGHT_M) + sum / beside.len().max(1) as f32);
-        held[v as usize] |= mean < TIGHT_M;
-    }
-    for (state, least) in [(true, LEAST_HELD), (false, LEAST_MOVING)] {
-        for patch in patches(piece, neighbours, |v| held[v as usize] == state) {
-            if patch.len() < least && !patch.iter().any(|v| carries[*v as usize]) {
-                patch.iter().for_each(|v| held[*v as usize] = !state);
-            }
+impl<'a> Holding<'a> {
+    /// Of a mesh on a shopper; nothing is held yet.
+    pub fn new(mesh: &'a ForeignMesh, laid: &'a LaidMesh, shopper: &'a Body, neighbours: &'a [Vec<u32>]) -> Self {
+        let height = |ring: &Vec<u32>| ring.iter().map(|v| laid.worn[*v as usize].y).sum::<f32>() / ring.len() as f32;
+        let count = mesh.positions.len();
+        Self {
+            mesh,
+            laid,
+            shopper,
+            neighbours,
+            normals: normals(mesh, &laid.worn),
+            borders: loops(mesh).into_iter().map(|ring| (height(&ring), ring)).collect(),
+            far: vec![f32::INFINITY; count],
+            held: vec![false; count],
+            carries: vec![false; count],
         }
     }
-    HeldVertices { held, by }
+
+    /// Holds a piece and says in a few words what carries it. `piece` is sorted.
+    pub fn hold(&mut self, piece: &[u32]) -> &'static str {
+        let yoke: Vec<u32> = piece.iter().copied().filter(|v| self.is_on_shoulders(*v)).collect();
+        let (carried, by) = match yoke.len() {
+            0..LEAST_HELD => (self.band(piece), "hangs from its upper edge"),
+            _ => (yoke, "hangs from the shoulders"),
+        };
+        carried.iter().for_each(|v| self.carries[*v as usize] = true);
+        for &v in piece {
+            self.held[v as usize] = self.carries[v as usize] || self.is_tight(v);
+        }
+        for (state, least) in [(true, LEAST_HELD), (false, LEAST_MOVING)] {
+            for patch in patches(piece, self.neighbours, |v| self.held[v as usize] == state) {
+                if patch.len() < least && !patch.iter().any(|v| self.carries[*v as usize]) {
+                    patch.iter().for_each(|v| self.held[*v as usize] = !state);
+                }
+            }
+        }
+        by
+    }
+
+    fn is_on_shoulders(&self, v: u32) -> bool {
+        let (p, i) = (self.laid.worn[v as usize], v as usize);
+        let near = self.laid.clearance[i] < YOKE_NEAR_M && self.normals[i].y > YOKE_UP;
+        p.y > self.shopper.levels.shoulder - YOKE_BELOW_M && near || p.y > self.shopper.levels.neck
+    }
+
+    /// Whether a vertex and its neighbours lie on the skin in the mean.
+    fn is_tight(&self, v: u32) -> bool {
+        let clearance = |v: u32| self.laid.clearance[v as usize].min(2.0 * TIGHT_M);
+        let beside = &self.neighbours[v as usize];
+        let mean = beside.iter().map(|u| clearance(*u)).sum::<f32>() / beside.len().max(1) as f32;
+        0.5 * (clearance(v) + mean) < TIGHT_M
+    }
+
+    /// What lies within a waistband's height of a piece's uppermost border, along the cloth; of a piece without any, its top.
+    fn band(&mut self, piece: &[u32]) -> Vec<u32> {
+        let own = self.borders.iter().filter(|(_, ring)| piece.binary_search(&ring[0]).is_ok());
+        let top = own.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, ring)| ring.clone());
+        let height = |v: &u32| self.laid.worn[*v as usize].y;
+        let highest = piece.iter().map(height).fold(f32::NEG_INFINITY, f32::max);
+        let start =
+            top.unwrap_or_else(|| piece.iter().copied().filter(|v| height(v) > highest - 0.5 * BAND_M).collect());
+        let mut queue: VecDeque<u32> = start.into();
+        queue.iter().for_each(|v| self.far[*v as usize] = 0.0);
+        while let Some(v) = queue.pop_front() {
+            for &u in &self.neighbours[v as usize] {
+                let step = self.mesh.positions[v as usize].distance(self.mesh.positions[u as usize]);
+                let d = self.far[v as usize] + step;
+                if d < self.far[u as usize] && d <= BAND_M {
+                    self.far[u as usize] = d;
+                    queue.push_back(u);
+                }
+            }
+        }
+        piece.iter().copied().filter(|v| self.far[*v as usize].is_finite()).collect()
+    }
 }
 
 /// Connected patches of the vertices of a piece that `is` names.
@@ -85,30 +137,6 @@ pub fn patches(piece: &[u32], neighbours: &[Vec<u32>], is: impl Fn(u32) -> bool)
         found.push(patch);
     }
     found
-}
-
-/// What lies within a waistband's height of a piece's uppermost border, along the cloth; of a piece without any, its top.
-fn band(mesh: &ForeignMesh, laid: &LaidMesh, piece: &[u32], neighbours: &[Vec<u32>]) -> Vec<u32> {
-    let own = |ring: &Vec<u32>| piece.binary_search(&ring[0]).is_ok();
-    let height = |ring: &Vec<u32>| ring.iter().map(|v| laid.worn[*v as usize].y).sum::<f32>() / ring.len() as f32;
-    let top = loops(mesh).into_iter().filter(own).max_by(|a, b| height(a).total_cmp(&height(b)));
-    let highest = piece.iter().map(|v| laid.worn[*v as usize].y).fold(f32::NEG_INFINITY, f32::max);
-    let start = top.unwrap_or_else(|| {
-        piece.iter().copied().filter(|v| laid.worn[*v as usize].y > highest - 0.5 * BAND_M).collect()
-    });
-    let mut far = vec![f32::INFINITY; mesh.positions.len()];
-    let mut queue: VecDeque<u32> = start.into();
-    queue.iter().for_each(|v| far[*v as usize] = 0.0);
-    while let Some(v) = queue.pop_front() {
-        for &u in &neighbours[v as usize] {
-            let d = far[v as usize] + mesh.positions[v as usize].distance(mesh.positions[u as usize]);
-            if d < far[u as usize] && d <= BAND_M {
-                far[u as usize] = d;
-                queue.push_back(u);
-            }
-        }
-    }
-    piece.iter().copied().filter(|v| far[*v as usize].is_finite()).collect()
 }
 
 fn normals(mesh: &ForeignMesh, worn: &[Vec3]) -> Vec<Vec3> {

@@ -5,9 +5,9 @@ use glam::Vec3;
 use super::lay::LaidMesh;
 use super::mesh::{ForeignMesh, sides};
 use super::report::{Behaviour, PieceReport};
+use crate::mesh::SkinWeights;
 use crate::numeric::statistics::quantile;
 use crate::skeleton::BONES;
-use crate::mesh::SkinWeights;
 
 /// Pieces no larger than this in any direction (m) are buttons, buckles, zips: they ride along.
 const TRIM_M: f32 = 0.08;
@@ -40,19 +40,22 @@ pub struct PieceMeasures {
 }
 
 impl PieceMeasures {
-    /// Measures a piece; `inside` says which vertices are its own.
-    pub fn of(mesh: &ForeignMesh, laid: &LaidMesh, inside: &[bool]) -> Self {
-        let faces = || (0..mesh.faces.len()).filter(|f| inside[mesh.faces[*f][0] as usize]);
+    /// Measures a piece of these vertices and faces.
+    pub fn of(mesh: &ForeignMesh, laid: &LaidMesh, piece: &[u32], faces: &[usize]) -> Self {
+        let faces = || faces.iter().copied();
         let ends = || faces().flat_map(|f| sides(&mesh.faces[f])).map(|[a, b]| [a as usize, b as usize]);
         let mut lengths: Vec<f32> = ends().map(|[a, b]| mesh.positions[a].distance(mesh.positions[b])).collect();
-        let strain = |[a, b]: [usize; 2]| laid.worn[a].distance(laid.worn[b]) / mesh.positions[a].distance(mesh.positions[b]) - 1.0;
+        let strain = |[a, b]: [usize; 2]| {
+            laid.worn[a].distance(laid.worn[b]) / mesh.positions[a].distance(mesh.positions[b]) - 1.0
+        };
         let mut strains: Vec<f32> = ends().map(|e| strain(e).abs()).collect();
         let needle = |f: &usize| {
-            let longest = sides(&mesh.faces[*f]).map(|[a, b]| mesh.positions[a as usize].distance(mesh.positions[b as usize]));
+            let longest =
+                sides(&mesh.faces[*f]).map(|[a, b]| mesh.positions[a as usize].distance(mesh.positions[b as usize]));
             let longest = longest.fold(0.0, f32::max);
             0.5 * mesh.area_normal(*f).length() * NEEDLE < longest * longest
         };
-        let points = || inside.iter().zip(&mesh.positions).filter(|(own, _)| **own).map(|(_, p)| *p);
+        let points = || piece.iter().map(|v| mesh.positions[*v as usize]);
         let (low, high) = (points().fold(Vec3::INFINITY, Vec3::min), points().fold(Vec3::NEG_INFINITY, Vec3::max));
         Self {
             extent: (high - low).max_element(),
@@ -72,7 +75,10 @@ impl PieceMeasures {
         } else if self.needles > MOST_NEEDLES {
             Some(format!("{:.0} % of its faces are needles", self.needles * 100.0))
         } else if self.strain[0] > MOST_STRAIN {
-            Some(format!("5 % of its edges start more than {:.0} % off their length on this body", self.strain[0] * 100.0))
+            Some(format!(
+                "5 % of its edges start more than {:.0} % off their length on this body",
+                self.strain[0] * 100.0
+            ))
         } else {
             None
         }
@@ -84,7 +90,13 @@ impl PieceMeasures {
     }
 
     /// What is reported of a piece.
-    pub fn report(&self, vertex: u32, vertices: usize, moving: usize, (behaviour, why): (Behaviour, String)) -> PieceReport {
+    pub fn report(
+        &self,
+        vertex: u32,
+        vertices: usize,
+        moving: usize,
+        (behaviour, why): (Behaviour, String),
+    ) -> PieceReport {
         let (edge_mm, start_strain) = (self.edge * 1e3, self.strain[1]);
         PieceReport { vertex, vertices, moving, behaviour, why, edge_mm, start_strain }
     }

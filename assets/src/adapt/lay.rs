@@ -3,10 +3,11 @@
 use glam::Vec3;
 
 use super::made_for::arm_share;
-use super::mesh::ForeignMesh;
+use super::mesh::{ForeignMesh, sides};
 use super::place::{Below, BodyWay, leg_share};
 use crate::body::{Body, Region};
 use crate::garment::Part;
+use crate::garment::shape::NO_VERTEX;
 use crate::mesh::SkinWeights;
 use crate::rig::skin::SkinByHeight;
 use crate::skeleton::{BONES, Joint};
@@ -17,8 +18,17 @@ const START_GAP_M: f32 = 0.005;
 /// No vertex is pushed farther than this (m): from deeper inside it would come out on another side.
 const FARTHEST_PUSH_M: f32 = 0.08;
 
-/// Rounds in which cloth is pushed out of the skin; in all but the last, neighbours share the way.
-const PUSHES: usize = 4;
+/// Rounds in which cloth is drawn to its own lengths and pushed out of the skin; in all but the last, neighbours share the push.
+const ROUNDS: usize = 8;
+
+/// Rounds of drawing before each push.
+const DRAWS: usize = 12;
+
+/// Pieces that lie over each other start at least so far apart (m).
+const LAYER_GAP_M: f32 = 0.006;
+
+/// Vertices of two pieces within this distance (m) lie over each other.
+const OVER_M: f32 = 0.035;
 
 /// Rounds in which skin weights are averaged with those of the neighbours: a skirt's middle follows both legs.
 const SMOOTHINGS: usize = 8;
@@ -42,20 +52,112 @@ pub struct LaidMesh {
     pub parts: Vec<Part>,
 }
 
-/// Lays a mesh on a shopper. `weights` are those of the body that it is made for; `below` says of each vertex what its piece
-/// hangs around.
-pub fn lay(mesh: &ForeignMesh, weights: &[SkinWeights], from: &Body, shopper: &Body, below: &[Below]) -> LaidMesh {
+/// What is known of a mesh before it is laid, a value a vertex.
+pub struct LayInput<'a> {
+    /// Skin weights of the body that it is made for.
+    pub weights: &'a [SkinWeights],
+    /// What its piece hangs around.
+    pub below: &'a [Below],
+    /// Number of its piece.
+    pub piece: &'a [u32],
+}
+
+/// Lays a mesh on a shopper.
+pub fn lay(mesh: &ForeignMesh, input: &LayInput<'_>, from: &Body, shopper: &Body) -> LaidMesh {
+    let LayInput { weights, below, .. } = *input;
     let way = BodyWay::new(from, shopper);
     let vertices = mesh.positions.iter().zip(weights).zip(below);
     let mut worn: Vec<Vec3> = vertices.map(|((p, w), below)| way.place(*p, w, *below)).collect();
     let neighbours = mesh.neighbours();
-    let skin = SkinByHeight::new(shopper);
-    push_out(&skin, shopper, &mut worn, weights, &neighbours);
-    let clearance = worn.iter().zip(weights).map(|(p, w)| beside(&skin, shopper, *p, w).map_or(1.0, |(_, d)| d)).collect();
+    let made = BodySkin::new(from);
+    let heights: Vec<f32> =
+        mesh.positions.iter().zip(weights).map(|(p, w)| made.beside(*p, w).map_or(1.0, |(_, d)| d)).collect();
+    let skin = BodySkin::new(shopper);
+    let gaps = gaps(mesh, input.piece, &heights);
+    let lengths = Lengths::of(mesh);
+    for round in 0..ROUNDS {
+        lengths.draw(&mut worn);
+        push_out(&skin, &mut worn, weights, &neighbours, &gaps, round + 1 == ROUNDS);
+    }
+    let clearance = worn.iter().zip(weights).map(|(p, w)| skin.beside(*p, w).map_or(1.0, |(_, d)| d)).collect();
     let found = worn.iter().zip(weights).map(|(p, w)| on_shopper(shopper, *p, w)).collect::<Vec<_>>();
     let weights = smooth(&found, &neighbours);
-    let parts = worn.iter().zip(&weights).zip(below).map(|((p, w), below)| part(&skin, shopper, *p, w, *below)).collect();
+    let parts = worn.iter().zip(&weights).zip(below).map(|((p, w), below)| skin.part(*p, w, *below)).collect();
     LaidMesh { worn, clearance, weights, parts }
+}
+
+/// How far each vertex stays from the skin (m): farther where its piece lies over another one on the body that it is made for.
+/// `heights` are how far it is from the skin there.
+fn gaps(mesh: &ForeignMesh, piece: &[u32], heights: &[f32]) -> Vec<f32> {
+    let count = piece.iter().max().map_or(0, |m| *m as usize + 1);
+    let mut gaps = vec![START_GAP_M; piece.len()];
+    if !(2..=MOST_LAYERS).contains(&count) {
+        return gaps;
+    }
+    let mut order: Vec<usize> = (0..piece.len()).collect();
+    order.sort_by(|a, b| mesh.positions[*a].y.total_cmp(&mesh.positions[*b].y));
+    let height = |k: usize| mesh.positions[order[k]].y;
+    // How far above each vertex of another piece a vertex lies, summed for each pair of pieces: the outer one lies above.
+    let mut above = vec![0.0f32; count * count];
+    let mut near: Vec<(usize, usize)> = Vec::new();
+    for k in 0..order.len() {
+        for j in (0..k).rev().take_while(|j| height(k) - height(*j) < OVER_M) {
+            let (a, b) = (order[k], order[j]);
+            if piece[a] != piece[b] && mesh.positions[a].distance_squared(mesh.positions[b]) < OVER_M * OVER_M {
+                let (p, q) = (piece[a] as usize, piece[b] as usize);
+                above[p * count + q] += heights[a] - heights[b];
+                above[q * count + p] += heights[b] - heights[a];
+                near.push((a, b));
+            }
+        }
+    }
+    for (a, b) in near {
+        let outer = above[piece[a] as usize * count + piece[b] as usize] > 0.0;
+        let (over, under) = if outer { (a, b) } else { (b, a) };
+        let least = START_GAP_M.max(heights[under].min(MOST_UNDER_M)) + LAYER_GAP_M;
+        gaps[over] = gaps[over].max(least);
+    }
+    gaps
+}
+
+/// Pieces of a mesh whose order is looked at: more are no garments over each other.
+const MOST_LAYERS: usize = 12;
+
+/// What lies under another piece lifts it by no more than this (m).
+const MOST_UNDER_M: f32 = 0.02;
+
+/// The lengths that cloth wants: of its edges and of the diagonals of its quads.
+struct Lengths(Vec<([u32; 2], f32)>);
+
+impl Lengths {
+    fn of(mesh: &ForeignMesh) -> Self {
+        let mut pairs: Vec<[u32; 2]> = mesh.faces.iter().flat_map(sides).map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        let quads = mesh.faces.iter().filter(|f| f[3] != NO_VERTEX);
+        pairs.extend(quads.flat_map(|&[a, b, c, d]| [[a.min(c), a.max(c)], [b.min(d), b.max(d)]]));
+        pairs.sort_unstable();
+        pairs.dedup();
+        let length = |[a, b]: [u32; 2]| mesh.positions[a as usize].distance(mesh.positions[b as usize]);
+        Self(pairs.into_iter().map(|pair| (pair, length(pair))).collect())
+    }
+
+    /// Draws cloth to its lengths: each vertex goes the mean of what its lengths ask for, so that left and right go alike.
+    fn draw(&self, worn: &mut [Vec3]) {
+        let mut asked = vec![(Vec3::ZERO, 0.0f32); worn.len()];
+        for _ in 0..DRAWS {
+            asked.fill((Vec3::ZERO, 0.0));
+            for ([a, b], length) in &self.0 {
+                let (a, b) = (*a as usize, *b as usize);
+                let way = worn[b] - worn[a];
+                let by = way * (0.5 * (1.0 - length / way.length().max(1e-6)));
+                asked[a] = (asked[a].0 + by, asked[a].1 + 1.0);
+                asked[b] = (asked[b].0 - by, asked[b].1 + 1.0);
+            }
+            for (p, (by, count)) in worn.iter_mut().zip(&asked) {
+                // Twice the mean still converges, because each length moves both of its ends.
+                *p += *by * (1.6 / count.max(1.0));
+            }
+        }
+    }
 }
 
 /// The skin weights of places near a body, averaged along the cloth.
@@ -95,54 +197,70 @@ fn smooth(weights: &[SkinWeights], neighbours: &[Vec<u32>]) -> Vec<SkinWeights> 
     all.iter().map(|bones| SkinWeights::strongest((0u8..).zip(bones.iter().copied())).0).collect()
 }
 
-/// The vertex of the skin that cloth lies on, and how far it is (m): of an arm where arms carry the cloth, else of the rest.
-fn beside(skin: &SkinByHeight<'_>, body: &Body, p: Vec3, weights: &SkinWeights) -> Option<(usize, f32)> {
-    let arm = |side: f32, region: Region| (arm_share(weights, side), region);
-    let [left, right] = [arm(1.0, Region::LeftArm), arm(-1.0, Region::RightArm)];
-    skin.distance_of(p, |v| {
-        let region = body.regions[v];
-        [left, right].iter().all(|(share, of)| match region == *of {
-            true => *share > 0.3,
-            false => *share < 0.7,
+/// A body's skin, as cloth on one of its limbs meets it.
+struct BodySkin<'a> {
+    body: &'a Body,
+    skin: SkinByHeight<'a>,
+}
+
+impl<'a> BodySkin<'a> {
+    fn new(body: &'a Body) -> Self {
+        Self { body, skin: SkinByHeight::new(body) }
+    }
+
+    /// The vertex of the skin that cloth lies on, and how far it is (m): of an arm where arms carry the cloth, else of the rest.
+    fn beside(&self, p: Vec3, weights: &SkinWeights) -> Option<(usize, f32)> {
+        let arms = [(arm_share(weights, 1.0), Region::LeftArm), (arm_share(weights, -1.0), Region::RightArm)];
+        self.skin.distance_of(p, |v| {
+            let region = self.body.regions[v];
+            arms.iter().all(|(share, of)| if region == *of { *share > 0.3 } else { *share < 0.7 })
         })
-    })
-}
+    }
 
-fn push_out(skin: &SkinByHeight<'_>, body: &Body, worn: &mut [Vec3], weights: &[SkinWeights], neighbours: &[Vec<u32>]) {
-    for round in 0..PUSHES {
-        let push = |(p, w): (&Vec3, &SkinWeights)| match beside(skin, body, *p, w) {
-            Some((v, d)) if d < START_GAP_M => body.normals[v] * (START_GAP_M - d).min(FARTHEST_PUSH_M),
-            _ => Vec3::ZERO,
-        };
-        let pushes: Vec<Vec3> = worn.iter().zip(weights).map(push).collect();
-        for (v, p) in worn.iter_mut().enumerate() {
-            let shared = neighbours[v].iter().map(|u| pushes[*u as usize]).sum::<Vec3>() / neighbours[v].len().max(1) as f32;
-            let further = if round + 1 < PUSHES && shared.length_squared() > pushes[v].length_squared() { shared } else { pushes[v] };
-            *p += further;
+    /// The part of the body that a vertex lies on.
+    fn part(&self, p: Vec3, weights: &SkinWeights, below: Below) -> Part {
+        for (side, shoulder, arm, part) in [
+            (1.0, Joint::LeftShoulder, Region::LeftArm, Part::LeftArm),
+            (-1.0, Joint::RightShoulder, Region::RightArm, Part::RightArm),
+        ] {
+            let shoulder = self.body.skeleton.at(shoulder);
+            let near = |of: Region| {
+                self.skin.distance_of(p, |v| self.body.regions[v] == of).is_some_and(|(_, d)| d < HOLLOW_M)
+            };
+            if p.y < shoulder.y && p.distance(shoulder) < ARMPIT_M && near(arm) && near(Region::Torso) {
+                return Part::Hollow;
+            }
+            if arm_share(weights, side) > 0.5 {
+                return part;
+            }
+        }
+        let [left, right] = [Joint::LeftHip, Joint::RightHip].map(|hip| leg_share(weights, hip));
+        match below {
+            Below::Legs if p.y < self.body.levels.crotch && left > 0.5 => Part::LeftLeg,
+            Below::Legs if p.y < self.body.levels.crotch && right > 0.5 => Part::RightLeg,
+            _ => Part::Trunk,
         }
     }
 }
 
-/// The part of the body that a vertex lies on.
-fn part(skin: &SkinByHeight<'_>, body: &Body, p: Vec3, weights: &SkinWeights, below: Below) -> Part {
-    for (side, shoulder, arm, part) in [
-        (1.0, Joint::LeftShoulder, Region::LeftArm, Part::LeftArm),
-        (-1.0, Joint::RightShoulder, Region::RightArm, Part::RightArm),
-    ] {
-        let share = arm_share(weights, side);
-        let shoulder = body.skeleton.at(shoulder);
-        let near = |of: Region| skin.distance_of(p, |v| body.regions[v] == of).is_some_and(|(_, d)| d < HOLLOW_M);
-        if p.y < shoulder.y && p.distance(shoulder) < ARMPIT_M && near(arm) && near(Region::Torso) {
-            return Part::Hollow;
-        }
-        if share > 0.5 {
-            return part;
-        }
-    }
-    let [left, right] = [Joint::LeftHip, Joint::RightHip].map(|hip| leg_share(weights, hip));
-    match below {
-        Below::Legs if p.y < body.levels.crotch && left > 0.5 => Part::LeftLeg,
-        Below::Legs if p.y < body.levels.crotch && right > 0.5 => Part::RightLeg,
-        _ => Part::Trunk,
+/// Pushes cloth out of the skin; neighbours share the push, except the last time.
+fn push_out(
+    skin: &BodySkin<'_>,
+    worn: &mut [Vec3],
+    weights: &[SkinWeights],
+    neighbours: &[Vec<u32>],
+    gaps: &[f32],
+    last: bool,
+) {
+    let push = |((p, w), gap): ((&Vec3, &SkinWeights), &f32)| match skin.beside(*p, w) {
+        Some((v, d)) if d < *gap => skin.body.normals[v] * (gap - d).min(FARTHEST_PUSH_M),
+        _ => Vec3::ZERO,
+    };
+    let pushes: Vec<Vec3> = worn.iter().zip(weights).zip(gaps).map(push).collect();
+    for (v, p) in worn.iter_mut().enumerate() {
+        let shared =
+            neighbours[v].iter().map(|u| pushes[*u as usize]).sum::<Vec3>() / neighbours[v].len().max(1) as f32;
+        let further = !last && shared.length_squared() > pushes[v].length_squared();
+        *p += if further { shared } else { pushes[v] };
     }
 }

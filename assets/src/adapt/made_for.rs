@@ -52,7 +52,8 @@ impl MadeFor {
     fn arm_turn(&self, mesh: &ForeignMesh, side: f32) -> Option<Quat> {
         let at = |j: Joint| self.body.skeleton.at(if side > 0.0 { j } else { j.mirror() });
         let (shoulder, wrist) = (at(Joint::LeftShoulder), at(Joint::LeftWrist));
-        let middle = |ring: Vec<u32>| ring.iter().map(|v| mesh.positions[*v as usize]).sum::<Vec3>() / ring.len() as f32;
+        let middle =
+            |ring: Vec<u32>| ring.iter().map(|v| mesh.positions[*v as usize]).sum::<Vec3>() / ring.len() as f32;
         let beside = |p: &Vec3| p.x * side > BESIDE * shoulder.x * side && p.distance(shoulder) > LEAST_SLEEVE_M;
         let cuffs = loops(mesh).into_iter().map(middle).filter(beside).filter(|p| p.y > self.body.levels.crotch);
         let cuff = cuffs.max_by(|a, b| (a.x * side).total_cmp(&(b.x * side)))?;

@@ -190,7 +190,10 @@ impl GarmentMeasures {
         let [low, high] = PLAUSIBLE_MM;
         let wrong = body.chain(finished).flatten().find(|mm| !(low..=high).contains(mm));
         if let Some(mm) = wrong {
-            return Err(("", format!("a length of {mm} mm is none of a body; lengths are millimetres between {low} and {high}")));
+            return Err((
+                "",
+                format!("a length of {mm} mm is none of a body; lengths are millimetres between {low} and {high}"),
+            ));
         }
         let falling = |r: [f32; 2]| r[0] > r[1] || !r[0].is_finite() || !r[1].is_finite();
         if Girth::ALL.iter().filter_map(|z| self.comfort_mm.at(*z)).any(falling) {

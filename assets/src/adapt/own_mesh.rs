@@ -78,7 +78,18 @@ impl OwnMesh {
         let sex = sizes.as_ref().and_then(|s| sex_of(s.table.population));
         let sex = sex.or_else(|| files.clothes.as_ref().and_then(|c| c.sex));
         let sex = sex.or_else(|| files.measures.made_for.map(|m| m.sex.into()));
-        Ok(Self { path: files.path, mesh, made_for, measures: files.measures, sizes, axes, repairs, notes, weights, sex })
+        Ok(Self {
+            path: files.path,
+            mesh,
+            made_for,
+            measures: files.measures,
+            sizes,
+            axes,
+            repairs,
+            notes,
+            weights,
+            sex,
+        })
     }
 }
 
@@ -148,7 +159,9 @@ fn stand(
         .map_err(|flaw| AdaptError::Mesh { path: files.path.clone(), flaw })?;
     if axes != FileAxes::PLAIN && files.measures.unit().is_none() {
         let words = axes.words();
-        notes.push(format!("its numbers were taken to be {words}, because a body stands in it so; export it in metres, y up, feet at 0"));
+        notes.push(format!(
+            "its numbers were taken to be {words}, because a body stands in it so; export it in metres, y up, feet at 0"
+        ));
     }
     Ok(Standing { made_for, axes, known_pose: false })
 }

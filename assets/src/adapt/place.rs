@@ -17,11 +17,18 @@ const HEIGHTS: usize = 96;
 /// Lowest section of a leg (m): below it are feet.
 const ANKLE_M: f32 = 0.1;
 
+/// Below the crotch, trousers go over from following the trunk to following each leg within this height (m).
+const LEG_FROM_M: f32 = 0.12;
+
+/// Sections of a leg are known from this far below the crotch on (m): above it they are cut off by the trunk.
+const LEG_SECTION_M: f32 = 0.03;
+
 /// The way from one body to another.
 pub struct BodyWay {
     levels: [Vec<f32>; 2],
     trunk: [Middles; 2],
     legs: [[Middles; 2]; 2],
+    crotch: f32,
     arms: [[ArmSegment; 3]; 2],
     /// How many times farther out the shoulders of the second body are, between which heights of the first.
     shoulders: (f32, [f32; 2]),
@@ -41,25 +48,37 @@ impl BodyWay {
     pub fn new(from: &Body, to: &Body) -> Self {
         let bodies = [from, to];
         let x = |b: &Body| b.skeleton.at(Joint::LeftShoulder).x - b.skeleton.at(Joint::RightShoulder).x;
-        Self {
+        let legs = [[Region::LeftLeg], [Region::RightLeg]];
+        let mut way = Self {
             levels: bodies.map(|b| heights(&b.levels, b.measures.stature)),
-            trunk: bodies.map(|b| Middles::new(b, &[Region::Torso, Region::LeftLeg, Region::RightLeg])),
-            legs: [[Region::LeftLeg], [Region::RightLeg]].map(|leg| bodies.map(|b| Middles::new(b, &leg))),
-            arms: [1.0, -1.0].map(|side| ArmSegment::of(from, to, side)),
+            trunk: bodies.map(|b| Middles::new(b, &[Region::Torso, Region::LeftLeg, Region::RightLeg], b.levels.neck)),
+            legs: legs.map(|leg| bodies.map(|b| Middles::new(b, &leg, b.levels.crotch - LEG_SECTION_M))),
+            crotch: from.levels.crotch,
+            arms: [1.0, -1.0].map(|side| ArmSegment::of(from, to, side, None)),
             shoulders: (x(to) / x(from), [from.levels.chest, from.levels.shoulder]),
+        };
+        // Where rigs have their shoulders differs by centimetres: an upper arm begins where the trunk takes the first rig's, so
+        // that nothing is torn between trunk and arm.
+        for (k, side) in [1.0, -1.0].into_iter().enumerate() {
+            let shoulder = from.skeleton.at(if side > 0.0 { Joint::LeftShoulder } else { Joint::RightShoulder });
+            way.arms[k] = ArmSegment::of(from, to, side, Some(way.trunk(shoulder)));
         }
+        way
     }
 
     /// Where a place on the first body is on the second; `weights` are those of the skin beneath it.
     pub fn place(&self, p: Vec3, weights: &SkinWeights, below: Below) -> Vec3 {
-        let arms = [1.0, -1.0].map(|side| arm_share(weights, side));
-        let legs = if below == Below::Legs { [Joint::LeftHip, Joint::RightHip].map(|j| leg_share(weights, j)) } else { [0.0; 2] };
-        let trunk = (1.0 - arms.iter().chain(&legs).sum::<f32>()).max(0.0);
-        let mut sum = self.trunk(p) * trunk;
+        let arms: f32 = [1.0, -1.0].map(|side| arm_share(weights, side)).iter().sum();
+        let legs = match below {
+            Below::Legs => ((self.crotch - p.y) / LEG_FROM_M).clamp(0.0, 1.0) * (1.0 - arms),
+            Below::Skirt => 0.0,
+        };
+        let mut sum = self.trunk(p) * (1.0 - arms - legs).max(0.0);
+        if legs > 0.0 {
+            let left = leg_share(weights, Joint::LeftHip) >= leg_share(weights, Joint::RightHip);
+            sum += self.leg(p, usize::from(!left)) * legs;
+        }
         for side in 0..2 {
-            if legs[side] > 0.0 {
-                sum += self.leg(p, side) * legs[side];
-            }
             for (bone, w) in weights.iter() {
                 if let Some(k) = arm_segment(bone, side) {
                     sum += self.arms[side][k].place(p) * w;
@@ -119,10 +138,9 @@ struct Middles {
 }
 
 impl Middles {
-    fn new(body: &Body, regions: &[Region]) -> Self {
+    fn new(body: &Body, regions: &[Region], top: f32) -> Self {
         let of = |v: &u32| regions.contains(&body.regions[*v as usize]);
         let keep = |t: usize| body.mesh.triangles[t].iter().all(of);
-        let top = body.levels.neck;
         let middle = |k: usize| {
             let y = (top * k as f32 / (HEIGHTS - 1) as f32).max(ANKLE_M);
             let cut = tape::slice(&body.mesh, keep, Vec3::Y * y, Vec3::Y);
@@ -160,13 +178,14 @@ struct ArmSegment {
 }
 
 impl ArmSegment {
-    /// Upper arm, forearm and hand of a side.
-    fn of(from: &Body, to: &Body, side: f32) -> [Self; 3] {
+    /// Upper arm, forearm and hand of a side; the upper arm begins at `shoulder` on the second body, or at its joint.
+    fn of(from: &Body, to: &Body, side: f32, shoulder: Option<Vec3>) -> [Self; 3] {
         let sided = |j: Joint| if side > 0.0 { j } else { j.mirror() };
         let chain = [Joint::LeftShoulder, Joint::LeftElbow, Joint::LeftWrist, Joint::LeftHand].map(sided);
         std::array::from_fn(|k| {
-            let [a, b] = [from, to].map(|body| body.skeleton.at(chain[k]));
-            let [u, v] = [from, to].map(|body| body.skeleton.at(chain[k + 1]) - body.skeleton.at(chain[k]));
+            let a = from.skeleton.at(chain[k]);
+            let b = shoulder.filter(|_| k == 0).unwrap_or_else(|| to.skeleton.at(chain[k]));
+            let (u, v) = (from.skeleton.at(chain[k + 1]) - a, to.skeleton.at(chain[k + 1]) - b);
             let along = u.normalize_or(Vec3::X);
             let turn = Quat::from_rotation_arc(along, v.normalize_or(along));
             Self { from: a, to: b, turn, along, longer: v.length() / u.length().max(1e-3) }

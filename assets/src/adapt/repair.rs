@@ -133,7 +133,8 @@ mod tests {
 
     #[test]
     fn each_flaw_is_repaired_and_named_by_the_files_vertices() {
-        let text = format!("{SOUND}v 7 7 7\nv .2 0 .00003\nv .2 1 0\nv .4 0 0\nf 6 8 7\nf 1 4 3 2\nf 1 2 2\nf 1 1 1 2\n");
+        let text =
+            format!("{SOUND}v 7 7 7\nv .2 0 .00003\nv .2 1 0\nv .4 0 0\nf 6 8 7\nf 1 4 3 2\nf 1 2 2\nf 1 1 1 2\n");
         let (mesh, done) = repaired(&text);
         assert_eq!(
             done,

@@ -118,7 +118,9 @@ impl MeshReport {
         for piece in self.pieces.iter().take(NAMED) {
             let PieceReport { vertex, vertices, moving, behaviour, why, .. } = piece;
             let behaviour = behaviour.name();
-            lines.push(format!("the piece at vertex {vertex}: {behaviour} ({why}), {moving} of {vertices} vertices move"));
+            lines.push(format!(
+                "the piece at vertex {vertex}: {behaviour} ({why}), {moving} of {vertices} vertices move"
+            ));
         }
         if self.pieces.len() > NAMED {
             lines.push(format!("and {} smaller pieces", self.pieces.len() - NAMED));

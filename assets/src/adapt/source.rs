@@ -13,11 +13,8 @@ use crate::import::obj::MAX_BYTES;
 use crate::import::plain::{PlainMesh, parse_obj};
 
 /// What is read as a garment's mesh.
-const MESH_FILE: FileKind = FileKind {
-    name: "an OBJ, glTF or GLB file",
-    max_bytes: MAX_BYTES,
-    cure: "reduce the mesh before exporting",
-};
+const MESH_FILE: FileKind =
+    FileKind { name: "an OBJ, glTF or GLB file", max_bytes: MAX_BYTES, cure: "reduce the mesh before exporting" };
 
 /// Measures beside a mesh: two dozen lines.
 const MEASURES_FILE: FileKind =

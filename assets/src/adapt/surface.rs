@@ -53,9 +53,13 @@ pub fn settle(mesh: &mut ForeignMesh) -> Vec<Repair> {
     let turned = turn(mesh, &mut links);
     let split = split(mesh, &links);
     let source = |v: &u32| mesh.source[*v as usize];
-    let crowded = Repair::new("edges of more than two faces parted", crowded.len(), crowded.iter().flatten().map(source));
-    let turned =
-        Repair::new("faces turned the way of their neighbours", turned.len(), turned.iter().map(|f| source(&mesh.faces[*f][0])));
+    let crowded =
+        Repair::new("edges of more than two faces parted", crowded.len(), crowded.iter().flatten().map(source));
+    let turned = Repair::new(
+        "faces turned the way of their neighbours",
+        turned.len(),
+        turned.iter().map(|f| source(&mesh.faces[*f][0])),
+    );
     let split = Repair::new("vertices between surfaces that touch doubled", split.len(), split);
     [crowded, turned, split].into_iter().filter(|r| r.count > 0).collect()
 }

@@ -2,9 +2,9 @@
 
 use glam::Vec3;
 
-use super::hold::{self, HeldVertices};
+use super::hold::Holding;
 use super::judge::{self, MOST_MOVING, PieceMeasures};
-use super::lay::{LaidMesh, lay};
+use super::lay::{LaidMesh, LayInput, lay};
 use super::mesh::ForeignMesh;
 use super::own_mesh::OwnMesh;
 use super::place::Below;
@@ -39,7 +39,9 @@ impl OwnMesh {
     pub fn wear_cut(&self, cut: &ForeignMesh, shopper: &Body) -> WornMesh {
         let pieces = pieces(cut);
         let below = below(&self.mesh, &pieces, self.made_for.body.levels.crotch);
-        let mut laid = lay(&self.mesh, &self.weights, &self.made_for.body, shopper, &below);
+        let piece = numbers(&pieces, cut.positions.len());
+        let input = LayInput { weights: &self.weights, below: &below, piece: &piece };
+        let mut laid = lay(cut, &input, &self.made_for.body, shopper);
         let (held, reports) = self.decide(cut, &mut laid, shopper, &pieces);
         let shape = shape(cut, laid, held);
         let mut notes = self.notes.clone();
@@ -64,53 +66,59 @@ impl OwnMesh {
         pieces: &[Vec<u32>],
     ) -> (Vec<bool>, Vec<PieceReport>) {
         let neighbours = cut.neighbours();
-        let mut held = vec![false; cut.positions.len()];
-        let mut reports = Vec::new();
-        let mut moving_so_far = 0;
-        let trims = trims(cut, laid, pieces);
-        for (piece, is_trim) in pieces.iter().zip(&trims) {
-            let mut inside = vec![false; cut.positions.len()];
-            piece.iter().for_each(|v| inside[*v as usize] = true);
-            let measures = PieceMeasures::of(cut, laid, &inside);
-            let HeldVertices { held: found, by } = match cut.says_what_moves {
-                true => HeldVertices { held: self.sticks(cut), by: "as its materials say" },
-                false => hold::hold(cut, laid, shopper, piece, &neighbours),
+        let measured = measured(cut, laid, pieces);
+        let trims = trims(&measured);
+        let mut holding = Holding::new(cut, laid, shopper, &neighbours);
+        let sticks = cut.says_what_moves.then(|| sticks(cut));
+        let mut verdicts = Vec::new();
+        let mut moving = 0;
+        for ((piece, is_trim), measures) in pieces.iter().zip(&trims).zip(&measured) {
+            let by = match &sticks {
+                Some(sticks) => {
+                    piece.iter().for_each(|v| holding.held[*v as usize] = sticks[*v as usize]);
+                    "as its materials say"
+                }
+                None if *is_trim => "",
+                None => holding.hold(piece),
             };
-            let free = piece.iter().filter(|v| !found[**v as usize]).count();
+            let free = piece.iter().filter(|v| !holding.held[**v as usize]).count();
             let verdict = if *is_trim {
                 (Behaviour::Rigid, "small".to_owned())
             } else if let Some(flaw) = measures.flaw() {
                 (Behaviour::Skinned, flaw)
             } else if judge::is_tight(free, piece.len()) {
                 (Behaviour::Skinned, "it lies on the skin".to_owned())
-            } else if moving_so_far + free > MOST_MOVING {
+            } else if moving + free > MOST_MOVING {
                 (Behaviour::Skinned, format!("more than {MOST_MOVING} vertices would move"))
             } else {
-                moving_so_far += free;
+                moving += free;
                 (Behaviour::Simulated, by.to_owned())
             };
-            let moves = verdict.0 == Behaviour::Simulated;
-            piece.iter().for_each(|v| held[*v as usize] = !moves || found[*v as usize]);
-            if *is_trim {
-                judge::stiffen(&mut laid.weights, piece);
+            if verdict.0 != Behaviour::Simulated {
+                piece.iter().for_each(|v| holding.held[*v as usize] = true);
             }
-            let source = piece.iter().map(|v| cut.source[*v as usize]).min().unwrap_or_default();
-            reports.push(measures.report(source, piece.len(), if moves { free } else { 0 }, verdict));
+            verdicts.push(verdict);
         }
+        let mut held = holding.held;
+        let trimmed = pieces.iter().zip(&trims).filter(|(_, trim)| **trim);
+        trimmed.for_each(|(piece, _)| judge::stiffen(&mut laid.weights, piece));
         sew_on(laid, pieces, &trims, &mut held);
-        for (piece, report) in pieces.iter().zip(&mut reports) {
-            report.moving = piece.iter().filter(|v| !held[**v as usize]).count();
-        }
+        let report = |((piece, measures), verdict): ((&Vec<u32>, &PieceMeasures), (Behaviour, String))| {
+            let first = piece.iter().map(|v| cut.source[*v as usize]).min().unwrap_or_default();
+            let moving = piece.iter().filter(|v| !held[**v as usize]).count();
+            measures.report(first, piece.len(), moving, verdict)
+        };
+        let reports = pieces.iter().zip(&measured).zip(verdicts).map(report).collect();
         (held, reports)
     }
+}
 
-    /// What touches a face whose material does not move.
-    fn sticks(&self, cut: &ForeignMesh) -> Vec<bool> {
-        let mut held = vec![false; cut.positions.len()];
-        let fixed = (0..cut.faces.len()).filter(|f| !cut.free[*f]);
-        fixed.flat_map(|f| crate::garment::check::corners(&cut.faces[f])).for_each(|v| held[*v as usize] = true);
-        held
-    }
+/// What touches a face whose material does not move.
+fn sticks(cut: &ForeignMesh) -> Vec<bool> {
+    let mut held = vec![false; cut.positions.len()];
+    let fixed = (0..cut.faces.len()).filter(|f| !cut.free[*f]);
+    fixed.flat_map(|f| crate::garment::check::corners(&cut.faces[f])).for_each(|v| held[*v as usize] = true);
+    held
 }
 
 /// What each piece hangs around below the crotch: legs where it ends beside the middle.
@@ -128,20 +136,38 @@ fn below(mesh: &ForeignMesh, pieces: &[Vec<u32>], crotch: f32) -> Vec<Below> {
     of
 }
 
+/// The number of each vertex's piece.
+fn numbers(pieces: &[Vec<u32>], vertices: usize) -> Vec<u32> {
+    let mut of = vec![0; vertices];
+    for (k, piece) in pieces.iter().enumerate() {
+        piece.iter().for_each(|v| of[*v as usize] = k as u32);
+    }
+    of
+}
+
+/// What is known of each piece.
+fn measured(cut: &ForeignMesh, laid: &LaidMesh, pieces: &[Vec<u32>]) -> Vec<PieceMeasures> {
+    let of = numbers(pieces, cut.positions.len());
+    let mut faces: Vec<Vec<usize>> = vec![Vec::new(); pieces.len()];
+    (0..cut.faces.len()).for_each(|f| faces[of[cut.faces[f][0] as usize] as usize].push(f));
+    pieces.iter().zip(&faces).map(|(piece, faces)| PieceMeasures::of(cut, laid, piece, faces)).collect()
+}
+
 /// Which pieces are trims: small ones, of a mesh that has a larger one.
-fn trims(cut: &ForeignMesh, laid: &LaidMesh, pieces: &[Vec<u32>]) -> Vec<bool> {
-    let small = |piece: &Vec<u32>| {
-        let mut inside = vec![false; cut.positions.len()];
-        piece.iter().for_each(|v| inside[*v as usize] = true);
-        PieceMeasures::of(cut, laid, &inside).is_trim()
-    };
-    let found: Vec<bool> = pieces.iter().map(small).collect();
-    if found.iter().all(|trim| *trim) { vec![false; pieces.len()] } else { found }
+fn trims(measured: &[PieceMeasures]) -> Vec<bool> {
+    let found: Vec<bool> = measured.iter().map(PieceMeasures::is_trim).collect();
+    if found.iter().all(|trim| *trim) { vec![false; found.len()] } else { found }
 }
 
 /// Holds the cloth that trims are sewn on.
 fn sew_on(laid: &LaidMesh, pieces: &[Vec<u32>], trims: &[bool], held: &mut [bool]) {
-    let sewn: Vec<Vec3> = pieces.iter().zip(trims).filter(|(_, trim)| **trim).flat_map(|(p, _)| p).map(|v| laid.worn[*v as usize]).collect();
+    let sewn: Vec<Vec3> = pieces
+        .iter()
+        .zip(trims)
+        .filter(|(_, trim)| **trim)
+        .flat_map(|(p, _)| p)
+        .map(|v| laid.worn[*v as usize])
+        .collect();
     if sewn.is_empty() {
         return;
     }

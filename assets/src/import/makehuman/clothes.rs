@@ -151,7 +151,8 @@ impl Clothes {
                 scale[k] = (at(*a)[k] - at(*b)[k]).abs() / divisor;
             }
         }
-        let place = |b: &Binding| b.vertices.iter().zip(b.weights).map(|(v, w)| at(*v) * w).sum::<Vec3>() + b.offset * scale;
+        let place =
+            |b: &Binding| b.vertices.iter().zip(b.weights).map(|(v, w)| at(*v) * w).sum::<Vec3>() + b.offset * scale;
         self.bindings.iter().map(place).collect()
     }
 

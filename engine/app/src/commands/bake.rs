@@ -6,8 +6,8 @@ use std::time::Instant;
 
 use serde::Serialize;
 use toile_assets::adapt::{OwnMesh, source};
-use toile_assets::bake::survey::{MeshSurvey, survey};
 use toile_assets::bake;
+use toile_assets::bake::survey::{MeshSurvey, survey};
 use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::fabric::Fabric;
 use toile_assets::file::{self, FileKind};
