@@ -10,6 +10,7 @@
 //! is laid on them ([`place`], [`lay`]), held where it lies on the skin ([`hold`]), and each piece judged ([`judge`]).
 
 mod error;
+pub mod grading;
 pub mod hems;
 pub mod hold;
 pub mod judge;

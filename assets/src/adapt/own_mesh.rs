@@ -19,7 +19,6 @@ use crate::import::avatar::ImportOptions;
 use crate::import::makehuman::clothes::{Clothes, base_folder};
 use crate::import::makehuman::{self, MakehumanOptions};
 use crate::mesh::SkinWeights;
-use crate::sizes::SizeBody;
 
 /// Height of the origin over the soles of MakeHuman's base mesh (dm): -8.190 to the sole of its young women, -8.181 of its men.
 const HM08_ORIGIN_DM: f32 = 8.185;
@@ -219,9 +218,4 @@ fn on_base(folder: &Path, options: &MakehumanOptions, sex: Sex, how: String) -> 
     let all = body.mesh.positions.iter_mut().chain(&mut body.skeleton.rest);
     all.for_each(|p| *p += aside);
     Ok((MadeFor { body, how }, -origin.y))
-}
-
-/// The measures of a size's body.
-pub fn measures_of(body: SizeBody) -> Measures {
-    Measures::from(body)
 }

@@ -29,6 +29,8 @@ pub struct BodyWay {
     trunk: [Middles; 2],
     legs: [[Middles; 2]; 2],
     crotch: f32,
+    /// How many times broader a garment becomes at each level; 1 leaves it as it is made.
+    growth: Vec<f32>,
     arms: [[ArmSegment; 3]; 2],
     /// How many times farther out the shoulders of the second body are, between which heights of the first.
     shoulders: (f32, [f32; 2]),
@@ -54,6 +56,7 @@ impl BodyWay {
             trunk: bodies.map(|b| Middles::new(b, &[Region::Torso, Region::LeftLeg, Region::RightLeg], b.levels.neck)),
             legs: legs.map(|leg| bodies.map(|b| Middles::new(b, &leg, b.levels.crotch - LEG_SECTION_M))),
             crotch: from.levels.crotch,
+            growth: vec![1.0; heights(&from.levels, from.measures.stature).len()],
             arms: [1.0, -1.0].map(|side| ArmSegment::of(from, to, side, None)),
             shoulders: (x(to) / x(from), [from.levels.chest, from.levels.shoulder]),
         };
@@ -64,6 +67,13 @@ impl BodyWay {
             way.arms[k] = ArmSegment::of(from, to, side, Some(way.trunk(shoulder)));
         }
         way
+    }
+
+    /// The same for a garment that becomes so many times broader at chest, waist and hip: what grading does to a cut.
+    pub fn growing(from: &Body, to: &Body, [chest, waist, hip]: [f32; 3]) -> Self {
+        // In the order of `heights`: what lies below the hip grows as the hip does, what lies above the chest as the chest does.
+        let growth = vec![hip, hip, hip, hip, hip, waist, 0.5 * (waist + chest), chest, chest, chest, chest];
+        Self { growth, ..Self::new(from, to) }
     }
 
     /// Where a place on the first body is on the second; `weights` are those of the skin beneath it.
@@ -94,18 +104,28 @@ impl BodyWay {
         to[k - 1] + (y - from[k - 1]) * (to[k] - to[k - 1]) / (from[k] - from[k - 1])
     }
 
+    /// How many times broader a garment becomes at a height of the first body.
+    fn broader(&self, y: f32) -> f32 {
+        let from = &self.levels[0];
+        let k = from.partition_point(|l| *l <= y).clamp(1, from.len() - 1);
+        let way = ((y - from[k - 1]) / (from[k] - from[k - 1])).clamp(0.0, 1.0);
+        self.growth[k - 1] + way * (self.growth[k] - self.growth[k - 1])
+    }
+
     fn trunk(&self, p: Vec3) -> Vec3 {
         let y = self.height(p.y);
+        let broader = self.broader(p.y);
         let (a, b) = (self.trunk[0].at(p.y), self.trunk[1].at(y));
         let (wider, [low, high]) = self.shoulders;
         let x = 1.0 + (wider - 1.0) * ((p.y - low) / (high - low)).clamp(0.0, 1.0);
-        Vec3::new(b.x + (p.x - a.x) * x, y, b.y + p.z - a.y)
+        Vec3::new(b.x + (p.x - a.x) * x * broader, y, b.y + (p.z - a.y) * broader)
     }
 
     fn leg(&self, p: Vec3, side: usize) -> Vec3 {
         let y = self.height(p.y);
         let (a, b) = (self.legs[side][0].at(p.y), self.legs[side][1].at(y));
-        Vec3::new(b.x + p.x - a.x, y, b.y + p.z - a.y)
+        let broader = self.broader(p.y);
+        Vec3::new(b.x + (p.x - a.x) * broader, y, b.y + (p.z - a.y) * broader)
     }
 }
 

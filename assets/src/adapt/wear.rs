@@ -32,20 +32,21 @@ pub struct WornMesh {
 impl OwnMesh {
     /// Puts the mesh on a shopper as it is made: nothing is stretched to fit.
     pub fn wear(&self, shopper: &Body) -> WornMesh {
-        self.wear_cut(&self.mesh, shopper)
+        self.wear_cut(&self.mesh, &self.made_for.body, shopper)
     }
 
-    /// The same with the lengths of another cut of the same mesh.
-    pub fn wear_cut(&self, cut: &ForeignMesh, shopper: &Body) -> WornMesh {
+    /// The same with the lengths of another cut of the same mesh, for the body `from`.
+    pub fn wear_cut(&self, cut: &ForeignMesh, from: &Body, shopper: &Body) -> WornMesh {
         let pieces = pieces(cut);
-        let below = below(&self.mesh, &pieces, self.made_for.body.levels.crotch);
+        let below = self.below();
         let piece = numbers(&pieces, cut.positions.len());
         let input = LayInput { weights: &self.weights, below: &below, piece: &piece };
-        let mut laid = lay(cut, &input, &self.made_for.body, shopper);
+        let mut laid = lay(cut, &input, from, shopper);
         let (held, reports) = self.decide(cut, &mut laid, shopper, &pieces);
         let shape = shape(cut, laid, held);
         let mut notes = self.notes.clone();
         notes.extend(no_cloth(&reports));
+        notes.extend(other_girths(from, shopper));
         let report = MeshReport {
             file: self.path.clone(),
             unit: self.axes.words(),
@@ -122,7 +123,7 @@ fn sticks(cut: &ForeignMesh) -> Vec<bool> {
 }
 
 /// What each piece hangs around below the crotch: legs where it ends beside the middle.
-fn below(mesh: &ForeignMesh, pieces: &[Vec<u32>], crotch: f32) -> Vec<Below> {
+pub(super) fn below(mesh: &ForeignMesh, pieces: &[Vec<u32>], crotch: f32) -> Vec<Below> {
     let mut of = vec![Below::Skirt; mesh.positions.len()];
     let middle = |ring: &Vec<u32>| ring.iter().map(|v| mesh.positions[*v as usize]).sum::<Vec3>() / ring.len() as f32;
     let is_leg = |ring: &Vec<u32>| {
@@ -174,6 +175,24 @@ fn sew_on(laid: &LaidMesh, pieces: &[Vec<u32>], trims: &[bool], held: &mut [bool
     for (p, held) in laid.worn.iter().zip(held.iter_mut()).filter(|(_, held)| !**held) {
         *held = sewn.iter().any(|q| q.distance_squared(*p) < SEWN_M * SEWN_M);
     }
+}
+
+/// Girths that differ by more than this (m) are worth a word.
+const OTHER_GIRTH_M: f32 = 0.03;
+
+/// Says where the shopper is larger or smaller than the body that the cut is for.
+fn other_girths(from: &Body, shopper: &Body) -> Option<String> {
+    let (a, b) = (&from.measures, &shopper.measures);
+    let zones = [
+        ("chest", a.chest_girth, b.chest_girth),
+        ("waist", a.waist_girth, b.waist_girth),
+        ("hip", a.hip_girth, b.hip_girth),
+    ];
+    let other = zones.iter().filter(|(_, a, b)| (a - b).abs() > OTHER_GIRTH_M);
+    let words: Vec<String> = other.map(|(zone, a, b)| format!("{zone} {:+.0} mm", (b - a) * 1e3)).collect();
+    let words = words.join(", ");
+    (!words.is_empty())
+        .then(|| format!("the shopper is not of the body that it is made for: {words}; it is not stretched to fit"))
 }
 
 /// Says that nothing moves, where it is so.

@@ -1,6 +1,6 @@
 //! glTF 2.0 and GLB: the triangles of the default scene, in the order in which its nodes name them.
 //!
-//! Read are positions, indices, node transforms and material names; buffers inside the file, in a data address, or
+//! Read are positions, indices, the first texture coordinates, node transforms and material names; buffers inside the file, in a data address, or
 //! beside it. Compressed data are refused with the cure. (Khronos glTF 2.0 specification, sections 3.5 to 3.8 and 4.4.)
 //!
 //! Reads: a file of bounded size and the buffers beside it. Writes: a triangle mesh. Budget: at load.
@@ -8,7 +8,7 @@
 
 pub(crate) mod file;
 
-use glam::{Mat4, Vec3};
+use glam::{Mat4, Vec2, Vec3};
 use serde_json::Value;
 
 use super::plain::PlainMesh;
@@ -73,6 +73,11 @@ fn add_triangles(file: &GltfFile, mesh: &mut PlainMesh, primitive: &Value, place
         Some(accessor) => file.integers::<1>(accessor)?.into_iter().flatten().collect(),
         None => (0..count as u32).collect(),
     };
+    // Textures run downwards in glTF and upwards here, as in OBJ.
+    let uvs = match index(&primitive["attributes"]["TEXCOORD_0"]) {
+        Some(accessor) => file.floats::<2>(accessor)?.iter().map(|[u, v]| Vec2::new(*u, 1.0 - v)).collect(),
+        None => Vec::new(),
+    };
     let name = index(&primitive["material"]).and_then(|m| file.json["materials"][m]["name"].as_str());
     let material = name.map(|n| mesh.material(n));
     for t in corners.chunks_exact(3) {
@@ -80,8 +85,17 @@ fn add_triangles(file: &GltfFile, mesh: &mut PlainMesh, primitive: &Value, place
             return Err(format!("a triangle names vertex {v} of {count}; export it again"));
         }
         let [a, b, c] = [t[0], t[1], t[2]].map(|v| v + first as u32);
+        if !uvs.is_empty() {
+            // Parts before this one may have none.
+            mesh.uvs.resize(mesh.faces.len(), [Vec2::ZERO; 4]);
+            let uv = |v: u32| uvs.get(v as usize).copied().unwrap_or_default();
+            mesh.uvs.push([uv(t[0]), uv(t[1]), uv(t[2]), Vec2::ZERO]);
+        }
         mesh.faces.push([a, b, c, NO_VERTEX]);
         mesh.face_materials.push(material);
+    }
+    if !mesh.uvs.is_empty() {
+        mesh.uvs.resize(mesh.faces.len(), [Vec2::ZERO; 4]);
     }
     Ok(())
 }
@@ -139,6 +153,29 @@ mod tests {
         let text = "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAACAPwAAgD8AAAAAAAAAAAAAgD8AAAAAAAABAAIAAAACAAMA";
         let (json, _) = square(&format!(r#", "uri": "data:application/octet-stream;base64,{text}""#));
         assert_eq!(parse_gltf(json.as_bytes(), &alone).unwrap(), mesh);
+    }
+
+    #[test]
+    fn texture_coordinates_stay_with_their_corners_and_run_upwards() {
+        let text = square(r#", "uri": "square.bin""#).0;
+        // The first two numbers of each position serve as texture coordinates too.
+        let textured = text
+            .replace(r#""POSITION": 0"#, r#""POSITION": 0, "TEXCOORD_0": 2"#)
+            .replace(
+                r#""type": "SCALAR"}]"#,
+                r#""type": "SCALAR"},
+                {"bufferView": 2, "componentType": 5126, "count": 4, "type": "VEC2"}]"#,
+            )
+            .replace(
+                r#""byteOffset": 48, "byteLength": 12}]"#,
+                r#""byteOffset": 48, "byteLength": 12},
+                {"buffer": 0, "byteLength": 48, "byteStride": 12}]"#,
+            );
+        let data = square("").1;
+        let mesh = parse_gltf(textured.as_bytes(), &|_| Ok(data.clone())).unwrap();
+        assert_eq!(mesh.uvs[0][..3], [Vec2::Y, Vec2::ONE, Vec2::X]);
+        assert_eq!(mesh.uvs.len(), mesh.faces.len());
+        assert!(parse_gltf(text.as_bytes(), &|_| Ok(data.clone())).unwrap().uvs.is_empty());
     }
 
     #[test]

@@ -6,6 +6,7 @@ use crate::bake::bake;
 use crate::body::Body;
 use crate::fabric::Fabric;
 use crate::garment::{Garment, Shape};
+use crate::sizes::{GarmentKind, Girth};
 
 /// Fabric of a mesh that does not say what it is made of.
 const FABRIC: &str = "cotton-lawn";
@@ -41,9 +42,13 @@ pub struct DraftedMesh {
 /// A size of a mesh that has none, a fabric that there is not.
 pub fn draft(own: &OwnMesh, size: Option<&str>, shopper: &Body) -> Result<DraftedMesh, WardrobeError> {
     let fabric = Fabric::built_in(own.measures.fabric.as_deref().unwrap_or(FABRIC))?;
-    let worn = match size {
-        Some(size) => return Err(WardrobeError::NoSizes { name: own.path.clone(), size: size.into() }),
-        None => own.wear(shopper),
+    let worn = match (size, &own.sizes) {
+        (Some(size), Some(sizes)) if size != sizes.made_in => {
+            let graded = own.graded(sizes, size)?;
+            own.wear_cut(&graded.mesh, &graded.body, shopper)
+        }
+        (Some(size), None) => return Err(WardrobeError::NoSizes { name: own.path.clone(), size: size.into() }),
+        _ => own.wear(shopper),
     };
     Ok(DraftedMesh { shape: worn.shape, fabric, report: worn.report })
 }
@@ -59,4 +64,21 @@ pub fn dress(own: &OwnMesh, size: Option<&str>, shopper: &Body) -> Result<Dresse
     let mut garment = baked.map_err(|source| WardrobeError::Mesh { name: own.path.clone(), source })?;
     garment.layer = own.measures.layer.unwrap_or(LAYER);
     Ok(DressedMesh { garment, report })
+}
+
+/// The ease that a wearer finds good at each zone (m): by the mesh's file of measures, else as garments of its kind in the
+/// wardrobe have it.
+///
+/// # Errors
+/// A garment of the wardrobe that cannot be read.
+pub fn comfort(own: &OwnMesh, kind: GarmentKind) -> Result<Vec<(Girth, [f32; 2])>, WardrobeError> {
+    let mut like = None;
+    for name in super::names() {
+        let style = super::style(name)?;
+        if style.kind == kind {
+            like = Some(style.comfort_mm);
+        }
+    }
+    let range = |zone: Girth| own.measures.comfort_mm.at(zone).or_else(|| like.and_then(|comfort| comfort.at(zone)));
+    Ok(Girth::ALL.into_iter().filter_map(|zone| range(zone).map(|r| (zone, r))).collect())
 }

@@ -153,8 +153,10 @@ pub fn put_on(choice: &Choice, size: Option<&str>, measured: &Measurements, body
             Ok(Worn { garment, fit: Some(fit), mesh: None })
         }
         Choice::Mesh(mesh) => {
+            let fit = size::judge_mesh(mesh, size, measured)?;
+            let size = fit.as_ref().map(|fit| fit.size.as_str()).or(size);
             let dressed = own::dress(mesh, size, body).map_err(FittingError::input)?;
-            Ok(Worn { garment: dressed.garment, fit: None, mesh: Some(dressed.report) })
+            Ok(Worn { garment: dressed.garment, fit, mesh: Some(dressed.report) })
         }
     }
 }
