@@ -190,7 +190,8 @@ fn a_mesh_with_measures_has_sizes_and_is_cut_in_each() {
     assert!(grown.iter().zip(&made).all(|(a, b)| a.1 > b.1));
     let body = shopper(Sex::Female);
     let dressed = own::dress(&own, Some("46"), &body).unwrap();
-    assert_eq!((dressed.garment.size.as_str(), dressed.garment.fabric.name.as_str()), ("46", "linen-twill"));
+    let garment = &dressed.garments[0];
+    assert_eq!((garment.size.as_str(), garment.fabric.name.as_str()), ("46", "linen-twill"));
     assert!(own::dress(&own, Some("99"), &body).is_err());
     assert!(!own::comfort(&own, sizes.kind).unwrap().is_empty());
 }
@@ -200,7 +201,7 @@ fn a_mesh_without_measures_has_no_size() {
     let folder = Folder::new("no-sizes");
     let own = OwnMesh::read(&folder.write("skirt.obj", skirt(1.0, 1.0))).unwrap();
     let body = shopper(Sex::Female);
-    assert_eq!(own::dress(&own, None, &body).unwrap().garment.size, "unknown");
+    assert_eq!(own::dress(&own, None, &body).unwrap().garments[0].size, "unknown");
     assert!(own::dress(&own, Some("38"), &body).unwrap_err().to_string().contains("no size 38"));
 }
 

@@ -5,9 +5,12 @@ use std::collections::VecDeque;
 use glam::Vec3;
 
 use super::lay::LaidMesh;
+use super::made_for::arm_share;
 use super::mesh::ForeignMesh;
 use super::surface::loops;
 use crate::body::Body;
+use crate::garment::Part;
+use crate::garment::check::corners;
 
 /// Cloth that starts nearer to the skin than this (m) lies on it and follows it.
 const TIGHT_M: f32 = 0.010;
@@ -20,8 +23,16 @@ const YOKE_NEAR_M: f32 = 0.03;
 /// Height of a waistband (m): what hangs from no shoulder is held so far below its upper edge.
 const BAND_M: f32 = 0.04;
 
-/// Patches of cloth that move are no smaller than this (vertices), and patches that are held where nothing carries neither.
-const LEAST_MOVING: usize = 24;
+/// Cloth whose skin an arm carries by a share between these bends with the shoulder: it is stretched as skin is, and what moved
+/// between arm and trunk would be torn by them.
+const SHOULDER_SHARE: [f32; 2] = [0.04, 0.96];
+
+/// A patch of cloth moves only if it has room: an area of so much (m^2), a share of which is farther from the skin than so much (m).
+const LEAST_AREA_M2: f32 = 0.015;
+const LEAST_LOOSE: f32 = 0.2;
+const LOOSE_M: f32 = 0.018;
+
+/// Patches that are held where nothing carries are no smaller than this (vertices), nor is a yoke.
 const LEAST_HELD: usize = 12;
 
 /// Holds the pieces of a mesh, one after the other.
@@ -32,6 +43,8 @@ pub struct Holding<'a> {
     neighbours: &'a [Vec<u32>],
     /// Normals of the cloth as laid `[vertices]`.
     normals: Vec<Vec3>,
+    /// Area of the cloth around each vertex (m^2) `[vertices]`.
+    areas: Vec<f32>,
     /// Borders, each with the mean height of its vertices (m).
     borders: Vec<(f32, Vec<u32>)>,
     /// Distance from the upper edge, along the cloth (m) `[vertices]`.
@@ -47,7 +60,13 @@ impl<'a> Holding<'a> {
     pub fn new(mesh: &'a ForeignMesh, laid: &'a LaidMesh, shopper: &'a Body, neighbours: &'a [Vec<u32>]) -> Self {
         let height = |ring: &Vec<u32>| ring.iter().map(|v| laid.worn[*v as usize].y).sum::<f32>() / ring.len() as f32;
         let count = mesh.positions.len();
+        let mut areas = vec![0.0; count];
+        for (f, ring) in mesh.faces.iter().map(corners).enumerate() {
+            let share = 0.5 * mesh.area_normal(f).length() / ring.len() as f32;
+            ring.iter().for_each(|v| areas[*v as usize] += share);
+        }
         Self {
+            areas,
             mesh,
             laid,
             shopper,
@@ -69,16 +88,34 @@ impl<'a> Holding<'a> {
         };
         carried.iter().for_each(|v| self.carries[*v as usize] = true);
         for &v in piece {
-            self.held[v as usize] = self.carries[v as usize] || self.is_tight(v);
+            self.held[v as usize] = self.carries[v as usize] || self.bends(v) || self.is_tight(v);
         }
-        for (state, least) in [(true, LEAST_HELD), (false, LEAST_MOVING)] {
-            for patch in patches(piece, self.neighbours, |v| self.held[v as usize] == state) {
-                if patch.len() < least && !patch.iter().any(|v| self.carries[*v as usize]) {
-                    patch.iter().for_each(|v| self.held[*v as usize] = !state);
-                }
+        for patch in patches(piece, self.neighbours, |v| self.held[v as usize]) {
+            if patch.len() < LEAST_HELD && !patch.iter().any(|v| self.carries[*v as usize]) {
+                patch.iter().for_each(|v| self.held[*v as usize] = false);
+            }
+        }
+        for patch in patches(piece, self.neighbours, |v| !self.held[v as usize]) {
+            if !self.has_room(&patch) {
+                patch.iter().for_each(|v| self.held[*v as usize] = true);
             }
         }
         by
+    }
+
+    /// Whether a vertex lies where an arm meets the trunk.
+    fn bends(&self, v: u32) -> bool {
+        let weights = &self.laid.weights[v as usize];
+        let [least, most] = SHOULDER_SHARE;
+        let between = |side: f32| (least..most).contains(&arm_share(weights, side));
+        self.laid.parts[v as usize] == Part::Hollow || between(1.0) || between(-1.0)
+    }
+
+    /// Whether a patch is large and loose enough to move.
+    fn has_room(&self, patch: &[u32]) -> bool {
+        let area: f32 = patch.iter().map(|v| self.areas[*v as usize]).sum();
+        let loose = patch.iter().filter(|v| self.laid.clearance[**v as usize] > LOOSE_M).count();
+        area >= LEAST_AREA_M2 && loose as f32 >= LEAST_LOOSE * patch.len() as f32
     }
 
     fn is_on_shoulders(&self, v: u32) -> bool {
@@ -145,7 +182,7 @@ fn normals(mesh: &ForeignMesh, worn: &[Vec3]) -> Vec<Vec3> {
     let mut out = vec![Vec3::ZERO; worn.len()];
     for f in 0..laid.faces.len() {
         let n = laid.area_normal(f);
-        crate::garment::check::corners(&laid.faces[f]).iter().for_each(|v| out[*v as usize] += n);
+        corners(&laid.faces[f]).iter().for_each(|v| out[*v as usize] += n);
     }
     out.iter().map(|n| n.normalize_or_zero()).collect()
 }

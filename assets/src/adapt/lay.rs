@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::layers::PieceOrder;
 use super::made_for::arm_share;
 use super::mesh::{ForeignMesh, sides};
 use super::place::{Below, BodyWay, leg_share};
@@ -25,10 +26,7 @@ const ROUNDS: usize = 8;
 const DRAWS: usize = 12;
 
 /// Pieces that lie over each other start at least so far apart (m).
-const LAYER_GAP_M: f32 = 0.006;
-
-/// Vertices of two pieces within this distance (m) lie over each other.
-const OVER_M: f32 = 0.035;
+const LAYER_GAP_M: f32 = 0.008;
 
 /// Rounds in which skin weights are averaged with those of the neighbours: a skirt's middle follows both legs.
 const SMOOTHINGS: usize = 8;
@@ -39,7 +37,7 @@ const HOLLOW_M: f32 = 0.045;
 /// Farther than this (m) from a shoulder's joint is no armpit.
 const ARMPIT_M: f32 = 0.22;
 
-/// A mesh on a shopper, all of the same length.
+/// A mesh on a shopper; all but the order a value a vertex.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LaidMesh {
     /// Where each vertex starts (m).
@@ -50,6 +48,8 @@ pub struct LaidMesh {
     pub weights: Vec<SkinWeights>,
     /// The part of the body that it lies on.
     pub parts: Vec<Part>,
+    /// Which pieces lie over which.
+    pub order: PieceOrder,
 }
 
 /// What is known of a mesh before it is laid, a value a vertex.
@@ -73,58 +73,33 @@ pub fn lay(mesh: &ForeignMesh, input: &LayInput<'_>, from: &Body, shopper: &Body
     let heights: Vec<f32> =
         mesh.positions.iter().zip(weights).map(|(p, w)| made.beside(*p, w).map_or(1.0, |(_, d)| d)).collect();
     let skin = BodySkin::new(shopper);
-    let gaps = gaps(mesh, input.piece, &heights);
+    let order = PieceOrder::of(mesh, input.piece, &heights);
     let lengths = Lengths::of(mesh);
     for round in 0..ROUNDS {
         lengths.draw(&mut worn);
+        let gaps = gaps(&skin, &order, &worn, weights);
         push_out(&skin, &mut worn, weights, &neighbours, &gaps, round + 1 == ROUNDS);
     }
     let clearance = worn.iter().zip(weights).map(|(p, w)| skin.beside(*p, w).map_or(1.0, |(_, d)| d)).collect();
     let found = worn.iter().zip(weights).map(|(p, w)| on_shopper(shopper, *p, w)).collect::<Vec<_>>();
     let weights = smooth(&found, &neighbours);
     let parts = worn.iter().zip(&weights).zip(below).map(|((p, w), below)| skin.part(*p, w, *below)).collect();
-    LaidMesh { worn, clearance, weights, parts }
+    LaidMesh { worn, clearance, weights, parts, order }
 }
 
-/// How far each vertex stays from the skin (m): farther where its piece lies over another one on the body that it is made for.
-/// `heights` are how far it is from the skin there.
-fn gaps(mesh: &ForeignMesh, piece: &[u32], heights: &[f32]) -> Vec<f32> {
-    let count = piece.iter().max().map_or(0, |m| *m as usize + 1);
-    let mut gaps = vec![START_GAP_M; piece.len()];
-    if !(2..=MOST_LAYERS).contains(&count) {
-        return gaps;
-    }
-    let mut order: Vec<usize> = (0..piece.len()).collect();
-    order.sort_by(|a, b| mesh.positions[*a].y.total_cmp(&mesh.positions[*b].y));
-    let height = |k: usize| mesh.positions[order[k]].y;
-    // How far above each vertex of another piece a vertex lies, summed for each pair of pieces: the outer one lies above.
-    let mut above = vec![0.0f32; count * count];
-    let mut near: Vec<(usize, usize)> = Vec::new();
-    for k in 0..order.len() {
-        for j in (0..k).rev().take_while(|j| height(k) - height(*j) < OVER_M) {
-            let (a, b) = (order[k], order[j]);
-            if piece[a] != piece[b] && mesh.positions[a].distance_squared(mesh.positions[b]) < OVER_M * OVER_M {
-                let (p, q) = (piece[a] as usize, piece[b] as usize);
-                above[p * count + q] += heights[a] - heights[b];
-                above[q * count + p] += heights[b] - heights[a];
-                near.push((a, b));
-            }
-        }
-    }
-    for (a, b) in near {
-        let outer = above[piece[a] as usize * count + piece[b] as usize] > 0.0;
-        let (over, under) = if outer { (a, b) } else { (b, a) };
-        let least = START_GAP_M.max(heights[under].min(MOST_UNDER_M)) + LAYER_GAP_M;
-        gaps[over] = gaps[over].max(least);
+/// How far each vertex stays from the skin (m): outer pieces outside of what they lie over, wherever that lies by now.
+fn gaps(skin: &BodySkin<'_>, order: &PieceOrder, worn: &[Vec3], weights: &[SkinWeights]) -> Vec<f32> {
+    let mut gaps = vec![START_GAP_M; worn.len()];
+    for [over, under] in &order.over {
+        let (over, under) = (*over as usize, *under as usize);
+        let lies = skin.beside(worn[under], &weights[under]).map_or(0.0, |(_, d)| d).clamp(START_GAP_M, MOST_UNDER_M);
+        gaps[over] = gaps[over].max(lies + LAYER_GAP_M);
     }
     gaps
 }
 
-/// Pieces of a mesh whose order is looked at: more are no garments over each other.
-const MOST_LAYERS: usize = 12;
-
 /// What lies under another piece lifts it by no more than this (m).
-const MOST_UNDER_M: f32 = 0.02;
+const MOST_UNDER_M: f32 = 0.03;
 
 /// The lengths that cloth wants: of its edges and of the diagonals of its quads.
 struct Lengths(Vec<([u32; 2], f32)>);

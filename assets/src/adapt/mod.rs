@@ -15,6 +15,7 @@ pub mod hems;
 pub mod hold;
 pub mod judge;
 pub mod lay;
+pub mod layers;
 pub mod made_for;
 pub mod measures;
 pub mod mesh;

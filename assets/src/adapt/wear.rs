@@ -12,6 +12,7 @@ use super::report::{Behaviour, MeshReport, PieceReport};
 use super::surface::{loops, pieces};
 use crate::body::Body;
 use crate::garment::Shape;
+use crate::garment::shape::NO_VERTEX;
 use crate::import::obj::warp_upright;
 
 /// Borders below the crotch that lie this far beside the middle (m) are those of trouser legs.
@@ -23,8 +24,10 @@ const SEWN_M: f32 = 0.02;
 /// A mesh on a shopper.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WornMesh {
-    /// Ready to be baked.
+    /// All of it as one shape.
     pub shape: Shape,
+    /// Vertices of what is worn in one layer, sorted; the innermost layer first.
+    pub layers: Vec<Vec<u32>>,
     /// What became of it.
     pub report: MeshReport,
 }
@@ -43,6 +46,7 @@ impl OwnMesh {
         let input = LayInput { weights: &self.weights, below: &below, piece: &piece };
         let mut laid = lay(cut, &input, from, shopper);
         let (held, reports) = self.decide(cut, &mut laid, shopper, &pieces);
+        let layers = layers(&laid, &piece, &reports, &pieces);
         let shape = shape(cut, laid, held);
         let mut notes = self.notes.clone();
         notes.extend(no_cloth(&reports));
@@ -55,7 +59,7 @@ impl OwnMesh {
             pieces: reports,
             notes,
         };
-        WornMesh { shape, report }
+        WornMesh { shape, layers, report }
     }
 
     /// What is held of each piece, and why.
@@ -175,6 +179,48 @@ fn sew_on(laid: &LaidMesh, pieces: &[Vec<u32>], trims: &[bool], held: &mut [bool
     for (p, held) in laid.worn.iter().zip(held.iter_mut()).filter(|(_, held)| !**held) {
         *held = sewn.iter().any(|q| q.distance_squared(*p) < SEWN_M * SEWN_M);
     }
+}
+
+/// The vertices of each layer. What is no layer of its own goes with the piece that it lies next to.
+fn layers(laid: &LaidMesh, piece: &[u32], reports: &[PieceReport], pieces: &[Vec<u32>]) -> Vec<Vec<u32>> {
+    let mut depth = laid.order.depth.clone();
+    let is_trim = |p: usize| reports[p].behaviour == Behaviour::Rigid;
+    for p in (0..pieces.len()).filter(|p| is_trim(*p)) {
+        let at = laid.worn[pieces[p][0] as usize];
+        let others = (0..laid.worn.len()).filter(|v| !is_trim(piece[*v] as usize));
+        let far = |v: &usize| laid.worn[*v].distance_squared(at);
+        if let Some(next) = others.min_by(|a, b| far(a).total_cmp(&far(b))) {
+            depth[p] = laid.order.depth[piece[next] as usize];
+        }
+    }
+    let deepest = depth.iter().copied().max().unwrap_or(0);
+    let of = |d: u8| (0..piece.len() as u32).filter(|v| depth[piece[*v as usize] as usize] == d).collect::<Vec<u32>>();
+    (0..=deepest).map(of).filter(|layer| !layer.is_empty()).collect()
+}
+
+impl WornMesh {
+    /// The shape of each layer, the innermost first.
+    pub fn shapes(&self) -> Vec<Shape> {
+        self.layers.iter().map(|layer| part_of(&self.shape, layer)).collect()
+    }
+}
+
+/// The part of a shape on some of its vertices, sorted, that no face leaves.
+fn part_of(shape: &Shape, layer: &[u32]) -> Shape {
+    if layer.len() == shape.cut.len() {
+        return shape.clone();
+    }
+    let place = |v: u32| layer.binary_search(&v).map_or(NO_VERTEX, |k| k as u32);
+    let mut part = Shape { solver: shape.solver, ..Shape::default() };
+    for (face, uvs) in shape.faces.iter().zip(&shape.uvs).filter(|(face, _)| place(face[0]) != NO_VERTEX) {
+        part.faces.push(face.map(|v| if v == NO_VERTEX { v } else { place(v) }));
+        part.uvs.push(*uvs);
+    }
+    for v in layer.iter().map(|v| *v as usize) {
+        part.push(shape.cut[v], shape.worn[v], shape.fixed[v], shape.parts[v]);
+        part.weights.push(shape.weights[v]);
+    }
+    part
 }
 
 /// Girths that differ by more than this (m) are worth a word.

@@ -1,11 +1,12 @@
 //! Meshes of the user's own in the wardrobe: put on a shopper in a size, and baked.
 
 use super::WardrobeError;
+use crate::adapt::wear::WornMesh;
 use crate::adapt::{MeshReport, OwnMesh};
 use crate::bake::bake;
 use crate::body::Body;
 use crate::fabric::Fabric;
-use crate::garment::{Garment, Shape};
+use crate::garment::Garment;
 use crate::sizes::{GarmentKind, Girth};
 
 /// Fabric of a mesh that does not say what it is made of.
@@ -20,20 +21,18 @@ pub const UNKNOWN: &str = "unknown";
 /// A mesh on a shopper, baked, and what became of it.
 #[derive(Debug, Clone)]
 pub struct DressedMesh {
-    /// Ready to be stepped.
-    pub garment: Garment,
+    /// A garment for each layer of the mesh, the innermost first, ready to be stepped.
+    pub garments: Vec<Garment>,
     /// What was repaired and what became of each piece.
     pub report: MeshReport,
 }
 
 /// What a mesh becomes on a shopper before it is baked, with its fabric.
 pub struct DraftedMesh {
-    /// The shape.
-    pub shape: Shape,
+    /// The mesh on the shopper.
+    pub worn: WornMesh,
     /// Its fabric.
     pub fabric: Fabric,
-    /// What became of it.
-    pub report: MeshReport,
 }
 
 /// Lays a mesh on a shopper in one of its sizes; none is as it was made.
@@ -50,20 +49,27 @@ pub fn draft(own: &OwnMesh, size: Option<&str>, shopper: &Body) -> Result<Drafte
         (Some(size), None) => return Err(WardrobeError::NoSizes { name: own.path.clone(), size: size.into() }),
         _ => own.wear(shopper),
     };
-    Ok(DraftedMesh { shape: worn.shape, fabric, report: worn.report })
+    Ok(DraftedMesh { worn, fabric })
 }
 
-/// Lays a mesh on a shopper and bakes it.
+/// Lays a mesh on a shopper and bakes each of its layers.
 ///
 /// # Errors
 /// As [`draft`].
 pub fn dress(own: &OwnMesh, size: Option<&str>, shopper: &Body) -> Result<DressedMesh, WardrobeError> {
-    let DraftedMesh { shape, fabric, report } = draft(own, size, shopper)?;
+    let DraftedMesh { worn, fabric } = draft(own, size, shopper)?;
     let name = own.measures.name.clone().unwrap_or_else(|| own.path.clone());
-    let baked = bake(&name, size.unwrap_or(UNKNOWN), &shape, &fabric);
-    let mut garment = baked.map_err(|source| WardrobeError::Mesh { name: own.path.clone(), source })?;
-    garment.layer = own.measures.layer.unwrap_or(LAYER);
-    Ok(DressedMesh { garment, report })
+    let shapes = worn.shapes();
+    let several = shapes.len() > 1;
+    let garments = shapes.iter().enumerate().map(|(k, shape)| {
+        let name = if several { format!("{name} ({})", k + 1) } else { name.clone() };
+        let baked = bake(&name, size.unwrap_or(UNKNOWN), shape, &fabric);
+        let mut garment = baked.map_err(|source| WardrobeError::Mesh { name: own.path.clone(), source })?;
+        garment.layer = own.measures.layer.unwrap_or(LAYER);
+        Ok(garment)
+    });
+    let garments = garments.collect::<Result<_, WardrobeError>>()?;
+    Ok(DressedMesh { garments, report: worn.report })
 }
 
 /// The ease that a wearer finds good at each zone (m): by the mesh's file of measures, else as garments of its kind in the

@@ -217,8 +217,14 @@ fn draft(args: &BakeArgs) -> Result<DraftedShape, AppError> {
         let sex = own.sex.unwrap_or(Sex::Female);
         let body = Body::build(sex, &Measures::average(sex)).map_err(AppError::internal)?;
         let drafted = own::draft(&own, None, &body).map_err(AppError::input)?;
-        let (fabric, notes) = (drafted.fabric.name, drafted.report.lines());
-        return Ok(DraftedShape { name: name.clone(), size: own::UNKNOWN.into(), fabric, shape: drafted.shape, notes });
+        let (fabric, notes) = (drafted.fabric.name, drafted.worn.report.lines());
+        return Ok(DraftedShape {
+            name: name.clone(),
+            size: own::UNKNOWN.into(),
+            fabric,
+            shape: drafted.worn.shape,
+            notes,
+        });
     }
     let style = wardrobe::style(name).map_err(AppError::input)?;
     let table = style.sizes().map_err(AppError::input)?;

@@ -14,6 +14,7 @@ use toile_assets::garment::Garment;
 use toile_assets::limits::{STEP_HZ, STEP_SECONDS};
 use toile_assets::rig::Rig;
 use toile_assets::skeleton::{BONES, Joint};
+use toile_assets::wardrobe::own;
 use toile_engine::body::palette;
 use toile_engine::cloth::layers::tuck_in;
 use toile_engine::cloth::{Settings, measure};
@@ -255,12 +256,12 @@ fn put_on(choices: &[Choice], size: Option<&str>, measured: &Measured, body: &Bo
         put_on.recommendations.push(match worn.fit {
             Some(fit) => fit.into(),
             None => Recommendation {
-                garment: worn.garment.name.clone(),
-                size: worn.garment.size.clone(),
+                garment: worn.mesh.as_ref().map(|mesh| mesh.file.clone()).unwrap_or_default(),
+                size: own::UNKNOWN.to_owned(),
                 ..Recommendation::default()
             },
         });
-        put_on.garments.push(worn.garment);
+        put_on.garments.extend(worn.garments);
         put_on.meshes.extend(worn.mesh);
     }
     Ok(put_on)

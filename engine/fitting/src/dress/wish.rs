@@ -55,8 +55,8 @@ pub enum Choice {
 /// A garment on the body, and how its size fits; a mesh has no sizes.
 #[derive(Debug, Clone)]
 pub struct Worn {
-    /// The garment, baked.
-    pub garment: Garment,
+    /// The garment, baked; a mesh of several layers becomes one for each, the innermost first.
+    pub garments: Vec<Garment>,
     /// How it fits; none where it was not recommended.
     pub fit: Option<Recommendation>,
     /// What became of a mesh of the user's own.
@@ -150,13 +150,13 @@ pub fn put_on(choice: &Choice, size: Option<&str>, measured: &Measurements, body
         Choice::Style(style) => {
             let fit = size::judge(style, size, measured)?;
             let garment = style.dress(&fit.size, body).map_err(FittingError::input)?;
-            Ok(Worn { garment, fit: Some(fit), mesh: None })
+            Ok(Worn { garments: vec![garment], fit: Some(fit), mesh: None })
         }
         Choice::Mesh(mesh) => {
             let fit = size::judge_mesh(mesh, size, measured)?;
             let size = fit.as_ref().map(|fit| fit.size.as_str()).or(size);
             let dressed = own::dress(mesh, size, body).map_err(FittingError::input)?;
-            Ok(Worn { garment: dressed.garment, fit, mesh: Some(dressed.report) })
+            Ok(Worn { garments: dressed.garments, fit, mesh: Some(dressed.report) })
         }
     }
 }
