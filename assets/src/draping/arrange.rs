@@ -27,6 +27,8 @@ pub struct Arrangement {
     pub lift: f64,
     /// The highest coordinate of the trunk's panels (m).
     pub top: f64,
+    /// How wide its panels are together just below that (m).
+    pub upper_edge: f64,
     /// Whether it hangs from the shoulders.
     pub shoulders: bool,
     /// Its legs, if it has any.
@@ -50,23 +52,28 @@ pub fn arrange(pattern: &Pattern, sewn: &SewnMesh, body: &Body) -> Result<Arrang
     let shoulder = shoulder(pattern, sewn, &all);
     for (i, panel) in all.iter_mut().enumerate() {
         let lowest = outline(sewn, i).map(|p| panel.at(p).y).fold(f64::MAX, f64::min);
-        if panel.around == Around::Trunk && faces(panel.angle).is_none() && shoulder.is_some_and(|s| lowest > s.y - 0.25) {
+        if panel.around == Around::Trunk
+            && faces(panel.angle).is_none()
+            && shoulder.is_some_and(|s| lowest > s.y - 0.25)
+        {
             panel.around = Around::Head;
         }
     }
     let trunk = |i: &usize| all[*i].around == Around::Trunk;
-    let heights = (0..all.len()).filter(trunk).flat_map(|i| outline(sewn, i).map(|p| all[i].at(p).y).collect::<Vec<_>>());
+    let heights =
+        (0..all.len()).filter(trunk).flat_map(|i| outline(sewn, i).map(|p| all[i].at(p).y).collect::<Vec<_>>());
     let top = heights.fold(f64::MIN, f64::max);
+    let upper_edge = upper_edge(sewn, &all, top);
     let legs = legs(sewn, &all);
     let lift = match shoulder {
         Some(seam) => shoulder_height(body, seam.x) + f64::from(CLEARANCE_M) - seam.y,
         None => {
-            let hung = hanging_height(body, upper_edge(sewn, &all, top)) - top;
+            let hung = hanging_height(body, upper_edge) - top;
             // Trousers are not pulled up into the body.
             legs.as_ref().map_or(hung, |l| hung.min(f64::from(body.levels.crotch) - 0.01 - l.crotch))
         }
     };
-    Ok(Arrangement { panels: all, lift, top, shoulders: shoulder.is_some(), legs, inside_out })
+    Ok(Arrangement { panels: all, lift, top, upper_edge, shoulders: shoulder.is_some(), legs, inside_out })
 }
 
 /// The points of a panel's outline (m).
@@ -179,8 +186,23 @@ fn shoulder_height(body: &Body, x: f64) -> f64 {
 
 /// Length of the upper edge of a garment without shoulders (m): how wide its panels are just below it.
 fn upper_edge(sewn: &SewnMesh, all: &[ArrangedPanel], top: f64) -> f64 {
-    let hung = (0..all.len()).filter(|&i| all[i].around == Around::Trunk);
-    hung.map(|i| breadth(sewn, all, i, top - 0.015).map_or(0.0, |[low, high]| high - low)).sum()
+    width(sewn, all, top - 0.015, |_| true)
+}
+
+/// How wide the trunk's panels are together at a height (m), those alone that `which` admits. What lies over each other at one
+/// side of the body, a waistband and the skirt below it, counts once.
+pub fn width(sewn: &SewnMesh, all: &[ArrangedPanel], height: f64, which: impl Fn(usize) -> bool) -> f64 {
+    let hung = (0..all.len()).filter(|&i| all[i].around == Around::Trunk && which(i));
+    let mut spans: Vec<(f64, [f64; 2])> =
+        hung.filter_map(|i| Some((all[i].angle, breadth(sewn, all, i, height)?))).collect();
+    spans.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1[0].total_cmp(&b.1[0])));
+    let (mut sum, mut before) = (0.0, (f64::MIN, f64::MIN));
+    for (angle, [low, high]) in spans {
+        let from = if (angle - before.0).abs() < 1e-3 { low.max(before.1) } else { low };
+        sum += (high - from).max(0.0);
+        before = (angle, if from > low { before.1.max(high) } else { high });
+    }
+    sum
 }
 
 /// Where a panel begins and ends around the body at a height (m).

@@ -37,7 +37,8 @@ fn containing(mesh: &PanelMesh, triangles: &[[u32; 3]], p: DVec2) -> ([u32; 3], 
     for t in triangles {
         let [a, b, c] = t.map(|v| mesh.points[v as usize]);
         let whole = (b - a).perp_dot(c - a);
-        let shares = [(b - p).perp_dot(c - p) / whole, (c - p).perp_dot(a - p) / whole, (a - p).perp_dot(b - p) / whole];
+        let shares =
+            [(b - p).perp_dot(c - p) / whole, (c - p).perp_dot(a - p) / whole, (a - p).perp_dot(b - p) / whole];
         let least = shares.into_iter().fold(f64::MAX, f64::min) * whole.abs().sqrt();
         if least > best.2 {
             best = (*t, shares, least);

@@ -49,6 +49,13 @@ pub struct DrapedPattern {
     pub(super) held: Vec<bool>,
 }
 
+impl DrapedPattern {
+    /// The triangles of the final mesh, for pictures.
+    pub fn triangles(&self) -> Vec<[u32; 3]> {
+        shape(&self.sewn, self.at.clone()).triangles()
+    }
+}
+
 /// Steps without gravity in which the seams of the first level close.
 const CLOSING: RelaxRun =
     RelaxRun { steps: 500, step_s: 1.0 / 500.0, gravity: 0.0, kept: 0.6, seam: 0.6, shear: 60.0, exact: false };
@@ -63,7 +70,7 @@ const HANGING: RelaxRun =
 
 /// Steps in which it comes to rest, out of the skin exactly: so short that its weight stretches it no more than the fabric lets it.
 const RESTING: RelaxRun =
-    RelaxRun { steps: 200, step_s: 1.0 / 4000.0, gravity: 9.81, kept: 0.9, seam: 0.0, shear: 20.0, exact: true };
+    RelaxRun { steps: 900, step_s: 1.0 / 4000.0, gravity: 9.81, kept: 0.9, seam: 0.0, shear: 20.0, exact: true };
 
 /// Lays a pattern around a body, sews it and lets it hang, at a spacing (m).
 ///
@@ -140,7 +147,8 @@ impl FirstLevel {
         let placed = unsewn_shape(sewn, at);
         let first = panel_starts(sewn);
         let own = |m: &[u32; 2]| first[m[0] as usize] as u32 + m[1];
-        let pairs = sewn.members.iter().flat_map(|m| m.windows(2).map(|w| [own(&w[0]), own(&w[1])]).collect::<Vec<_>>());
+        let pairs =
+            sewn.members.iter().flat_map(|m| m.windows(2).map(|w| [own(&w[0]), own(&w[1])]).collect::<Vec<_>>());
         let springs = Springs::new(&placed, fabric, pairs.collect());
         Self { placed, springs }
     }
@@ -184,6 +192,9 @@ fn sides(sewn: &SewnMesh, arranged: &Arrangement) -> Vec<Option<bool>> {
     sewn.members.iter().map(one).collect()
 }
 
+/// How far below a panel's highest point its upper edge is held (m): less than a waistband is broad.
+const HELD_M: f64 = 0.04;
+
 /// The vertices of the highest free edge: what a garment without shoulders hangs by.
 fn upper_edge(sewn: &SewnMesh, arranged: &Arrangement) -> Vec<bool> {
     let height = |v: &u32| {
@@ -194,10 +205,14 @@ fn upper_edge(sewn: &SewnMesh, arranged: &Arrangement) -> Vec<bool> {
     let loops = free_loops(sewn);
     let mean = |l: &Vec<u32>| l.iter().map(height).sum::<f64>() / l.len() as f64;
     let highest = loops.iter().max_by(|a, b| mean(a).total_cmp(&mean(b)));
-    // A band that is open at its ends has one edge above and below: its upper one holds.
+    // A band that is open at its ends has one edge above and below: of each panel the upper part holds.
     if let Some(edge) = highest {
-        let top = edge.iter().map(height).fold(f64::MIN, f64::max);
-        edge.iter().filter(|v| height(v) > top - 0.04).for_each(|v| held[*v as usize] = true);
+        let on = |v: &u32, panel: u32| sewn.members[*v as usize].iter().any(|m| m[0] == panel);
+        for panel in 0..sewn.panels.len() as u32 {
+            let own: Vec<u32> = edge.iter().copied().filter(|v| on(v, panel)).collect();
+            let top = own.iter().map(height).fold(f64::MIN, f64::max);
+            own.iter().filter(|v| height(v) > top - HELD_M).for_each(|v| held[*v as usize] = true);
+        }
     }
     held
 }
@@ -206,7 +221,9 @@ fn upper_edge(sewn: &SewnMesh, arranged: &Arrangement) -> Vec<bool> {
 fn check(pattern: &Pattern, draped: &DrapedPattern, springs: &Springs) -> Result<(), DrapeError> {
     let DrapedPattern { sewn, at, arranged, .. } = draped;
     let hung: Vec<usize> = (0..arranged.panels.len()).filter(|&i| arranged.panels[i].around == Around::Trunk).collect();
-    let middle = |panel: usize| sewn.number[panel].iter().map(|v| at[*v as usize]).sum::<Vec3>() / sewn.number[panel].len() as f32;
+    let middle = |panel: usize| {
+        sewn.number[panel].iter().map(|v| at[*v as usize]).sum::<Vec3>() / sewn.number[panel].len() as f32
+    };
     let centre = hung.iter().map(|&i| middle(i)).sum::<Vec3>() / hung.len().max(1) as f32;
     for &i in &hung {
         let angle = arranged.panels[i].angle;

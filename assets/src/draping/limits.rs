@@ -10,8 +10,8 @@ pub const CLEARANCE_M: f32 = 0.012;
 /// is .7 mm, and contact in the frame keeps 2 to 3 mm.
 pub const CONTACT_M: f32 = 0.004;
 
-/// Widest gap that a seam may keep on the first level (mm); what is less the merged vertices take up.
-pub const MAX_OPEN_MM: f64 = 25.0;
+/// Widest gap that a seam may keep on the first level (mm), two of its edges: what is less, the sewn cloth draws together.
+pub const MAX_OPEN_MM: f64 = 100.0;
 
 /// Largest mean stretch of the threads of a panel (1): beyond what a knit takes before it is damaged.
 pub const MAX_STRETCH: f64 = 0.25;

@@ -11,9 +11,11 @@
 mod arrange;
 mod carry;
 mod drape;
+mod ease;
 mod error;
 mod legs;
 pub mod limits;
+mod package;
 mod panels;
 mod place;
 mod quality;
@@ -24,7 +26,9 @@ mod sleeves;
 mod springs;
 mod worn;
 
-pub use drape::{DrapedPattern, DrapeLevel, drape};
+pub use drape::{DrapeLevel, DrapedPattern, drape};
+pub use ease::{ZoneEase, ease, fitting_size};
 pub use error::DrapeError;
+pub use package::{FABRIC, PackageError, PatternPackage, SPACING_MM, is_pattern, read_package};
 pub use quality::DrapeQuality;
 pub use skin_field::SkinField;

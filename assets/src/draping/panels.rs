@@ -139,7 +139,7 @@ fn unrolled(points: &[DVec2], angle: f64, place: &crate::pattern::Placement) -> 
 }
 
 /// Least angle of a sector that is worth unrolling (rad): a flared panel of less is as good straight.
-const LEAST_SECTOR: f64 = 0.3 * PI;
+const LEAST_SECTOR: f64 = 0.12 * PI;
 
 /// How far points may lie from a ring (part of its breadth).
 const OFF_RING: f64 = 0.02;

@@ -35,6 +35,12 @@ pub struct RelaxRun {
 /// Farthest that a vertex moves in a step (m): a fifth of the band in which the skin is felt.
 const MOST_M: f32 = 0.2 * BAND_M;
 
+/// Steps after which the middles of edges are looked at: there are four times as many as vertices.
+const EDGES_EVERY: usize = 8;
+
+/// How far the middle of an edge is kept from the skin (m).
+const EDGE_CONTACT_M: f32 = 0.5 * CONTACT_M;
+
 /// A mesh under way.
 pub struct Relaxation<'a> {
     /// Where each vertex is (m) `[vertices]`.
@@ -67,6 +73,9 @@ impl Relaxation<'_> {
             self.close_seams(run.seam * progress);
             self.solve_links(&weight, run, step % 2 == 1);
             self.solve_bends(&weight, run.step_s);
+            if run.exact && step % EDGES_EVERY == 0 {
+                self.touch_edges(&weight);
+            }
             self.touch(&before, &weight, run.exact);
         }
     }
@@ -110,6 +119,19 @@ impl Relaxation<'_> {
             let push = sum / stiff;
             for (&v, &c) in bend.v.iter().zip(&bend.c) {
                 self.at[v as usize] -= push * (c * weight[v as usize]);
+            }
+        }
+    }
+
+    /// Puts edges whose middle is in the skin outside of it: over a ridge, both ends can be outside.
+    fn touch_edges(&mut self, weight: &[f32]) {
+        for link in &self.springs.links {
+            let [a, b] = link.ends.map(|v| v as usize);
+            let middle = 0.5 * (self.at[a] + self.at[b]);
+            let (distance, normal) = self.field.sample(middle);
+            if distance < EDGE_CONTACT_M {
+                let push = normal * (EDGE_CONTACT_M - distance).min(MOST_M);
+                [a, b].into_iter().filter(|v| weight[*v] > 0.0).for_each(|v| self.at[v] += push);
             }
         }
     }

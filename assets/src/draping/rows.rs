@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::{Vec2, Vec3};
 
-use super::arrange::{Arrangement, breadth, outline};
+use super::arrange::{Arrangement, outline, width};
 use super::limits::CLEARANCE_M;
 use super::panels::Around;
 use crate::body::Body;
@@ -92,15 +92,11 @@ impl Rows {
         let mut radius = 0.0f64;
         for k in 0..count {
             let height = arranged.top - STEP_M * k as f64;
-            let width = |of: &dyn Fn(usize) -> bool| -> f64 {
-                let panels = all.iter().filter(|&&i| of(i));
-                panels.filter_map(|&i| breadth(sewn, &arranged.panels, i, height)).map(|[l, h]| h - l).sum()
-            };
-            let wide = width(&|_| true);
+            let wide = width(sewn, &arranged.panels, height, |_| true);
             let level = (y as f32).clamp(LOWEST_M, armpit);
             let trunk = RowRing::new(BodySection::trunk(body, level), y as f32, wide as f32);
             let leg = arranged.legs.as_ref().filter(|l| height < l.crotch + BLEND_M).map(|legs| {
-                let wide = width(&|i| legs.left[i] == Some(true));
+                let wide = width(sewn, &arranged.panels, height, |i| legs.left[i] == Some(true));
                 RowRing::new(BodySection::left_leg(body, level), y as f32, wide as f32)
             });
             // Cloth wider than the body flares: it comes down by less than its length.

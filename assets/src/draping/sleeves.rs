@@ -32,12 +32,8 @@ pub fn unroll(pattern: &Pattern, sewn: &SewnMesh, all: &mut [ArrangedPanel]) {
         };
         let across = towards.perp();
         let along = if (rotation * across.extend(0.0)).dot(tangent) < 0.0 { -across } else { across };
-        let mut sleeve = ArrangedPanel {
-            angle,
-            unrolled: Unrolled::Straight { along, up: towards },
-            shift: DVec2::ZERO,
-            ..all[i]
-        };
+        let mut sleeve =
+            ArrangedPanel { angle, unrolled: Unrolled::Straight { along, up: towards }, shift: DVec2::ZERO, ..all[i] };
         let own: Vec<DVec2> = outline(sewn, i).map(|p| sleeve.at(p)).collect();
         let (low, high) = own.iter().fold((DVec2::MAX, DVec2::MIN), |(l, h), p| (l.min(*p), h.max(*p)));
         sleeve.shift = DVec2::new(-0.5 * (low.x + high.x), -high.y);

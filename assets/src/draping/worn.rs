@@ -47,7 +47,8 @@ impl DrapedPattern {
             let near = field.nearest(*p).is_some_and(|n| n.distance < RESTS_M && n.normal.y > CARRIES);
             near && p.y > body.levels.chest
         };
-        let trunk = |v: usize| self.sewn.members[v].iter().all(|m| self.arranged.panels[m[0] as usize].around == Around::Trunk);
+        let trunk =
+            |v: usize| self.sewn.members[v].iter().all(|m| self.arranged.panels[m[0] as usize].around == Around::Trunk);
         self.at.iter().enumerate().map(|(v, p)| trunk(v) && rests(p)).collect()
     }
 
