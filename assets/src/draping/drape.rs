@@ -4,11 +4,12 @@ use std::time::Instant;
 
 use glam::Vec3;
 
-use super::arrange::{Arrangement, arrange, coordinates};
+use super::arrange::{Arrangement, arrange};
 use super::carry::carry;
 use super::error::DrapeError;
 use super::legs::free_loops;
 use super::limits::{LEVELS_M, MAX_OPEN_MM, MAX_STRETCH};
+use super::outlines::coordinates;
 use super::panels::Around;
 use super::place::Placer;
 use super::quality::{self, DrapeQuality};

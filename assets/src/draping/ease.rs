@@ -1,7 +1,8 @@
 //! Ease: what a pattern's own lengths leave around a body, and the size that a pattern is for.
 
-use super::arrange::{Arrangement, arrange, width};
+use super::arrange::{Arrangement, arrange};
 use super::error::DrapeError;
+use super::outlines::width;
 use crate::body::{Body, Measures, Sex};
 use crate::pattern::Pattern;
 use crate::sizes::{Girth, SizeTable};

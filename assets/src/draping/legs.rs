@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::arrange::coordinates;
+use super::outlines::coordinates;
 use super::panels::{Around, ArrangedPanel};
 use crate::garment::check::corners;
 use crate::tailor::SewnMesh;

@@ -15,6 +15,7 @@ mod ease;
 mod error;
 mod legs;
 pub mod limits;
+mod outlines;
 mod package;
 mod panels;
 mod place;

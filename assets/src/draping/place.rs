@@ -4,8 +4,9 @@ use std::f32::consts::TAU;
 
 use glam::{DVec2, Vec3};
 
-use super::arrange::{Arrangement, breadth};
+use super::arrange::Arrangement;
 use super::limits::CLEARANCE_M;
+use super::outlines::breadth;
 use super::panels::{Around, faces};
 use super::rows::{BLEND_M, RowRing, Rows};
 use crate::body::{Body, Region};

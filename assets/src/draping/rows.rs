@@ -4,8 +4,9 @@ use std::f64::consts::TAU;
 
 use glam::{Vec2, Vec3};
 
-use super::arrange::{Arrangement, outline, width};
+use super::arrange::Arrangement;
 use super::limits::CLEARANCE_M;
+use super::outlines::{outline, width};
 use super::panels::Around;
 use crate::body::Body;
 use crate::tailor::SewnMesh;

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::{DVec2, DVec3};
 
-use super::arrange::outline;
+use super::outlines::outline;
 use super::panels::{Around, ArrangedPanel, Unrolled};
 use crate::pattern::Pattern;
 use crate::tailor::SewnMesh;

@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 
-use super::arrange::coordinates;
 use super::drape::DrapedPattern;
+use super::outlines::coordinates;
 use super::panels::Around;
 use super::skin_field::SkinField;
 use super::springs::shape;

@@ -116,7 +116,13 @@ pub fn run(args: &TailorArgs) -> Result<(), AppError> {
     package.fabric = args.fabric.clone().unwrap_or(package.fabric);
     let fabric = Fabric::built_in(&package.fabric).map_err(AppError::input)?;
     let pattern = package.parse().map_err(AppError::input)?;
-    let wearer = wearer::wearer(args, &pattern)?;
+    let choice = wearer::WearerChoice {
+        sex: args.body,
+        size: args.size.as_deref(),
+        table: args.table.as_deref(),
+        measures: args.measures.as_deref(),
+    };
+    let wearer = wearer::wearer(&choice, &pattern)?;
     let named = |e| AppError::input(format!("{}: {e}", args.pattern.display()));
     let ease = draping::ease(&pattern, &wearer.body).map_err(named)?;
     let start = Instant::now();

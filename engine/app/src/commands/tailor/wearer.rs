@@ -9,13 +9,24 @@ use toile_assets::file::{self, FileKind};
 use toile_assets::pattern::Pattern;
 use toile_assets::sizes::SizeTable;
 
-use super::TailorArgs;
 use crate::exit::AppError;
 
 /// A body and what it is called.
 pub struct Wearer {
     pub body: Body,
     pub size: String,
+}
+
+/// How the body is asked for.
+pub struct WearerChoice<'a> {
+    /// Female or male.
+    pub sex: Sex,
+    /// Size of the table.
+    pub size: Option<&'a str>,
+    /// Table of sizes; women's or men's where there is none.
+    pub table: Option<&'a str>,
+    /// File of measures, in place of a size.
+    pub measures: Option<&'a Path>,
 }
 
 /// A file of measures: a page of numbers.
@@ -25,22 +36,24 @@ const MEASURES_FILE: FileKind =
 /// Stature over the height of the shoulder's highest point, the mean of ANSUR II, as the tables of FreeSewing's bodies have it.
 const STATURE_OVER_SHOULDER: f64 = 1.1576;
 
-/// The body that the command line asks for.
-pub fn wearer(args: &TailorArgs, pattern: &Pattern) -> Result<Wearer, AppError> {
-    if let Some(path) = &args.measures {
-        let measures = read(path, args.body)?;
-        let body = Body::build(args.body, &measures).map_err(AppError::input)?;
+/// The body that is asked for.
+///
+/// # Errors
+/// A size, table or measures of which no body can be made, a pattern that cannot be laid around one.
+pub fn wearer(choice: &WearerChoice<'_>, pattern: &Pattern) -> Result<Wearer, AppError> {
+    let sex = choice.sex;
+    if let Some(path) = choice.measures {
+        let body = Body::build(sex, &read(path, sex)?).map_err(AppError::input)?;
         return Ok(Wearer { body, size: format!("measured by {}", path.display()) });
     }
-    let usual = if args.body == Sex::Male { "men" } else { "women" };
-    let table = SizeTable::embedded(args.table.as_deref().unwrap_or(usual)).map_err(AppError::input)?;
-    let size = match &args.size {
-        Some(size) => size.clone(),
-        None => draping::fitting_size(pattern, &table, args.body)
-            .map_err(|e| AppError::input(format!("{}: {e}", args.pattern.display())))?,
+    let usual = if sex == Sex::Male { "men" } else { "women" };
+    let table = SizeTable::embedded(choice.table.unwrap_or(usual)).map_err(AppError::input)?;
+    let size = match choice.size {
+        Some(size) => size.to_owned(),
+        None => draping::fitting_size(pattern, &table, sex).map_err(AppError::input)?,
     };
     let measures = Measures::from(table.size_body(&size).map_err(AppError::input)?);
-    Ok(Wearer { body: Body::build(args.body, &measures).map_err(AppError::input)?, size })
+    Ok(Wearer { body: Body::build(sex, &measures).map_err(AppError::input)?, size })
 }
 
 /// Measures of a file; what it leaves out is the mean person's.
