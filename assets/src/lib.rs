@@ -34,6 +34,8 @@ pub mod tailor;
 pub mod scene_file;
 pub mod wardrobe;
 
+pub mod draping;
+
 #[cfg(test)]
 #[path = "../../tests/src/recordings.rs"]
 mod recordings;

@@ -53,7 +53,8 @@ pub struct TryOnArgs {
     /// Recording to watch: .mcap, Kinect CSV, Kinectron JSON or BVH (default: the embedded session)
     #[arg(long, value_name = "F")]
     pub session: Option<PathBuf>,
-    /// Garment of the wardrobe, or an OBJ file; repeat it to dress in layers, inner first
+    /// Garment of the wardrobe, an OBJ file, a sewn pattern (.json, .dxf) or a garment package; repeat it to dress in layers,
+    /// inner first
     #[arg(long = "garment", value_name = "G")]
     pub garments: Vec<String>,
     /// Size to wear, as the garment's table names it (default: the one that fits)
@@ -248,7 +249,7 @@ fn put_on(
         let worn = wish::put_on(choice, size, &measured.best, body)?;
         recommendations.push(match (worn.fit, choice) {
             (Some(fit), _) => fit.into(),
-            (None, Choice::Mesh(path)) => Recommendation {
+            (None, Choice::Mesh(path) | Choice::Pattern(path)) => Recommendation {
                 garment: path.display().to_string(),
                 size: worn.garment.size.clone(),
                 ..Recommendation::default()

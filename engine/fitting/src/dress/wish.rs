@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use toile_assets::body::{Body, Sex};
+use toile_assets::draping;
 use toile_assets::garment::Garment;
 use toile_assets::limits::MAX_GARMENTS;
 use toile_assets::sizes::Population;
@@ -51,9 +52,11 @@ pub enum Choice {
     Style(Box<Style>),
     /// A mesh of the user's own.
     Mesh(PathBuf),
+    /// A sewn pattern or a garment package.
+    Pattern(PathBuf),
 }
 
-/// A garment on the body, and how its size fits; a mesh has no sizes.
+/// A garment on the body, and how its size fits; a mesh or pattern has no sizes.
 #[derive(Debug, Clone)]
 pub struct Worn {
     /// The garment, baked.
@@ -63,7 +66,8 @@ pub struct Worn {
 }
 
 impl Wish {
-    /// The garments that are named: one of the wardrobe, or else a mesh, where a file of that name exists.
+    /// The garments that are named: one of the wardrobe, a pattern by its ending, or else a mesh, where a
+    /// file of that name exists.
     ///
     /// # Errors
     /// A name that is neither.
@@ -101,6 +105,9 @@ impl Wish {
 }
 
 fn choice(name: &str) -> Result<Choice, FittingError> {
+    if draping::is_pattern(name) && !wardrobe::names().contains(&name) {
+        return Ok(Choice::Pattern(name.into()));
+    }
     let is_file = Path::new(name).exists() || name.to_lowercase().ends_with(".obj");
     if is_file && !wardrobe::names().contains(&name) {
         return Ok(Choice::Mesh(name.into()));
@@ -143,7 +150,11 @@ pub fn put_on(choice: &Choice, size: Option<&str>, measured: &Measurements, body
             let garment = style.dress(&fit.size, body).map_err(FittingError::input)?;
             Ok(Worn { garment, fit: Some(fit) })
         }
-        (Choice::Mesh(path), Some(size)) => {
+        (Choice::Pattern(path), None) => {
+            let package = draping::read_package(path, None).map_err(FittingError::input)?;
+            Ok(Worn { garment: package.dress(body).map_err(FittingError::input)?, fit: None })
+        }
+        (Choice::Mesh(path) | Choice::Pattern(path), Some(size)) => {
             let (name, size) = (path.display().to_string(), size.to_owned());
             Err(FittingError::input(wardrobe::WardrobeError::NoSizes { name, size }))
         }
