@@ -36,6 +36,8 @@ pub mod adapt;
 pub mod scene_file;
 pub mod wardrobe;
 
+pub mod draping;
+
 #[cfg(test)]
 #[path = "../../tests/src/recordings.rs"]
 mod recordings;

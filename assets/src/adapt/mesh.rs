@@ -64,10 +64,8 @@ impl ForeignMesh {
         let mut to = vec![NO_VERTEX; self.positions.len()];
         self.faces.iter().flat_map(corners).for_each(|v| to[*v as usize] = 0);
         let loose = (0..to.len()).filter(|v| to[*v] == NO_VERTEX).map(|v| self.source[v]).collect();
-        let mut next = 0;
-        for place in to.iter_mut().filter(|place| **place == 0) {
+        for (place, next) in to.iter_mut().filter(|place| **place == 0).zip(0..) {
             *place = next;
-            next += 1;
         }
         let mut used = to.iter();
         self.positions.retain(|_| used.next() != Some(&NO_VERTEX));

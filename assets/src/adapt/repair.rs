@@ -119,7 +119,10 @@ mod tests {
 
     const SOUND: &str = "v 0 0 0\nv .2 0 0\nv .2 1 0\nv 0 1 0\nf 1 2 3 4\n";
 
-    fn repaired(text: &str) -> (ForeignMesh, Vec<(&'static str, usize, Vec<u32>)>) {
+    /// What was repaired, how often, and the file's vertices.
+    type Done = (&'static str, usize, Vec<u32>);
+
+    fn repaired(text: &str) -> (ForeignMesh, Vec<Done>) {
         let mut mesh = ForeignMesh::of(&parse_obj(text).unwrap());
         let done = repair(&mut mesh).into_iter().map(|r| (r.what, r.count, r.vertices)).collect();
         check(&mesh.positions, &mesh.faces).unwrap();

@@ -41,11 +41,7 @@ const SCATTERED: f32 = 1.6;
 
 /// Bakes one shape in one fabric. Errors name the face or vertex at fault.
 pub fn bake(name: &str, size: &str, shape: &Shape, fabric: &Fabric) -> Result<Garment, MeshError> {
-    check::check(&shape.cut, &shape.faces)?;
-    check::check(&shape.worn, &shape.faces).or_else(|e| match e {
-        MeshError::Degenerate { .. } => Ok(()), // the first steps unfold what started flat on the body
-        other => Err(other),
-    })?;
+    check_shape(shape)?;
     let edges = fibers::edges_of(shape);
     let chains = fibers::trace(&shape.cut, &edges);
     let warp = chains.iter().filter(|f| f.direction == Direction::Warp);
@@ -61,7 +57,7 @@ pub fn bake(name: &str, size: &str, shape: &Shape, fabric: &Fabric) -> Result<Ga
     let fixed: Vec<usize> = (0..n).filter(|&i| shape.fixed[old(i)]).collect();
     let hung = pieces.iter().filter(|p| shape.fixed[p.vertices[0] as usize]).map(|p| p.edges.len()).sum::<usize>();
     let hanging = hung as f32 / (n - fixed.len()).max(1) as f32;
-    let area = shape.faces.iter().map(|face| f64::from(fibers::area(&shape.cut, face))).sum();
+    let area = (0..shape.faces.len()).map(|i| f64::from(shape.face_area(i))).sum();
     let threads = stiffness::threads(&edges, &chains, area, fabric);
     let layout = links::lay_out(&links::BakeInput {
         shape,
@@ -90,6 +86,21 @@ pub fn bake(name: &str, size: &str, shape: &Shape, fabric: &Fabric) -> Result<Ga
         layout,
         source: order.source.clone().into(),
     })
+}
+
+/// Checks a shape as cut and as worn. Where a flat pattern says how it was cut, `cut` only says where it lies.
+fn check_shape(shape: &Shape) -> Result<(), MeshError> {
+    let folded = |e| match e {
+        MeshError::Degenerate { .. } => Ok(()), // the first steps unfold what started flat on the body
+        other => Err(other),
+    };
+    if shape.flat.is_empty() {
+        check::check(&shape.cut, &shape.faces)?;
+    } else {
+        check::check(&shape.cut, &shape.faces).or_else(folded)?;
+        check::check_flat(&shape.flat, &shape.faces)?;
+    }
+    check::check(&shape.worn, &shape.faces).or_else(folded)
 }
 
 /// Substeps that a garment asks for: by how many links its lowest particle hangs, and up to three times as many where the
@@ -125,9 +136,9 @@ fn unhung(mut pieces: Vec<Fiber>, vertices: usize) -> Vec<Fiber> {
 /// nothing; fixed vertices have inverse mass 0.
 fn inverse_masses(shape: &Shape, density: f32) -> Vec<f32> {
     let mut mass = vec![0.0f32; shape.cut.len()];
-    for face in &shape.faces {
+    for (i, face) in shape.faces.iter().enumerate() {
         let ring = check::corners(face);
-        let part = fibers::area(&shape.cut, face) * density / ring.len() as f32;
+        let part = shape.face_area(i) * density / ring.len() as f32;
         for &v in ring {
             mass[v as usize] += part;
         }

@@ -119,8 +119,7 @@ fn loose(coverage: &Coverage) -> Option<String> {
 fn flaws(shape: &Shape) -> Vec<String> {
     let (mut needles, mut worst) = (0, (f32::MAX, 0usize));
     let (mut shortest, mut longest) = (f32::MAX, 0.0f32);
-    for (i, t) in shape.triangles().iter().enumerate() {
-        let [a, b, c] = t.map(|v| shape.cut[v as usize]);
+    for (i, [a, b, c]) in shape.triangles_as_cut().into_iter().enumerate() {
         let sides = [a.distance(b), b.distance(c), c.distance(a)];
         let long = sides.into_iter().fold(0.0, f32::max);
         let height = double_area(a, b, c) / long / long;

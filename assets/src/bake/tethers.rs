@@ -34,7 +34,8 @@ pub struct Tether {
 /// One tether for each free vertex, in order; none for what no fixed vertex is sewn to.
 pub fn tethers(shape: &Shape) -> Vec<Tether> {
     let triangles = shape.triangles();
-    let mut march = FrontMarch::new(&shape.cut, &triangles);
+    let laid = shape.triangles_as_cut();
+    let mut march = FrontMarch::new(shape.cut.len(), &triangles, &laid);
     march.run((0..shape.cut.len() as u32).filter(|&v| shape.fixed[v as usize]));
     let nearest = |(v, known): (usize, &Vec<NearAnchor>)| {
         let best = known.first().filter(|_| !shape.fixed[v])?;
@@ -52,8 +53,9 @@ struct NearAnchor {
 
 /// Distances under way.
 struct FrontMarch<'a> {
-    positions: &'a [Vec3],
     triangles: &'a [[u32; 3]],
+    /// Their corners as cut (m).
+    laid: &'a [[Vec3; 3]],
     /// The triangles at each vertex.
     around: Vec<Vec<u32>>,
     /// The nearest sources of each vertex, nearest first.
@@ -63,13 +65,13 @@ struct FrontMarch<'a> {
 }
 
 impl<'a> FrontMarch<'a> {
-    fn new(positions: &'a [Vec3], triangles: &'a [[u32; 3]]) -> Self {
-        let mut around = vec![Vec::new(); positions.len()];
+    fn new(vertices: usize, triangles: &'a [[u32; 3]], laid: &'a [[Vec3; 3]]) -> Self {
+        let mut around = vec![Vec::new(); vertices];
         for (i, t) in triangles.iter().enumerate() {
             t.iter().for_each(|&v| around[v as usize].push(i as u32));
         }
-        let known = vec![Vec::with_capacity(SOURCES + 1); positions.len()];
-        Self { positions, triangles, around, known, queue: BinaryHeap::new() }
+        let known = vec![Vec::with_capacity(SOURCES + 1); vertices];
+        Self { triangles, laid, around, known, queue: BinaryHeap::new() }
     }
 
     fn run(&mut self, sources: impl Iterator<Item = u32>) {
@@ -81,20 +83,21 @@ impl<'a> FrontMarch<'a> {
                 continue;
             }
             for k in 0..self.around[v as usize].len() {
-                let t = self.triangles[self.around[v as usize][k] as usize];
+                let i = self.around[v as usize][k] as usize;
+                let (t, laid) = (self.triangles[i], self.laid[i]);
                 let at = t.iter().position(|&i| i == v).unwrap_or(0);
-                let (p, q) = (t[(at + 1) % 3], t[(at + 2) % 3]);
-                self.cross(v, p, q, anchor, length);
-                self.cross(v, q, p, anchor, length);
+                let corner = |k: usize| ((at + k) % 3, t[(at + k) % 3]);
+                let side = |i: usize, j: usize| f64::from(laid[i].distance(laid[j]));
+                let ((v, _), (i, p), (j, q)) = (corner(0), corner(1), corner(2));
+                self.cross([p, q], [side(v, j), side(v, i), side(i, j)], anchor, length);
+                self.cross([q, p], [side(v, i), side(v, j), side(j, i)], anchor, length);
             }
         }
     }
 
-    /// Passes a source that `from` has just received on to `to`: along the edge between them, and through the edge from
-    /// `from` to `beside`, if that end knows the source too.
-    fn cross(&mut self, from: u32, beside: u32, to: u32, anchor: u32, length: f64) {
-        let side = |i: u32, j: u32| f64::from(self.positions[i as usize].distance(self.positions[j as usize]));
-        let (direct, base, other) = (side(from, to), side(from, beside), side(beside, to));
+    /// Passes a source that a vertex has just received on to `to`: along the edge between them, and through the edge from the
+    /// vertex to `beside`, if that end knows the source too. Sides: from the vertex to `to` and to `beside`, and between these.
+    fn cross(&mut self, [beside, to]: [u32; 2], [direct, base, other]: [f64; 3], anchor: u32, length: f64) {
         let straight = self.length(beside, anchor).and_then(|second| through([length, second], base, [direct, other]));
         self.receive(to, anchor, straight.map_or(length + direct, |s| s.min(length + direct)));
     }

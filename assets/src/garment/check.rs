@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use super::shape::{Face, NO_VERTEX};
 
@@ -135,6 +135,20 @@ pub fn check(positions: &[Vec3], faces: &[Face]) -> Result<(), MeshError> {
         Some(vertex) => Err(MeshError::Loose { vertex }),
         None => Ok(()),
     }
+}
+
+/// Checks faces that are laid flat, each by its own corners: of all of them, none without area or turned over.
+pub fn check_flat(flat: &[[Vec2; 4]], faces: &[Face]) -> Result<(), MeshError> {
+    if flat.len() != faces.len() {
+        return Err(MeshError::Degenerate { face: flat.len().min(faces.len()) });
+    }
+    for (i, (laid, face)) in flat.iter().zip(faces).enumerate() {
+        let wrong = |k: usize| (laid[k - 1] - laid[0]).perp_dot(laid[k] - laid[0]) * 0.5 < LEAST_AREA_M2;
+        if laid.iter().any(|p| !p.is_finite()) || (2..corners(face).len()).any(wrong) {
+            return Err(MeshError::Degenerate { face: i });
+        }
+    }
+    Ok(())
 }
 
 fn check_faces(positions: &[Vec3], faces: &[Face]) -> Result<(), MeshError> {

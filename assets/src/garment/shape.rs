@@ -56,6 +56,10 @@ pub struct Shape {
     /// Texture coordinates of the corners of each face `[faces]`, or empty. Where they are a pattern laid out flat, its
     /// warp along v, they say which way the threads of triangles run.
     pub uvs: Vec<[Vec2; 4]>,
+    /// The corners of each face as cut, laid flat (m): weft along x, warp down along -y `[faces]`; or empty. Where they are
+    /// given, rest lengths, areas and angles come from them and not from `cut`: a vertex of a seam lies in several panels,
+    /// and has another place in each.
+    pub flat: Vec<[Vec2; 4]>,
     /// Solvers that its garment file has chosen.
     pub solver: Overrides,
 }
@@ -86,20 +90,54 @@ impl Shape {
         shape
     }
 
-    /// The faces as triangles; a quad is split along a-c, or along b-d where `split` says so.
-    pub fn triangles(&self) -> Vec<[u32; 3]> {
+    /// The corners of a face as cut (m), where they are flat in their plane; the fourth of a triangle is its first.
+    pub fn face_as_cut(&self, face: usize) -> [Vec3; 4] {
+        match self.flat.get(face) {
+            Some(flat) => flat.map(|p| p.extend(0.0)),
+            None => self.faces[face].map(|v| self.cut[if v == NO_VERTEX { self.faces[face][0] } else { v } as usize]),
+        }
+    }
+
+    /// Area of a face as cut (m2).
+    pub fn face_area(&self, face: usize) -> f32 {
+        let laid = self.face_as_cut(face);
+        area(if self.faces[face][3] == NO_VERTEX { &laid[..3] } else { &laid })
+    }
+
+    /// The corners of the triangles as cut (m), in the order of [`Self::triangles`].
+    pub fn triangles_as_cut(&self) -> Vec<[Vec3; 3]> {
         let mut out = Vec::with_capacity(self.faces.len() * 2);
-        for (i, &[a, b, c, d]) in self.faces.iter().enumerate() {
-            if d == NO_VERTEX {
-                out.push([a, b, c]);
-            } else if self.split.get(i).copied().unwrap_or(false) {
-                out.extend([[a, b, d], [b, c, d]]);
-            } else {
-                out.extend([[a, b, c], [a, c, d]]);
-            }
+        for i in 0..self.faces.len() {
+            let [a, b, c, d] = self.face_as_cut(i);
+            out.extend(self.split_face(i, [a, b, c, d]).into_iter().flatten());
         }
         out
     }
+
+    /// One triangle of a face, or the two that a quad is split into.
+    fn split_face<T: Copy>(&self, face: usize, [a, b, c, d]: [T; 4]) -> [Option<[T; 3]>; 2] {
+        if self.faces[face][3] == NO_VERTEX {
+            [Some([a, b, c]), None]
+        } else if self.split.get(face).copied().unwrap_or(false) {
+            [Some([a, b, d]), Some([b, c, d])]
+        } else {
+            [Some([a, b, c]), Some([a, c, d])]
+        }
+    }
+
+    /// The faces as triangles; a quad is split along a-c, or along b-d where `split` says so.
+    pub fn triangles(&self) -> Vec<[u32; 3]> {
+        let mut out = Vec::with_capacity(self.faces.len() * 2);
+        for (i, &face) in self.faces.iter().enumerate() {
+            out.extend(self.split_face(i, face).into_iter().flatten());
+        }
+        out
+    }
+}
+
+/// Area of a polygon by the triangles around its first corner (m2).
+pub fn area(ring: &[Vec3]) -> f32 {
+    (2..ring.len()).map(|k| 0.5 * (ring[k - 1] - ring[0]).cross(ring[k] - ring[0]).length()).sum()
 }
 
 #[cfg(test)]

@@ -22,6 +22,7 @@ use crate::commands::record::RecordArgs;
 use crate::commands::replay::ReplayArgs;
 use crate::commands::run::RunArgs;
 use crate::commands::soak::SoakArgs;
+use crate::commands::tailor::TailorArgs;
 use crate::commands::torture::TortureArgs;
 use crate::commands::try_on::TryOnArgs;
 use crate::commands::validate::ValidateArgs;
@@ -53,6 +54,7 @@ pub(crate) enum Command {
     Record(RecordArgs),
     Convert(ConvertArgs),
     Bake(BakeArgs),
+    Tailor(TailorArgs),
     Body(BodyArgs),
     Run(RunArgs),
     Doctor(DoctorArgs),

@@ -21,6 +21,7 @@ pub mod record;
 pub mod replay;
 pub mod run;
 pub mod soak;
+pub mod tailor;
 pub mod torture;
 pub mod try_on;
 pub mod validate;

@@ -64,6 +64,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Record(args) => commands::record::run(args),
         Command::Convert(args) => commands::convert::run(args),
         Command::Bake(args) => commands::bake::run(args),
+        Command::Tailor(args) => commands::tailor::run(args),
         Command::Body(args) if args.colliders => commands::colliders::run(args),
         Command::Body(args) => commands::body::run(args),
         Command::Run(args) => commands::run::run(args),

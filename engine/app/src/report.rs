@@ -352,6 +352,7 @@ mod tests {
             measurements: ShopperMeasures::default(),
             recommendation,
             others: Vec::new(),
+            meshes: Vec::new(),
             physics: PhysicsReport::default(),
             crossings: CrossingReport { worst_s: Some(0.5), ..CrossingReport::default() },
             contact: Some(ContactReport::default()),

@@ -246,6 +246,7 @@ mod tests {
                 ..Default::default()
             },
             others: Vec::new(),
+            meshes: Vec::new(),
             physics: PhysicsReport::default(),
             state_hash: String::new(),
             files: vec!["out/front.png".into()],

@@ -208,7 +208,7 @@ impl Frame {
             && !layers.asked(&self.settings)
         {
             layers.forget();
-            self.cloths.iter_mut().for_each(Cloth::forget_what_gives);
+            self.cloths.iter_mut().for_each(Cloth::forget_the_body);
         }
     }
 

@@ -65,21 +65,22 @@ impl Rings {
         let count = shape.cut.len();
         let (mut area, mut bending, mut fans) =
             (vec![0.0; count], vec![0.0; count], (0..count).map(|_| Vec::new()).collect::<Vec<Vec<Sector>>>());
-        for face in &shape.faces {
+        for (i, face) in shape.faces.iter().enumerate() {
             let ring = corners(face);
             let n = ring.len();
-            let shares = corner_areas(&shape.cut, ring);
+            let laid = shape.face_as_cut(i);
+            let shares = corner_areas(&laid, &[0, 1, 2, 3][..n]);
             let moves = ring.iter().any(|&v| !shape.fixed[v as usize]);
             for (k, &v) in ring.iter().enumerate() {
                 area[v as usize] += shares[k];
                 bending[v as usize] += if moves { shares[k] } else { 0.0 };
                 let (next, last) = (ring[(k + 1) % n], ring[(k + n - 1) % n]);
-                let between = |p, q| angle(&shape.cut, v, p, q);
+                let between = |p: usize, q: usize| angle(&laid, k, p % n, q % n);
                 fans[v as usize].push(if n == 3 {
-                    Sector { points: [next, last, NO_VERTEX], angles: [between(next, last), 0.0] }
+                    Sector { points: [next, last, NO_VERTEX], angles: [between(k + 1, k + 2), 0.0] }
                 } else {
                     let far = ring[(k + 2) % n];
-                    Sector { points: [next, far, last], angles: [between(next, far), between(far, last)] }
+                    Sector { points: [next, far, last], angles: [between(k + 1, k + 2), between(k + 2, k + 3)] }
                 });
             }
         }
@@ -182,8 +183,8 @@ fn corner_areas(positions: &[Vec3], ring: &[u32]) -> [f64; 4] {
     [part(1) + part(2), part(2) + part(0), part(0) + part(1), 0.0]
 }
 
-fn angle(positions: &[Vec3], v: u32, p: u32, q: u32) -> f64 {
-    let from = |i: u32| positions[i as usize].as_dvec3() - positions[v as usize].as_dvec3();
+fn angle(positions: &[Vec3], v: usize, p: usize, q: usize) -> f64 {
+    let from = |i: usize| positions[i].as_dvec3() - positions[v].as_dvec3();
     from(p).cross(from(q)).length().atan2(from(p).dot(from(q)))
 }
 

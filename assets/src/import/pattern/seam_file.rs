@@ -4,7 +4,9 @@
 //! one position to another, counted in the edges of the draft from 0: 4 is the beginning of edge 4, and 7.5 the middle of
 //! edge 7. Both runs of a seam are sewn from their first position to their second.
 
-use glam::DVec2;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use glam::{DQuat, DVec2, DVec3};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
@@ -12,7 +14,7 @@ use super::error::{Fault, meant};
 use super::json::name;
 use super::piece::{EdgeRange, Half, Piece, UnfoldedPiece};
 use crate::pattern::limits::{MAX_PANELS, MAX_SEAMS};
-use crate::pattern::{Panel, Pattern, PatternFlaw, Seam, SeamSide};
+use crate::pattern::{Panel, Pattern, PatternFlaw, Placement, Seam, SeamSide};
 use crate::toml_keys::place;
 
 /// A seam file as it stands.
@@ -41,6 +43,31 @@ struct PanelEntry {
     grain: Option<[f64; 2]>,
     /// The part of the body that it is for.
     label: Option<String>,
+    /// The side of the body, or of the arm, that it lies on.
+    side: Option<PanelSide>,
+}
+
+/// Where a panel lies: what of the body is behind it, seen from outside.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum PanelSide {
+    Front,
+    Back,
+    Left,
+    Right,
+}
+
+impl PanelSide {
+    /// The placement of a panel that is drawn as seen from outside, upright; how high it hangs, its seams say.
+    fn placement(self) -> Placement {
+        let turn = match self {
+            Self::Front => 0.0,
+            Self::Back => PI,
+            Self::Left => FRAC_PI_2,
+            Self::Right => -FRAC_PI_2,
+        };
+        Placement { translation: DVec3::ZERO, rotation: DQuat::from_rotation_y(turn) }
+    }
 }
 
 /// One `[[seam]]`.
@@ -111,7 +138,7 @@ impl SeamFile {
             edges: unfolded.into_edges(),
             grain,
             behind: false,
-            placement: None,
+            placement: entry.side.map(PanelSide::placement),
         });
         Ok(Pattern::checked(panels.collect(), seams)?)
     }

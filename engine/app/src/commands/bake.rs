@@ -9,6 +9,7 @@ use toile_assets::adapt::{OwnMesh, source};
 use toile_assets::bake;
 use toile_assets::bake::survey::{MeshSurvey, survey};
 use toile_assets::body::{Body, Measures, Sex};
+use toile_assets::draping;
 use toile_assets::fabric::Fabric;
 use toile_assets::file::{self, FileKind};
 use toile_assets::garment::{Garment, Shape};
@@ -28,7 +29,7 @@ use crate::terminal::{self, Paint, Tone};
 #[command(after_help = "Example: see whether a mesh of your own makes good cloth\n  toile bake my-skirt.obj --fabric \
                         linen-twill")]
 pub struct BakeArgs {
-    /// Garment of the wardrobe, or an OBJ file
+    /// Garment of the wardrobe, an OBJ file, a sewn pattern or a garment package
     #[arg(value_name = "GARMENT")]
     pub garment: String,
     /// Size, as the garment's table names it (default: the middle of the table)
@@ -208,6 +209,9 @@ fn bake(args: &BakeArgs) -> Result<BakeReport, AppError> {
 /// Cuts the garment on the body of its size, or reads the mesh.
 fn draft(args: &BakeArgs) -> Result<DraftedShape, AppError> {
     let name = &args.garment;
+    if draping::is_pattern(name) && !wardrobe::names().contains(&name.as_str()) {
+        return draft_pattern(args);
+    }
     let is_file = Path::new(name).exists() || source::is_mesh(name);
     if is_file && !wardrobe::names().contains(&name.as_str()) {
         if let Some(size) = &args.size {
@@ -234,6 +238,19 @@ fn draft(args: &BakeArgs) -> Result<DraftedShape, AppError> {
     let body = style.body(&size, wearer).map_err(AppError::input)?;
     let shape = style.draft(&size, &body).map_err(AppError::input)?;
     Ok(DraftedShape { name: style.name.clone(), size, fabric: style.fabric.clone(), shape, notes: Vec::new() })
+}
+
+/// Drapes a pattern or a package on the average woman.
+fn draft_pattern(args: &BakeArgs) -> Result<DraftedShape, AppError> {
+    if let Some(size) = &args.size {
+        return Err(AppError::input(WardrobeError::NoSizes { name: args.garment.clone(), size: size.clone() }));
+    }
+    let package = draping::read_package(Path::new(&args.garment), None).map_err(AppError::input)?;
+    let body = Body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(AppError::internal)?;
+    let fabric = Fabric::built_in(&package.fabric).map_err(AppError::input)?;
+    let shape = package.draft(&body, &fabric).map_err(AppError::input)?;
+    let size = "made to measure".into();
+    Ok(DraftedShape { name: package.name, size, fabric: package.fabric, shape, notes: Vec::new() })
 }
 
 /// A fabric by its name, or from a file.

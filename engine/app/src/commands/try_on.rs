@@ -55,7 +55,8 @@ pub struct TryOnArgs {
     /// Recording to watch: .mcap, Kinect CSV, Kinectron JSON or BVH (default: the embedded session)
     #[arg(long, value_name = "F")]
     pub session: Option<PathBuf>,
-    /// Garment of the wardrobe, or an OBJ file; repeat it to dress in layers, inner first
+    /// Garment of the wardrobe, an OBJ file, a sewn pattern (.json, .dxf) or a garment package; repeat it to dress in layers,
+    /// inner first
     #[arg(long = "garment", value_name = "G")]
     pub garments: Vec<String>,
     /// Size to wear, as the garment's table names it (default: the one that fits)
@@ -253,9 +254,14 @@ fn put_on(choices: &[Choice], size: Option<&str>, measured: &Measured, body: &Bo
     let mut put_on = PutOn { garments: Vec::new(), recommendations: Vec::new(), meshes: Vec::new() };
     for choice in choices {
         let worn = wish::put_on(choice, size, &measured.best, body)?;
-        put_on.recommendations.push(match worn.fit {
-            Some(fit) => fit.into(),
-            None => Recommendation {
+        put_on.recommendations.push(match (worn.fit, choice) {
+            (Some(fit), _) => fit.into(),
+            (None, Choice::Pattern(path)) => Recommendation {
+                garment: path.display().to_string(),
+                size: worn.garments.first().map(|g| g.size.clone()).unwrap_or_default(),
+                ..Recommendation::default()
+            },
+            (None, _) => Recommendation {
                 garment: worn.mesh.as_ref().map(|mesh| mesh.file.clone()).unwrap_or_default(),
                 size: own::UNKNOWN.to_owned(),
                 ..Recommendation::default()

@@ -161,8 +161,8 @@ impl Cloth {
     }
 
     /// The body gives way nowhere any more: for steps without contact of cloth with cloth, which would take that back.
-    pub fn forget_what_gives(&mut self) {
-        self.state.forget_what_gives();
+    pub fn forget_the_body(&mut self) {
+        self.state.forget_the_body();
     }
 
     /// Spoils the state between two steps, as a fault of the memory or of the solver itself would: what [`guard::spoil`] picks

@@ -4,12 +4,13 @@ use glam::{Vec3, Vec3A};
 
 use crate::lanes::{MOST, Store, WriteColumn};
 
-/// Columns: position, previous, velocity (three each), inverse mass, what the body gives way.
-const COLUMNS: usize = 11;
+/// Columns: position, previous, velocity (three each), inverse mass, what the body gives way, normal of the skin (three).
+const COLUMNS: usize = 14;
 const PREVIOUS: usize = 3;
 const VELOCITY: usize = 6;
 const WEIGHT: usize = 9;
 const GIVEN: usize = 10;
+const SKIN: usize = 11;
 
 /// Numbers between two places that a processor takes for the same when it looks whether a load follows a store (4 KiB).
 const ALIAS: usize = 1_024;
@@ -40,6 +41,9 @@ pub struct ParticleColumns<'a> {
     /// How far the body gives way under the particle (m): what two limbs press between them lies in both. Written between steps
     /// by contact of cloth with cloth, read by contact with the skin.
     pub given: WriteColumn<'a>,
+    /// Unit normal of the skin by which the particle lies; 0 where it lies by none. Written by contact with the skin, read by contact
+    /// of cloth with cloth in the next step.
+    pub skin: [WriteColumn<'a>; 3],
 }
 
 impl ParticleColumns<'_> {
@@ -51,12 +55,14 @@ impl ParticleColumns<'_> {
         let [x, y, z] = self.x;
         let [px, py, pz] = self.previous;
         let [vx, vy, vz] = self.v;
+        let [sx, sy, sz] = self.skin;
         Self {
             x: [x.cut(len), y.cut(len), z.cut(len)],
             previous: [px.cut(len), py.cut(len), pz.cut(len)],
             v: [vx.cut(len), vy.cut(len), vz.cut(len)],
             w: self.w,
             given: self.given.cut(len),
+            skin: [sx.cut(len), sy.cut(len), sz.cut(len)],
         }
     }
 }
@@ -110,9 +116,9 @@ impl State {
         (0..3).for_each(|axis| change(self.column_mut(VELOCITY + axis)));
     }
 
-    /// The body gives way nowhere.
-    pub fn forget_what_gives(&mut self) {
-        self.column_mut(GIVEN).fill(0.0);
+    /// The body gives way nowhere, and nothing lies by it.
+    pub fn forget_the_body(&mut self) {
+        (GIVEN..COLUMNS).for_each(|c| self.column_mut(c).fill(0.0));
     }
 
     /// The columns, all at once.
@@ -127,6 +133,7 @@ impl State {
             v: three(VELOCITY),
             w: one(WEIGHT),
             given: one(GIVEN),
+            skin: three(SKIN),
         }
     }
 

@@ -1,9 +1,10 @@
 //! What is to be worn.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use toile_assets::adapt::{MeshReport, OwnMesh, source};
 use toile_assets::body::{Body, Sex};
+use toile_assets::draping;
 use toile_assets::garment::Garment;
 use toile_assets::limits::MAX_GARMENTS;
 use toile_assets::sizes::Population;
@@ -50,9 +51,11 @@ pub enum Choice {
     Style(Box<Style>),
     /// A mesh of the user's own.
     Mesh(Box<OwnMesh>),
+    /// A sewn pattern or a garment package.
+    Pattern(PathBuf),
 }
 
-/// A garment on the body, and how its size fits; a mesh has no sizes.
+/// A garment on the body, and how its size fits; a mesh or pattern has no sizes.
 #[derive(Debug, Clone)]
 pub struct Worn {
     /// The garment, baked; a mesh of several layers becomes one for each, the innermost first.
@@ -64,7 +67,8 @@ pub struct Worn {
 }
 
 impl Wish {
-    /// The garments that are named: one of the wardrobe, or else a mesh, where a file of that name exists.
+    /// The garments that are named: one of the wardrobe, a pattern by its ending, or else a mesh, where a
+    /// file of that name exists.
     ///
     /// # Errors
     /// A name that is neither.
@@ -102,6 +106,9 @@ impl Wish {
 }
 
 fn choice(name: &str) -> Result<Choice, FittingError> {
+    if draping::is_pattern(name) && !wardrobe::names().contains(&name) {
+        return Ok(Choice::Pattern(name.into()));
+    }
     let is_file = Path::new(name).exists() || source::is_mesh(name);
     if is_file && !wardrobe::names().contains(&name) {
         let own = OwnMesh::read(Path::new(name)).map_err(FittingError::input)?;
@@ -124,7 +131,7 @@ pub fn population<'a>(styles: impl IntoIterator<Item = &'a Style>) -> Result<Pop
     Ok(Population::Mixed)
 }
 
-/// The same for choices; a mesh that does not say whose it is is made for everybody.
+/// The same for choices; a pattern, and a mesh that does not say whose it is, are made for everybody.
 ///
 /// # Errors
 /// As [`population`].
@@ -133,6 +140,7 @@ pub fn population_of(choices: &[Choice]) -> Result<Population, FittingError> {
         let population = match choice {
             Choice::Style(style) => population([&**style])?,
             Choice::Mesh(own) => own.sex.into(),
+            Choice::Pattern(_) => Population::Mixed,
         };
         if population != Population::Mixed {
             return Ok(population);
@@ -157,6 +165,15 @@ pub fn put_on(choice: &Choice, size: Option<&str>, measured: &Measurements, body
             let size = fit.as_ref().map(|fit| fit.size.as_str()).or(size);
             let dressed = own::dress(mesh, size, body).map_err(FittingError::input)?;
             Ok(Worn { garments: dressed.garments, fit, mesh: Some(dressed.report) })
+        }
+        Choice::Pattern(path) => {
+            if let Some(size) = size {
+                let (name, size) = (path.display().to_string(), size.to_owned());
+                return Err(FittingError::input(wardrobe::WardrobeError::NoSizes { name, size }));
+            }
+            let package = draping::read_package(path, None).map_err(FittingError::input)?;
+            let garment = package.dress(body).map_err(FittingError::input)?;
+            Ok(Worn { garments: vec![garment], fit: None, mesh: None })
         }
     }
 }

@@ -13,7 +13,7 @@ use super::near::ParticleBlock;
 use super::skin_asking::{AskingList, DISAGREE_M, LookAnew, PartList, turn};
 use super::touch::{ContactSurface, Friction, push};
 use crate::body_surface::{BodyPart, BodySurface, PartSurface};
-use crate::cloth::state::{ParticleColumns, get};
+use crate::cloth::state::{ParticleColumns, get, set};
 use crate::lanes::{Kernel, Lanes, MOST, Mask, ReadColumn, Readable, Store, V3, Width, WriteColumn, reciprocal_root};
 use crate::surface::{FindNearest, NearestPoint, SurfaceMesh};
 
@@ -97,6 +97,7 @@ impl SkinContacts {
         let Some(body) = body else {
             if asked {
                 self.by.fill(None);
+                self.lists.iter().flat_map(|l| &l.particles).for_each(|&i| set(cols.skin, i as usize, Vec3A::ZERO));
             }
             return;
         };
@@ -104,7 +105,10 @@ impl SkinContacts {
         let Self { lists, asking, by, particles, planes, tick, .. } = self;
         let mut to = PlaneList { particles, planes: planes.each_mut().map(Store::column) };
         for list in lists {
-            list.particles.iter().for_each(|&i| by[i as usize] = None);
+            for &i in &list.particles {
+                by[i as usize] = None;
+                set(cols.skin, i as usize, Vec3A::ZERO);
+            }
             let Some(surface) = body.of(list.part) else { continue };
             // All where nobody has walked in the step before.
             let walking = if asked { turn(list.particles.len(), *tick, every) } else { 0..list.particles.len() };
@@ -267,6 +271,7 @@ impl LieBySkin<'_, '_> {
             let [a, b, c] = found.shares;
             let heaviest = if a >= b && a >= c { 0 } else { 1 + usize::from(c > b) };
             self.by[i as usize] = Some(self.body.limb(mesh.corners(found.triangle)[heaviest]));
+            set(self.cols.skin, i as usize, Vec3A::new(numbers[0][lane], numbers[1][lane], numbers[2][lane]));
             if touches >> lane & 1 == 1 {
                 let at = self.to.particles.len();
                 self.to.particles.push(i);

@@ -7,7 +7,7 @@ use super::contact::{CONTACTS_AN_EDGE, ContactLaw};
 use super::garment_surface::{GarmentMotion, GarmentSurface};
 use super::thickness::thickness;
 use crate::cloth::ContactRates;
-use crate::cloth::state::ParticleColumns;
+use crate::cloth::state::{ParticleColumns, get};
 use crate::lanes::Width;
 
 /// Fastest that cloth is pushed apart that is found in other cloth (m/s): garments, 10 mm in a hundredth of a second, and a
@@ -30,6 +30,12 @@ const FACING_M: f32 = 0.006;
 
 /// Cosine of normals from which on two fronts look at each other.
 const FACING: f32 = -0.7;
+
+/// Cosine of the skin's normals from which on two places lie by two limbs, and not beside each other on one.
+const TWO_WALLS: f32 = -0.3;
+
+/// Cosine between the skin's normal and where two layers look from which on that is not told by the layers: they are crumpled.
+const CRUMPLED: f32 = 0.3;
 
 /// What a particle of a pair is to the face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -126,7 +132,14 @@ impl LayerPair {
         let own = scene.motions[0].normals[i as usize];
         let opposite = opposite(of.parts[i as usize], faces.parts[corners[0] as usize]);
         let turned = own.dot(front) < FACING;
-        match (self.wearing_at(i, corners), opposite) {
+        let wearing = self.wearing_at(i, corners);
+        if opposite != Some(true)
+            && let Some(out) = scene.off_the_skin(i, corners)
+            && out.dot(if turned { front } else { front + own }) < CRUMPLED
+        {
+            return Some(if wearing == Wearing::Inner { -out } else { out });
+        }
+        match (wearing, opposite) {
             (_, Some(true)) => Some(front),
             (Wearing::Outer | Wearing::Folded, _) => {
                 Some(if turned { front } else { (front + own).normalize_or_zero() })
@@ -195,6 +208,15 @@ pub struct PairScene<'a> {
 }
 
 impl PairScene<'_> {
+    /// Away from the skin by which a particle and a face with these corners lie, a unit vector; none where one of them lies by none, or
+    /// the two by skins that look at each other.
+    fn off_the_skin(&self, i: u32, corners: [u32; 3]) -> Option<Vec3A> {
+        let [of, faces] = self.columns;
+        let (own, under) = (get(of.skin, i as usize), get(faces.skin, corners[0] as usize));
+        let known = own != Vec3A::ZERO && under != Vec3A::ZERO && own.dot(under) > TWO_WALLS;
+        if known { (own + under).try_normalize() } else { None }
+    }
+
     /// How far apart (m) two things are looked at that approach each other so fast (m/s).
     #[inline(always)]
     pub fn near(&self, approach: f32) -> f32 {

@@ -1,0 +1,51 @@
+//! From a level to the next finer one: each vertex goes where its panel's cloth was, by its place in the panel's drawing.
+
+use glam::{DVec2, Vec3};
+
+use crate::garment::check::corners;
+use crate::tailor::{PanelMesh, SewnMesh};
+
+/// Places of the vertices of `fine`, from those of `coarse` (m) `[vertices]`.
+pub fn carry(coarse: &SewnMesh, at: &[Vec3], fine: &SewnMesh) -> Vec<Vec3> {
+    let mut out = vec![Vec3::ZERO; fine.members.len()];
+    for (panel, mesh) in fine.panels.iter().enumerate() {
+        let from = &coarse.panels[panel];
+        let triangles = triangles(from);
+        let number = &coarse.number[panel];
+        for (v, p) in mesh.points.iter().enumerate() {
+            let (t, shares) = containing(from, &triangles, *p);
+            let place = (0..3).map(|k| at[number[t[k] as usize] as usize] * shares[k] as f32).sum::<Vec3>();
+            let id = fine.number[panel][v] as usize;
+            out[id] += place / fine.members[id].len() as f32;
+        }
+    }
+    out
+}
+
+fn triangles(mesh: &PanelMesh) -> Vec<[u32; 3]> {
+    let fan = |face| {
+        let ring = corners(face);
+        (2..ring.len()).map(move |k| [ring[0], ring[k - 1], ring[k]])
+    };
+    mesh.faces.iter().flat_map(fan).collect()
+}
+
+/// The triangle that a point lies in, or least outside of, and the shares of its corners there; beyond the outline they go on
+/// as they are within.
+fn containing(mesh: &PanelMesh, triangles: &[[u32; 3]], p: DVec2) -> ([u32; 3], [f64; 3]) {
+    let mut best = ([0; 3], [1.0, 0.0, 0.0], f64::MIN);
+    for t in triangles {
+        let [a, b, c] = t.map(|v| mesh.points[v as usize]);
+        let whole = (b - a).perp_dot(c - a);
+        let shares =
+            [(b - p).perp_dot(c - p) / whole, (c - p).perp_dot(a - p) / whole, (a - p).perp_dot(b - p) / whole];
+        let least = shares.into_iter().fold(f64::MAX, f64::min) * whole.abs().sqrt();
+        if least > best.2 {
+            best = (*t, shares, least);
+            if least >= 0.0 {
+                break;
+            }
+        }
+    }
+    (best.0, best.1)
+}

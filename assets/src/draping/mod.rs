@@ -1,0 +1,35 @@
+//! Draping: a sewn pattern is laid around a body, sewn up and let hang.
+//!
+//! Panels are wrapped around trunk, legs and arms with almost no deformation first; then the energy of the cloth goes down,
+//! without gravity until the seams are closed and with it afterwards, on meshes of 50, 25 mm and the final spacing
+//! (multi-resolution prepositioning: INRIA MIRAGES 2006).
+//!
+//! Reads: a checked [`Pattern`](crate::pattern::Pattern), a [`Body`](crate::body::Body) at rest, a fabric. Writes: a
+//! [`DrapedPattern`], and the [`Shape`](crate::garment::Shape) that it is worn as.
+//! Budget: at load, 5 s a garment of 5,000 particles. Thread: the loading thread.
+
+mod arrange;
+mod carry;
+mod drape;
+mod ease;
+mod error;
+mod legs;
+pub mod limits;
+mod outlines;
+mod package;
+mod panels;
+mod place;
+mod quality;
+mod relax;
+mod rows;
+mod skin_field;
+mod sleeves;
+mod springs;
+mod worn;
+
+pub use drape::{DrapeLevel, DrapedPattern, drape};
+pub use ease::{ZoneEase, ease, fitting_size};
+pub use error::DrapeError;
+pub use package::{FABRIC, PackageError, PatternPackage, SPACING_MM, is_pattern, read_package};
+pub use quality::DrapeQuality;
+pub use skin_field::SkinField;

@@ -1,0 +1,176 @@
+//! A garment package: a pattern with its seams, spacing and fabric in one file, to be draped on whoever wears it.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use super::drape::{DrapedPattern, drape};
+use super::error::DrapeError;
+use super::skin_field::SkinField;
+use crate::bake::bake;
+use crate::body::Body;
+use crate::fabric::{Fabric, FabricError};
+use crate::file::{self, FileError, FileKind};
+use crate::garment::{Garment, Shape};
+use crate::import::pattern::{self, PatternError};
+use crate::pattern::Pattern;
+use crate::pattern::limits::MAX_PATTERN_BYTES;
+use crate::tailor::TailorError;
+use crate::tailor::limits::SPACING_M;
+
+/// The format of a package.
+const SCHEMA: &str = "toile.garment-package/1";
+
+/// Spacing where none is asked for (mm): what the frame has time for.
+pub const SPACING_MM: f64 = 15.0;
+
+/// Fabric where none is named.
+pub const FABRIC: &str = "cotton-lawn";
+
+/// Layer of a tailored garment that says nothing of it: worn over underwear, beneath jackets.
+const LAYER: u8 = 3;
+
+/// What is read as a package or a pattern.
+const PACKAGE: FileKind = FileKind {
+    name: "a pattern or a garment package",
+    max_bytes: 4 * MAX_PATTERN_BYTES,
+    cure: "export one garment, without pictures",
+};
+
+/// What is read as the seams of a pattern.
+const SEAMS: FileKind = FileKind { name: "a seam file", max_bytes: MAX_PATTERN_BYTES, cure: "name each seam once" };
+
+/// A pattern and how it is to be made.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PatternPackage {
+    /// The format's name.
+    schema: String,
+    /// Name of the garment.
+    pub name: String,
+    /// Text of the pattern's file.
+    pub pattern: String,
+    /// Text of its seam file, where its format has no sewing.
+    pub seams: Option<String>,
+    /// Distance between particles (mm).
+    pub spacing_mm: f64,
+    /// A fabric that is built in.
+    pub fabric: String,
+}
+
+/// Why a package or pattern cannot be worn.
+#[derive(Debug, Error)]
+pub enum PackageError {
+    /// A file that cannot be read.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A package that is none, or holds what cannot be used.
+    #[error("{file}: {reason}; write the package again with toile tailor --out")]
+    Content {
+        /// The file as the user named it.
+        file: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// A pattern that cannot be read.
+    #[error(transparent)]
+    Pattern(#[from] PatternError),
+    /// A fabric that is not there.
+    #[error(transparent)]
+    Fabric(#[from] FabricError),
+    /// A pattern that cannot be draped on this body.
+    #[error("{name}: {source}")]
+    Drape {
+        /// Name of the garment.
+        name: String,
+        /// Panel or seam, and the cure.
+        source: DrapeError,
+    },
+}
+
+/// Whether a file is taken for a package or a pattern, by its name: .json, .jsonc, .dxf.
+pub fn is_pattern(name: &str) -> bool {
+    let name = name.to_lowercase();
+    [".json", ".jsonc", ".dxf"].iter().any(|end| name.ends_with(end))
+}
+
+/// Reads a package, or a pattern as one with the usual spacing and fabric. The seams of a draft are named, or lie beside it
+/// under its own name with the ending .toml.
+///
+/// # Errors
+/// One sentence: the file, what is wrong, and the cure.
+pub fn read_package(path: &Path, seams: Option<&Path>) -> Result<PatternPackage, PackageError> {
+    let text = file::read_text(path, &PACKAGE)?;
+    let shown = path.display().to_string();
+    if seams.is_none() && text.contains(SCHEMA) {
+        let wrong = |reason: String| PackageError::Content { file: shown.clone(), reason };
+        let package: PatternPackage = serde_json::from_str(&text).map_err(|e| wrong(e.to_string()))?;
+        if package.schema != SCHEMA {
+            return Err(wrong(format!("its schema is {}, not {SCHEMA}", package.schema)));
+        }
+        if !SPACING_M.contains(&(package.spacing_mm * 1e-3)) {
+            return Err(PackageError::Drape {
+                name: shown,
+                source: TailorError::Spacing { spacing: package.spacing_mm * 1e-3 }.into(),
+            });
+        }
+        return Ok(package);
+    }
+    let beside = path.with_extension("toml");
+    let seams = seams.or_else(|| beside.is_file().then_some(beside.as_path()));
+    Ok(PatternPackage {
+        schema: SCHEMA.into(),
+        name: path.file_stem().map_or(shown, |stem| stem.to_string_lossy().into_owned()),
+        pattern: text,
+        seams: seams.map(|s| file::read_text(s, &SEAMS)).transpose()?,
+        spacing_mm: SPACING_MM,
+        fabric: FABRIC.into(),
+    })
+}
+
+impl PatternPackage {
+    /// The checked pattern.
+    ///
+    /// # Errors
+    /// What is wrong with its text or its seams.
+    pub fn parse(&self) -> Result<Pattern, PatternError> {
+        let seams = format!("the seams of {}", self.name);
+        pattern::parse(&self.name, &self.pattern, self.seams.as_deref().map(|text| (seams.as_str(), text)))
+    }
+
+    /// The package as text.
+    pub fn text(&self) -> String {
+        serde_json::to_string_pretty(self).unwrap_or_default()
+    }
+
+    /// The pattern draped on a body, in a fabric.
+    ///
+    /// # Errors
+    /// The panel or seam that is at fault.
+    pub fn drape(&self, body: &Body, fabric: &Fabric) -> Result<DrapedPattern, PackageError> {
+        drape(&self.parse()?, body, fabric, self.spacing_mm * 1e-3)
+            .map_err(|source| PackageError::Drape { name: self.name.clone(), source })
+    }
+
+    /// The garment's shape on a body.
+    ///
+    /// # Errors
+    /// As [`Self::drape`].
+    pub fn draft(&self, body: &Body, fabric: &Fabric) -> Result<Shape, PackageError> {
+        Ok(self.drape(body, fabric)?.shape(body, &SkinField::new(body)))
+    }
+
+    /// The garment on a body, baked.
+    ///
+    /// # Errors
+    /// As [`Self::drape`].
+    pub fn dress(&self, body: &Body) -> Result<Garment, PackageError> {
+        let fabric = Fabric::built_in(&self.fabric)?;
+        let shape = self.draft(body, &fabric)?;
+        let failed = |source| PackageError::Drape { name: self.name.clone(), source: DrapeError::Mesh(source) };
+        let mut garment = bake(&self.name, "made to measure", &shape, &fabric).map_err(failed)?;
+        garment.layer = LAYER;
+        Ok(garment)
+    }
+}

@@ -1,0 +1,113 @@
+//! A draped pattern as a garment's shape: what of it the skin carries, and the part of the body that each vertex meets.
+
+use glam::Vec3;
+
+use super::drape::DrapedPattern;
+use super::outlines::coordinates;
+use super::panels::Around;
+use super::skin_field::SkinField;
+use super::springs::shape;
+use crate::bake::weights;
+use crate::body::Body;
+use crate::garment::{Part, Shape};
+
+/// What lies nearer to the skin than this (m) on a shoulder rests there.
+const RESTS_M: f32 = 0.008;
+
+/// Skin steeper than this (cosine of its normal with the vertical) carries nothing.
+const CARRIES: f32 = 0.6;
+
+impl DrapedPattern {
+    /// The garment's shape on the body that it was draped on: rest lengths from its flat faces.
+    pub fn shape(&self, body: &Body, field: &SkinField) -> Shape {
+        let mut out = shape(&self.sewn, self.at.clone());
+        self.turn_warp_down(&mut out);
+        out.parts = (0..self.at.len()).map(|v| self.part(v)).collect();
+        out.fixed = self.fixed(body, field);
+        let upper = self.arranged.shoulders;
+        let carries = |_: Vec3, bone| weights::trunk(bone) || (upper && weights::shoulders(bone));
+        out.weights = vec![Default::default(); self.at.len()];
+        let held: Vec<usize> = (0..self.at.len()).filter(|&v| out.fixed[v]).collect();
+        let at: Vec<Vec3> = held.iter().map(|&v| self.at[v]).collect();
+        for (v, weights) in held.into_iter().zip(weights::transfer(body, &at, carries)) {
+            out.weights[v] = weights;
+        }
+        if self.arranged.inside_out {
+            turn_out(&mut out);
+        }
+        out
+    }
+
+    /// Vertices that do not move over the skin.
+    fn fixed(&self, body: &Body, field: &SkinField) -> Vec<bool> {
+        if !self.arranged.shoulders {
+            return self.held.clone();
+        }
+        let rests = |p: &Vec3| {
+            let near = field.nearest(*p).is_some_and(|n| n.distance < RESTS_M && n.normal.y > CARRIES);
+            near && p.y > body.levels.chest
+        };
+        let trunk =
+            |v: usize| self.sewn.members[v].iter().all(|m| self.arranged.panels[m[0] as usize].around == Around::Trunk);
+        self.at.iter().enumerate().map(|(v, p)| trunk(v) && rests(p)).collect()
+    }
+
+    /// The part of the body that a vertex meets.
+    fn part(&self, v: usize) -> Part {
+        let members = &self.sewn.members[v];
+        let panels = || members.iter().map(|m| (m, &self.arranged.panels[m[0] as usize]));
+        if panels().all(|(_, p)| p.around == Around::LeftArm) {
+            return Part::LeftArm;
+        }
+        if panels().all(|(_, p)| p.around == Around::RightArm) {
+            return Part::RightArm;
+        }
+        if let Some(legs) = &self.arranged.legs {
+            let side = legs.left[members[0][0] as usize];
+            let low = |m: &[u32; 2]| coordinates(&self.sewn, &self.arranged.panels, *m).y < legs.crotch;
+            if members.iter().all(|m| legs.left[m[0] as usize] == side && low(m)) {
+                match side {
+                    Some(true) => return Part::LeftLeg,
+                    Some(false) => return Part::RightLeg,
+                    None => {}
+                }
+            }
+        }
+        Part::All
+    }
+
+    /// Turns the flat faces of panels that hang upside down, so that warp runs down.
+    fn turn_warp_down(&self, shape: &mut Shape) {
+        let mut falls = vec![0.0f32; self.sewn.panels.len()];
+        for (i, face) in shape.faces.iter().enumerate() {
+            let [p, q, r] = [0, 1, 2].map(|k| self.at[face[k] as usize]);
+            let flat = shape.flat[i];
+            let (e, f) = (flat[1] - flat[0], flat[2] - flat[0]);
+            // The way along the face on which the warp's coordinate falls.
+            let down = ((q - p) * f.x - (r - p) * e.x) / e.perp_dot(f);
+            falls[self.sewn.face_panels[i] as usize] += down.y * e.perp_dot(f);
+        }
+        for (flat, panel) in shape.flat.iter_mut().zip(&self.sewn.face_panels) {
+            if falls[*panel as usize] > 0.0 {
+                *flat = flat.map(|p| -p);
+            }
+        }
+    }
+}
+
+/// Turns all faces over: counter-clockwise seen from the other side, weft and warp as before.
+fn turn_out(shape: &mut Shape) {
+    for (face, flat) in shape.faces.iter_mut().zip(&mut shape.flat) {
+        face.swap(0, 1);
+        flat.swap(0, 1);
+        if face[3] != crate::garment::shape::NO_VERTEX {
+            face.swap(2, 3);
+            flat.swap(2, 3);
+        } else {
+            flat[3] = flat[0];
+        }
+        *flat = flat.map(|p| glam::Vec2::new(-p.x, p.y));
+    }
+    shape.split.iter_mut().zip(&shape.faces).for_each(|(s, f)| *s = f[3] != crate::garment::shape::NO_VERTEX && !*s);
+    shape.uvs.clone_from(&shape.flat);
+}

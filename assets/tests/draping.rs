@@ -1,0 +1,181 @@
+//! Patterns by others, sewn up around a body: what is promised of every one, and what is refused.
+
+#[path = "../../tests/src/recordings.rs"]
+mod recordings;
+
+use std::path::{Path, PathBuf};
+
+use glam::Vec3;
+use toile_assets::bake::bake;
+use toile_assets::body::{Body, Measures, Sex};
+use toile_assets::draping::{self, DrapeError, DrapedPattern, SkinField, drape, ease, read_package};
+use toile_assets::fabric::Fabric;
+use toile_assets::import::pattern::{parse, read};
+use toile_assets::pattern::Pattern;
+use toile_assets::sizes::{Girth, SizeTable};
+
+/// Spacing at which the laws are looked at (m): coarse, so that a test takes seconds.
+const SPACING: f64 = 0.03;
+
+fn women(size: &str) -> Body {
+    let table = SizeTable::embedded("women").unwrap();
+    Body::build(Sex::Female, &Measures::from(table.size_body(size).unwrap())).unwrap()
+}
+
+fn lawn() -> Fabric {
+    Fabric::built_in("cotton-lawn").unwrap()
+}
+
+fn aaron() -> Option<Pattern> {
+    let draft = recordings::folder()?.join("patterns/freesewing/aaron-cisFemaleAdult34.json");
+    let seams = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/patterns/aaron.toml");
+    Some(read(&draft, Some(&seams)).unwrap())
+}
+
+fn shared(name: &str) -> Option<PathBuf> {
+    Some(recordings::folder()?.join("patterns").join(name))
+}
+
+/// A tube of two panels, `width` broad each and `height` high (cm), front and back.
+fn tube(width: f64, height: f64) -> String {
+    let panel = |z: f64, turn: f64| {
+        format!(
+            r#"{{"vertices": [[0,0],[{width},0],[{width},{height}],[0,{height}]], "translation": [{x}, 40, {z}],
+            "rotation": [0, {turn}, 0], "edges": [{{"endpoints":[0,1]}},{{"endpoints":[1,2]}},{{"endpoints":[2,3]}},{{"endpoints":[3,0]}}]}}"#,
+            x = if turn == 0.0 { -0.5 * width } else { 0.5 * width }
+        )
+    };
+    format!(
+        r#"{{"pattern": {{"panels": {{"front": {}, "back": {}}}, "stitches": [
+        [{{"panel":"front","edge":1}},{{"panel":"back","edge":3}}], [{{"panel":"front","edge":3}},{{"panel":"back","edge":1}}]]}},
+        "properties": {{"curvature_coords": "relative", "units_in_meter": 100}}}}"#,
+        panel(25.0, 0.0),
+        panel(-25.0, 180.0)
+    )
+}
+
+fn laws(name: &str, pattern: &Pattern, body: &Body, draped: &DrapedPattern) {
+    let quality = draped.quality;
+    assert!(draped.at.iter().all(|p| p.is_finite()), "{name}");
+    assert_eq!(quality.penetration, 0.0, "{name}");
+    assert!(quality.strain_mean < 0.03, "{name}: {quality:?}");
+    // Every panel hangs on its own side: what faces front before what faces back.
+    let middle = |panel: usize| {
+        let own = &draped.sewn.number[panel];
+        own.iter().map(|v| draped.at[*v as usize]).sum::<Vec3>() / own.len() as f32
+    };
+    let place = |word: &str| pattern.panels().iter().position(|p| p.name.contains(word)).map(middle);
+    if let (Some(front), Some(back)) = (place("front"), place("back")) {
+        assert!(front.z > back.z + 0.05, "{name}: {front} {back}");
+    }
+    assert!(draped.at.iter().all(|p| p.y > -0.02 && p.y < body.measures.stature + 0.1), "{name}");
+}
+
+#[test]
+fn a_tube_hangs_around_the_waist_with_the_girth_that_it_was_cut_with() {
+    let body = women("38");
+    let pattern = parse("tube", &tube(53.0, 40.0), None).unwrap();
+    let draped = drape(&pattern, &body, &lawn(), 0.02).unwrap();
+    laws("tube", &pattern, &body, &draped);
+    assert!(draped.quality.strain_p99 < 0.06 && draped.quality.crossings == 0, "{:?}", draped.quality);
+    // Its ease is the pattern's own: twice 530 mm less the waist.
+    let zones = ease(&pattern, &body).unwrap();
+    let waist = zones.iter().find(|z| z.zone == Girth::Waist).unwrap();
+    assert!((waist.pattern - 1.06).abs() < 1e-3, "{waist:?}");
+    // The mesh bakes: rest lengths are those of the flat panels.
+    let shape = draped.shape(&body, &SkinField::new(&body));
+    let garment = bake("tube", "38", &shape, &lawn()).unwrap();
+    let mass: f32 = garment.inverse_mass.iter().filter(|w| **w > 0.0).map(|w| w.recip()).sum();
+    assert!(mass > 0.8 * 1.06 * 0.4 * lawn().density_kg_m2 && garment.fixed.len() > 10, "{mass}");
+    let chord = garment.strain_edges.iter().map(|e| e.1).fold(0.0, f32::max);
+    assert!(chord < 0.0205, "{chord}");
+}
+
+#[test]
+fn the_same_pattern_hangs_to_the_same_bits() {
+    let body = women("38");
+    let pattern = parse("tube", &tube(53.0, 30.0), None).unwrap();
+    let [a, b] = [0, 1].map(|_| drape(&pattern, &body, &lawn(), SPACING).unwrap());
+    assert!(a.at.iter().zip(&b.at).all(|(p, q)| p.to_array().map(f32::to_bits) == q.to_array().map(f32::to_bits)));
+}
+
+#[test]
+fn shared_patterns_hang_where_they_belong() {
+    for (file, size) in [
+        ("garment-pattern-generator/skirt_2_panels.json", "34"),
+        ("garment-pattern-generator/tee.json", "32"),
+        ("garment-pattern-generator/pants_straight_sides.json", "32"),
+        ("garmentcode/hoody_mean_specification.json", "38"),
+    ] {
+        let Some(path) = shared(file) else { return };
+        let (pattern, body) = (read(&path, None).unwrap(), women(size));
+        let draped = drape(&pattern, &body, &lawn(), SPACING).unwrap();
+        laws(file, &pattern, &body, &draped);
+        let shape = draped.shape(&body, &SkinField::new(&body));
+        bake(file, size, &shape, &lawn()).unwrap();
+        assert!(shape.fixed.iter().any(|f| *f), "{file}: nothing holds it");
+    }
+}
+
+#[test]
+fn legs_stay_on_their_own_sides() {
+    let Some(path) = shared("garment-pattern-generator/pants_straight_sides.json") else { return };
+    let (pattern, body) = (read(&path, None).unwrap(), women("32"));
+    let draped = drape(&pattern, &body, &lawn(), SPACING).unwrap();
+    for (panel, number) in pattern.panels().iter().zip(&draped.sewn.number) {
+        let left = panel.name.starts_with('L');
+        // The seam of the crotch belongs to both legs.
+        let is_left = |panel: u32| pattern.panels()[panel as usize].name.starts_with('L');
+        let own = |v: &&u32| draped.sewn.members[**v as usize].iter().all(|m| is_left(m[0]) == left);
+        let at = number.iter().filter(own).map(|v| draped.at[*v as usize]);
+        let low = at.filter(|p| p.y < body.levels.crotch - 0.05);
+        let wrong = low.filter(|p| (p.x > 0.0) != left).count();
+        assert_eq!(wrong, 0, "{}", panel.name);
+    }
+}
+
+#[test]
+fn drafts_hang_by_the_sides_that_their_seam_file_names() {
+    let Some(pattern) = aaron() else { return };
+    let body = women("32");
+    laws("aaron", &pattern, &body, &drape(&pattern, &body, &lawn(), SPACING).unwrap());
+}
+
+#[test]
+fn what_cannot_hang_is_refused_in_one_sentence() {
+    let body = women("38");
+    let text = tube(53.0, 30.0);
+    let loose = text.replace(
+        &text[text.find("\"stitches\"").unwrap()..text.find("\"properties\"").unwrap()],
+        "\"stitches\": []}, ",
+    );
+    let pattern = parse("loose", &loose, None).unwrap();
+    assert_eq!(drape(&pattern, &body, &lawn(), SPACING).unwrap_err(), DrapeError::NoSeams);
+    let small = parse("small", &tube(20.0, 30.0), None).unwrap();
+    let refused = drape(&small, &body, &lawn(), SPACING).unwrap_err().to_string();
+    assert!(refused.contains("stretched") || refused.contains("open"), "{refused}");
+    assert!(!refused.contains('\n'));
+    let fine = drape(&parse("tube", &text, None).unwrap(), &body, &lawn(), 0.001).unwrap_err().to_string();
+    assert!(fine.contains("spacing"), "{fine}");
+}
+
+#[test]
+fn a_package_keeps_what_it_is_made_of() {
+    let folder = std::env::temp_dir().join(format!("toile-package-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = folder.join("tube.json");
+    std::fs::write(&path, tube(53.0, 30.0)).unwrap();
+    let mut package = read_package(&path, None).unwrap();
+    assert_eq!((package.spacing_mm, package.fabric.as_str()), (draping::SPACING_MM, draping::FABRIC));
+    package.spacing_mm = 30.0;
+    let kept = folder.join("kept.json");
+    std::fs::write(&kept, package.text()).unwrap();
+    assert_eq!(read_package(&kept, None).unwrap(), package);
+    let garment = package.dress(&women("38")).unwrap();
+    assert!(garment.particles() > 100 && garment.layer > 0);
+    std::fs::write(&kept, package.text().replace("\"spacing_mm\": 30.0", "\"spacing_mm\": 900.0")).unwrap();
+    assert!(read_package(&kept, None).unwrap_err().to_string().contains("spacing"));
+    std::fs::write(&kept, package.text().replace("\"name\"", "\"nom\"")).unwrap();
+    assert!(read_package(&kept, None).unwrap_err().to_string().contains("nom"));
+    std::fs::remove_dir_all(&folder).unwrap();
+}
