@@ -64,6 +64,11 @@ impl<'a> SkinByHeight<'a> {
         self.distance_of(p, |_| true)
     }
 
+    /// The skin's normal at a vertex, outwards.
+    pub(crate) fn normal(&self, vertex: usize) -> Vec3 {
+        self.body.normals[vertex]
+    }
+
     /// The same among the vertices that `admits` names.
     pub(crate) fn distance_of(&self, p: Vec3, admits: impl Fn(usize) -> bool) -> Option<(usize, f32)> {
         let (v, far) = self.nearest_of(p, admits)?;
