@@ -1,5 +1,7 @@
 //! Meshes of the user's own in the wardrobe: put on a shopper in a size, and baked.
 
+use std::path::Path;
+
 use super::WardrobeError;
 use crate::adapt::wear::WornMesh;
 use crate::adapt::{MeshReport, OwnMesh};
@@ -58,7 +60,8 @@ pub fn draft(own: &OwnMesh, size: Option<&str>, shopper: &Body) -> Result<Drafte
 /// As [`draft`].
 pub fn dress(own: &OwnMesh, size: Option<&str>, shopper: &Body) -> Result<DressedMesh, WardrobeError> {
     let DraftedMesh { worn, fabric } = draft(own, size, shopper)?;
-    let name = own.measures.name.clone().unwrap_or_else(|| own.path.clone());
+    let file = Path::new(&own.path).file_name().map(|name| name.to_string_lossy().into_owned());
+    let name = own.measures.name.clone().or(file).unwrap_or_else(|| own.path.clone());
     let shapes = worn.shapes();
     let several = shapes.len() > 1;
     let garments = shapes.iter().enumerate().map(|(k, shape)| {
