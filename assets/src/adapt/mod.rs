@@ -5,7 +5,7 @@
 //! Budget: 1 s for 8,000 vertices; at load only.
 //! Thread: the loading thread.
 //!
-//! In this order: the unit is recognised by whether a body stands in the mesh ([`unit`]); the mesh becomes surfaces of one layer
+//! In this order: the unit is recognised by whether a body stands in the mesh ([`mod@unit`]); the mesh becomes surfaces of one layer
 //! ([`repair`], [`surface`], [`shells`], [`hems`]); the body that it is made for is found ([`made_for`]); and for each shopper it
 //! is laid on them ([`place`], [`lay`]), held where it lies on the skin ([`hold`]), and each piece judged ([`judge`]).
 

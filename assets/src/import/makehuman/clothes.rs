@@ -1,6 +1,6 @@
 //! MakeHuman's clothes: a `.mhclo` file beside an OBJ binds each vertex of it to the base mesh.
 //!
-//! A row `i j k u v w x y z` puts a vertex at u V[i] + v V[j] + w V[k] + (x, y, z) times a scale for each axis, V being the base's
+//! A row `i j k u v w x y z` puts a vertex at `u V[i] + v V[j] + w V[k] + (x, y, z)` times a scale for each axis, V being the base's
 //! vertices (dm); a row of one number puts it on that vertex. The scale of an axis is the distance along it between two
 //! vertices of the base, divided by what it was where the clothes were made.
 
@@ -182,7 +182,7 @@ impl Clothes {
     }
 }
 
-/// The folder of the base mesh for clothes: beside them or above, as [`BASE_FOLDERS`] says.
+/// The folder of the base mesh for clothes: beside them or above, as `BASE_FOLDERS` says.
 pub fn base_folder(clothes: &Path) -> Option<PathBuf> {
     let clothes = std::path::absolute(clothes).ok()?;
     let above = clothes.ancestors().skip(1).take(FOLDERS_ABOVE + 1);
