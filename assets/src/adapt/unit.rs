@@ -23,7 +23,8 @@ const HEIGHTS_M: [f32; 2] = [0.02, 2.4];
 const NARROWEST_M: f32 = 0.04;
 const BROADEST_M: f32 = 2.4;
 
-/// The same as a part of how large the mesh is (1): what is small lies near to whatever it stands beside.
+/// How far from the skin a mesh of unknown unit may lie in the mean, as a part of how large it is (1): what is small lies near to
+/// whatever it stands beside.
 const MOST_OFF: f32 = 0.11;
 
 /// Vertices that are asked how far the skin is.
@@ -102,9 +103,9 @@ pub fn recognise(mesh: &ForeignMesh, body: &Body, unit: Option<(f32, &'static st
     let skin = SkinByHeight::new(body);
     let [low, high] = mesh.bounds();
     let asked: Vec<Vec3> = mesh.positions.iter().step_by(mesh.positions.len().div_ceil(ASKED)).copied().collect();
-    let fit = |axes: FileAxes| fit(&skin, &asked, &axes);
+    let fit = |axes: FileAxes| fit(&skin, &asked, &axes).filter(|off| *off <= MOST_OFF);
     let plain = unit.map_or(FileAxes::PLAIN, |(metres, unit)| FileAxes { metres, unit, ..FileAxes::PLAIN });
-    if plausible(&plain, low, high) && fit(plain).is_some() {
+    if plausible(&plain, low, high) && self::fit(&skin, &asked, &plain).is_some() {
         return Ok(plain);
     }
     let mut readings: Vec<FileAxes> = Vec::new();
@@ -169,7 +170,7 @@ fn fit(skin: &SkinByHeight<'_>, asked: &[Vec3], axes: &FileAxes) -> Option<f32> 
     }
     let corner = |of: fn(Vec3, Vec3) -> Vec3| placed.iter().copied().reduce(of).unwrap_or_default();
     let size = corner(Vec3::max).distance(corner(Vec3::min)).max(HEIGHTS_M[0]);
-    let stands = inside <= MOST_INSIDE && around >= LEAST_AROUND && mean <= MEAN_M && mean <= MOST_OFF * size;
+    let stands = inside <= MOST_INSIDE && around >= LEAST_AROUND && mean <= MEAN_M;
     stands.then_some(mean / size)
 }
 

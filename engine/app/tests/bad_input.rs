@@ -183,13 +183,10 @@ fn band(n: usize) -> String {
 #[test]
 fn a_garment_whose_mesh_is_no_cloth() {
     let good = band(24);
-    let cases: [(&str, String, &[&str]); 9] = [
+    let cases: [(&str, String, &[&str]); 6] = [
         ("empty", String::new(), &["no faces", "export"]),
         ("points", "v 0 0 0\nv 0 1 0\nv 1 1 0\n".into(), &["no faces", "export"]),
         ("garbage", "PK\u{3}\u{4} this is no mesh\nf a b c\n".into(), &["export"]),
-        ("degenerate", format!("{good}f 1 1 2\n"), &["line 74", "no area", "delete"]),
-        ("line", format!("{good}v 0 1.1 0.3\nv 0 1.0 0.3\nv 0 0.9 0.3\nf 49 50 51\n"), &["no area", "delete"]),
-        ("fin", format!("{good}v 0 1.3 0.5\nv 0 1.3 0.6\nf 1 2 49\nf 2 1 50\n"), &["non-manifold", "separate"]),
         ("number", good.replacen("v 0.00000", "v nan", 1), &["number.obj"]),
         ("index", format!("{good}f 1 2 4000\n"), &["index.obj", "export"]),
         ("units", good.replace(" 1.1 ", " 1100 ").replace(" 0.7 ", " 700 "), &["metres", "export"]),
@@ -207,11 +204,32 @@ fn a_garment_whose_mesh_is_no_cloth() {
     fs::create_dir(scratch.path().join("folder.obj")).unwrap();
     refused(&scratch, &["--garment", "folder.obj"], &["folder.obj", "give"]);
     refused(&scratch, &["--garment", "absent.obj"], &["absent.obj", "give"]);
-    // The same band without a fault is worn.
-    fs::write(scratch.path().join("band.obj"), &good).unwrap();
+}
+
+#[test]
+fn a_mesh_with_a_fault_that_can_be_repaired_is_worn_and_the_repair_is_told() {
+    let good = band(24);
+    let cases = [
+        ("band", good.clone(), ""),
+        ("degenerate", format!("{good}f 1 1 2\n"), "without area"),
+        ("line", format!("{good}v 0 1.1 0.3\nv 0 1.0 0.3\nv 0 0.9 0.3\nf 49 50 51\n"), "without area"),
+        ("fin", format!("{good}v 0 1.3 0.5\nv 0 1.3 0.6\nf 1 2 49\nf 2 1 50\n"), "more than two faces"),
+    ];
+    let scratch = Scratch::new("repaired");
     fs::write(scratch.path().join("still.csv"), samples::kinect_csv(8)).unwrap();
-    let output = scratch.toile(&["--garment", "band.obj", "--session", "still.csv", "--no-pictures", "--json"]);
-    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    for (name, text, repair) in cases {
+        let file = format!("{name}.obj");
+        fs::write(scratch.path().join(&file), text).unwrap();
+        let output = scratch.toile(&["--garment", &file, "--session", "still.csv", "--no-pictures", "--json"]);
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let repairs = report["meshes"][0]["repairs"].as_array().unwrap();
+        assert_eq!(repairs.is_empty(), repair.is_empty(), "{name}: {repairs:?}");
+        assert!(
+            repairs.iter().any(|r| r["what"].as_str().unwrap().contains(repair)) || repair.is_empty(),
+            "{repairs:?}"
+        );
+    }
 }
 
 #[test]
