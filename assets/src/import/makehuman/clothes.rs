@@ -98,7 +98,7 @@ impl Clothes {
             let wrong = |what: &str| format!("line {}: {what}; copy MakeHuman's own file again", i + 1);
             match words.next() {
                 None => {}
-                Some(word) if word.starts_with(|c: char| c.is_ascii_digit()) && (in_rows || in_hidden) => {
+                Some(word) if word.starts_with(|c: char| c.is_ascii_digit() || c == '-') && (in_rows || in_hidden) => {
                     if in_rows {
                         clothes.bindings.push(binding(line).ok_or_else(|| wrong("no vertex of hm08 and its offsets"))?);
                     } else {
