@@ -31,7 +31,7 @@ pub struct BodyWay {
     crotch: f32,
     /// How many times broader a garment becomes at each level; 1 leaves it as it is made.
     growth: Vec<f32>,
-    arms: [[ArmSegment; 3]; 2],
+    arms: [[ArmBone; 3]; 2],
     /// How many times farther out the shoulders of the second body are, between which heights of the first.
     shoulders: (f32, [f32; 2]),
 }
@@ -57,14 +57,14 @@ impl BodyWay {
             legs: legs.map(|leg| bodies.map(|b| Middles::new(b, &leg, b.levels.crotch - LEG_SECTION_M))),
             crotch: from.levels.crotch,
             growth: vec![1.0; heights(&from.levels, from.measures.stature).len()],
-            arms: [1.0, -1.0].map(|side| ArmSegment::of(from, to, side, None)),
+            arms: [1.0, -1.0].map(|side| ArmBone::of(from, to, side, None)),
             shoulders: (x(to) / x(from), [from.levels.chest, from.levels.shoulder]),
         };
         // Where rigs have their shoulders differs by centimetres: an upper arm begins where the trunk takes the first rig's, so
         // that nothing is torn between trunk and arm.
         for (k, side) in [1.0, -1.0].into_iter().enumerate() {
             let shoulder = from.skeleton.at(if side > 0.0 { Joint::LeftShoulder } else { Joint::RightShoulder });
-            way.arms[k] = ArmSegment::of(from, to, side, Some(way.trunk(shoulder)));
+            way.arms[k] = ArmBone::of(from, to, side, Some(way.trunk(shoulder)));
         }
         way
     }
@@ -188,7 +188,7 @@ impl Middles {
 }
 
 /// One segment of an arm: how it is turned, moved and drawn out.
-struct ArmSegment {
+struct ArmBone {
     from: Vec3,
     to: Vec3,
     turn: Quat,
@@ -197,7 +197,7 @@ struct ArmSegment {
     longer: f32,
 }
 
-impl ArmSegment {
+impl ArmBone {
     /// Upper arm, forearm and hand of a side; the upper arm begins at `shoulder` on the second body, or at its joint.
     fn of(from: &Body, to: &Body, side: f32, shoulder: Option<Vec3>) -> [Self; 3] {
         let sided = |j: Joint| if side > 0.0 { j } else { j.mirror() };

@@ -48,7 +48,7 @@ pub fn drop_inner(mesh: &mut ForeignMesh) -> Repair {
 }
 
 fn inner_faces(mesh: &ForeignMesh) -> Option<Vec<usize>> {
-    let grid = TriangleGrid::new(mesh)?;
+    let grid = FaceGrid::new(mesh)?;
     let paired: Vec<bool> = (0..mesh.faces.len()).map(|f| grid.has_other_side(mesh, f)).collect();
     let regions = regions(mesh);
     let area = |faces: &[usize]| faces.iter().map(|f| mesh.area_normal(*f).length()).sum::<f32>();
@@ -81,14 +81,14 @@ fn regions(mesh: &ForeignMesh) -> Vec<Vec<usize>> {
 }
 
 /// Triangles by the cells of a grid that they lie in.
-struct TriangleGrid {
+struct FaceGrid {
     cell: f32,
     /// Corners of each triangle and the face that it is of.
     triangles: Vec<([Vec3; 3], usize)>,
     cells: HashMap<[i32; 3], Vec<u32>>,
 }
 
-impl TriangleGrid {
+impl FaceGrid {
     fn new(mesh: &ForeignMesh) -> Option<Self> {
         let triangles: Vec<([Vec3; 3], usize)> = (0..mesh.faces.len())
             .flat_map(|f| {

@@ -60,7 +60,7 @@ impl RowRing {
 
 /// One height of the pattern.
 #[derive(Debug, Clone)]
-pub struct Row {
+pub struct GarmentRow {
     /// Around the trunk, or both legs.
     pub trunk: RowRing,
     /// Around the left leg; the right one's is its mirror image.
@@ -71,7 +71,7 @@ pub struct Row {
 #[derive(Debug, Clone)]
 pub struct Rows {
     top: f64,
-    rows: Vec<Row>,
+    rows: Vec<GarmentRow>,
     /// Height of the armpits (m).
     pub armpit: f32,
     /// How far in front of the body and behind it panels hang above the armpits (m).
@@ -106,14 +106,14 @@ impl Rows {
             let out_by = if free && radius > 0.0 { (own - radius).max(0.0) } else { 0.0 };
             let fall = (STEP_M * STEP_M - out_by * out_by).max(0.0).sqrt().max(LEAST_FALL * STEP_M);
             radius = own;
-            out.rows.push(Row { trunk, leg });
+            out.rows.push(GarmentRow { trunk, leg });
             y -= fall;
         }
         out
     }
 
     /// The rows above and below a height of the pattern (m), and how far it lies below the upper one (0 to 1).
-    pub fn beside(&self, height: f64) -> (&Row, &Row, f32) {
+    pub fn beside(&self, height: f64) -> (&GarmentRow, &GarmentRow, f32) {
         let place = ((self.top - height) / STEP_M).clamp(0.0, (self.rows.len() - 1) as f64);
         let first = (place as usize).min(self.rows.len() - 2);
         (&self.rows[first], &self.rows[first + 1], (place - first as f64) as f32)

@@ -12,7 +12,7 @@ use toile_assets::sizes::SizeTable;
 use crate::exit::AppError;
 
 /// A body and what it is called.
-pub struct Wearer {
+pub struct TailoredBody {
     pub body: Body,
     pub size: String,
 }
@@ -40,11 +40,11 @@ const STATURE_OVER_SHOULDER: f64 = 1.1576;
 ///
 /// # Errors
 /// A size, table or measures of which no body can be made, a pattern that cannot be laid around one.
-pub fn wearer(choice: &WearerChoice<'_>, pattern: &Pattern) -> Result<Wearer, AppError> {
+pub fn wearer(choice: &WearerChoice<'_>, pattern: &Pattern) -> Result<TailoredBody, AppError> {
     let sex = choice.sex;
     if let Some(path) = choice.measures {
         let body = Body::build(sex, &read(path, sex)?).map_err(AppError::input)?;
-        return Ok(Wearer { body, size: format!("measured by {}", path.display()) });
+        return Ok(TailoredBody { body, size: format!("measured by {}", path.display()) });
     }
     let usual = if sex == Sex::Male { "men" } else { "women" };
     let table = SizeTable::embedded(choice.table.unwrap_or(usual)).map_err(AppError::input)?;
@@ -53,7 +53,7 @@ pub fn wearer(choice: &WearerChoice<'_>, pattern: &Pattern) -> Result<Wearer, Ap
         None => draping::fitting_size(pattern, &table, sex).map_err(AppError::input)?,
     };
     let measures = Measures::from(table.size_body(&size).map_err(AppError::input)?);
-    Ok(Wearer { body: Body::build(sex, &measures).map_err(AppError::input)?, size })
+    Ok(TailoredBody { body: Body::build(sex, &measures).map_err(AppError::input)?, size })
 }
 
 /// Measures of a file; what it leaves out is the mean person's.
