@@ -31,12 +31,6 @@ const LAYER_GAP_M: f32 = 0.008;
 /// Rounds in which skin weights are averaged with those of the neighbours: a skirt's middle follows both legs.
 const SMOOTHINGS: usize = 8;
 
-/// Nearer than this (m) to the skin of an arm and of the trunk, cloth lies in the hollow of an armpit.
-const HOLLOW_M: f32 = 0.045;
-
-/// Farther than this (m) from a shoulder's joint is no armpit.
-const ARMPIT_M: f32 = 0.22;
-
 /// A mesh on a shopper; all but the order a value a vertex.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LaidMesh {
@@ -194,17 +188,10 @@ impl<'a> BodySkin<'a> {
 
     /// The part of the body that a vertex lies on.
     fn part(&self, p: Vec3, weights: &SkinWeights, below: Below) -> Part {
-        for (side, shoulder, arm, part) in [
-            (1.0, Joint::LeftShoulder, Region::LeftArm, Part::LeftArm),
-            (-1.0, Joint::RightShoulder, Region::RightArm, Part::RightArm),
-        ] {
-            let shoulder = self.body.skeleton.at(shoulder);
-            let near = |of: Region| {
-                self.skin.distance_of(p, |v| self.body.regions[v] == of).is_some_and(|(_, d)| d < HOLLOW_M)
-            };
-            if p.y < shoulder.y && p.distance(shoulder) < ARMPIT_M && near(arm) && near(Region::Torso) {
-                return Part::Hollow;
-            }
+        if self.skin.in_armpit(p) {
+            return Part::Hollow;
+        }
+        for (side, part) in [(1.0, Part::LeftArm), (-1.0, Part::RightArm)] {
             if arm_share(weights, side) > 0.5 {
                 return part;
             }

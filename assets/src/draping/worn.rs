@@ -10,6 +10,7 @@ use super::springs::shape;
 use crate::bake::weights;
 use crate::body::Body;
 use crate::garment::{Part, Shape};
+use crate::rig::skin::SkinByHeight;
 
 /// What lies nearer to the skin than this (m) on a shoulder rests there.
 const RESTS_M: f32 = 0.008;
@@ -22,7 +23,8 @@ impl DrapedPattern {
     pub fn shape(&self, body: &Body, field: &SkinField) -> Shape {
         let mut out = shape(&self.sewn, self.at.clone());
         self.turn_warp_down(&mut out);
-        out.parts = (0..self.at.len()).map(|v| self.part(v)).collect();
+        let skin = SkinByHeight::new(body);
+        out.parts = (0..self.at.len()).map(|v| self.part(v, body, &skin)).collect();
         out.fixed = self.fixed(body, field);
         let upper = self.arranged.shoulders;
         let carries = |_: Vec3, bone| weights::trunk(bone) || (upper && weights::shoulders(bone));
@@ -53,7 +55,10 @@ impl DrapedPattern {
     }
 
     /// The part of the body that a vertex meets.
-    fn part(&self, v: usize) -> Part {
+    fn part(&self, v: usize, body: &Body, skin: &SkinByHeight<'_>) -> Part {
+        if self.arranged.shoulders && skin.in_armpit(self.at[v]) {
+            return Part::Hollow;
+        }
         let members = &self.sewn.members[v];
         let panels = || members.iter().map(|m| (m, &self.arranged.panels[m[0] as usize]));
         if panels().all(|(_, p)| p.around == Around::LeftArm) {
@@ -73,7 +78,10 @@ impl DrapedPattern {
                 }
             }
         }
-        Part::All
+        // Between an arm and the trunk cloth would be pinched; what hangs free below meets hands as well.
+        let sleeves = self.arranged.panels.iter().any(|p| matches!(p.around, Around::LeftArm | Around::RightArm));
+        let beside_arms = self.arranged.shoulders && (sleeves || self.at[v].y > body.levels.waist);
+        if beside_arms { Part::Trunk } else { Part::All }
     }
 
     /// Turns the flat faces of panels that hang upside down, so that warp runs down.

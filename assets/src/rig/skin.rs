@@ -2,7 +2,14 @@
 
 use glam::Vec3;
 
-use crate::body::Body;
+use crate::body::{Body, Region};
+use crate::skeleton::Joint;
+
+/// Nearer than this (m) to the skin of an arm and of the trunk, cloth lies in the hollow of an armpit.
+const HOLLOW_M: f32 = 0.045;
+
+/// Farther than this (m) from a shoulder's joint is no armpit.
+const ARMPIT_M: f32 = 0.22;
 
 /// A body's vertices by height, and the triangles around each.
 pub(crate) struct SkinByHeight<'a> {
@@ -67,6 +74,18 @@ impl<'a> SkinByHeight<'a> {
     /// The skin's normal at a vertex, outwards.
     pub(crate) fn normal(&self, vertex: usize) -> Vec3 {
         self.body.normals[vertex]
+    }
+
+    /// Whether a point lies in the hollow of an armpit, where an arm that comes down meets the trunk.
+    pub(crate) fn in_armpit(&self, p: Vec3) -> bool {
+        let near = |region: Region| {
+            self.distance_of(p, |v| self.body.regions[v] == region).is_some_and(|(_, far)| far < HOLLOW_M)
+        };
+        let arms = [(Joint::LeftShoulder, Region::LeftArm), (Joint::RightShoulder, Region::RightArm)];
+        arms.into_iter().any(|(shoulder, arm)| {
+            let shoulder = self.body.skeleton.at(shoulder);
+            p.y < shoulder.y && p.distance(shoulder) < ARMPIT_M && near(arm) && near(Region::Torso)
+        })
     }
 
     /// The same among the vertices that `admits` names.
