@@ -11,7 +11,11 @@ use proptest::prelude::*;
 use toile_assets::adapt::report::Behaviour;
 use toile_assets::adapt::{AdaptError, OwnMesh};
 use toile_assets::body::{Body, Measures, Sex};
+use toile_assets::draping;
+use toile_assets::fabric::Fabric;
 use toile_assets::garment::check::check;
+use toile_assets::import;
+use toile_assets::sizes::SizeTable;
 use toile_assets::wardrobe::own;
 
 const OUTFITS: [&str; 3] = ["female_elegantsuit01", "female_sportsuit01", "male_casualsuit04"];
@@ -166,9 +170,16 @@ fn other_units_are_recognised_and_said() {
         assert!(own.notes.iter().any(|note| note.contains(name) && note.contains("; ")), "{:?}", own.notes);
     }
     // Sticks.
-    for times in [0.05, 0.02] {
+    for times in [0.05, 0.1] {
         let read = OwnMesh::read(&folder.write("skirt.obj", skirt(times, 1.0)));
         is_one_sentence(&read.map(|own| own.axes).unwrap_err());
+    }
+    // A flat cone of more than four metres is a frill in decimetres, or nothing; as which it is worn is said.
+    match OwnMesh::read(&folder.write("skirt.obj", skirt(8.0, 1.0))) {
+        Ok(own) => {
+            assert!(own.notes.iter().any(|note| note.contains(own.axes.unit) && note.contains("; ")), "{:?}", own.notes)
+        }
+        Err(error) => is_one_sentence(&error),
     }
 }
 
@@ -325,4 +336,49 @@ proptest! {
         text.truncate((end * text.len() as f64) as usize);
         read_garbled(&folder, &text, &body);
     }
+}
+
+/// Garments that no constant of the recognition was chosen on: patterns by others, draped on the body of the size that they fit.
+#[test]
+fn draped_patterns_are_read_in_the_unit_and_height_that_they_are_written_in() {
+    let Some(data) = recordings::folder() else { return };
+    let folder = Folder::new("draped");
+    let table = SizeTable::embedded("women").unwrap();
+    let (mut right, mut wrong) = (0, Vec::new());
+    for name in [
+        "tee",
+        "pants_straight_sides",
+        "skirt_4_panels",
+        "dress_sleeveless",
+        "jumpsuit_sleeveless",
+        "jacket_sleeveless",
+    ] {
+        let pattern = data.join(format!("patterns/garment-pattern-generator/{name}.json"));
+        let pattern = import::pattern::read(&pattern, None).unwrap();
+        let size = draping::fitting_size(&pattern, &table, Sex::Female).unwrap();
+        let body = Body::build(Sex::Female, &Measures::from(table.size_body(&size).unwrap())).unwrap();
+        let draped = draping::drape(&pattern, &body, &Fabric::built_in("cotton-lawn").unwrap(), 0.03).unwrap();
+        for (unit, unit_name) in
+            [(10.0, "decimetres"), (100.0, "centimetres"), (1000.0, "millimetres"), (39.37, "inches")]
+        {
+            for down in [0.0f32, 0.9] {
+                let mut text = String::from("o draped\n");
+                draped
+                    .at
+                    .iter()
+                    .for_each(|p| text += &format!("v {} {} {}\n", p.x * unit, (p.y - down) * unit, p.z * unit));
+                for face in &draped.sewn.faces {
+                    let ring: Vec<String> =
+                        face.iter().filter(|v| **v != u32::MAX).map(|v| (v + 1).to_string()).collect();
+                    text += &format!("f {}\n", ring.join(" "));
+                }
+                match OwnMesh::read(&folder.write("draped.obj", text)) {
+                    Ok(own) if own.axes.unit == unit_name && (own.axes.lift - down).abs() < 0.2 => right += 1,
+                    Ok(own) => wrong.push(format!("{name} in {unit_name}, {down} m down: {}", own.axes.words())),
+                    Err(error) => wrong.push(error.to_string()),
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{right} right, {wrong:#?}");
 }

@@ -242,7 +242,8 @@ mod tests {
         Body::build(Sex::Female, &Measures { stature: m.stature * times, ..m }).unwrap()
     }
 
-    /// Places 2 cm above the skin of one body come to lie as far above the other's, where no joint bends.
+    /// Places 2 cm above the skin of one body come to lie as far above the other's, where no joint bends. Between fingers and
+    /// between the legs they lie in another finger or leg.
     #[test]
     fn the_skin_of_one_body_comes_to_the_skin_of_the_other() {
         let (from, to) = (woman(1.0), woman(1.07));
@@ -251,15 +252,16 @@ mod tests {
         let vertices: Vec<usize> = (0..from.mesh.positions.len()).step_by(7).collect();
         let lifted: Vec<Vec3> = vertices.iter().map(|v| from.mesh.positions[*v] + 0.02 * from.normals[*v]).collect();
         let of = weights::transfer(&from, &lifted, |_, _| true);
+        let wrist = from.skeleton.at(Joint::LeftWrist).x;
         let mut off: Vec<f32> = lifted
             .iter()
             .zip(&of)
-            .filter(|(p, _)| (0.15..from.levels.neck).contains(&p.y))
+            .filter(|(p, _)| (0.15..from.levels.neck).contains(&p.y) && p.x.abs() < wrist)
+            .filter(|(p, _)| p.y > from.levels.crotch || p.x.abs() > 0.03)
             .map(|(p, w)| (skin.distance_of(way.place(*p, w, Below::Legs), |_| true).unwrap().1 - 0.02).abs())
             .collect();
         let p95 = crate::numeric::statistics::quantile(&mut off, 0.95).unwrap();
-        // Worst in the armpits and between the legs, where another limb's skin is the nearest.
-        assert!(p95 < 0.015, "{p95}");
+        assert!(p95 < 0.005, "{p95}");
     }
 
     #[test]

@@ -8,6 +8,7 @@ use super::mesh::ForeignMesh;
 use super::report::Repair;
 use super::sets::DisjointSets;
 use super::surface::links;
+use crate::body::sound::pierces;
 use crate::rig::skin::closest;
 
 /// Layers of one cloth lie at most this far apart (m): the thickest wadded coat.
@@ -134,7 +135,7 @@ impl FaceGrid {
         let looks = asked.iter().filter(|f| {
             let n = mesh.normal(**f);
             let from = mesh.middle(**f) + n * 1e-3;
-            self.triangles.iter().any(|(corners, of)| of != *f && hits(from, n * VIEW_M, *corners))
+            self.triangles.iter().any(|(corners, of)| of != *f && pierces(from, from + n * VIEW_M, *corners))
         });
         looks.count() as f32 >= INWARD_SHARE * asked.len() as f32
     }
@@ -144,20 +145,6 @@ impl FaceGrid {
 fn cells(low: [i32; 3], high: [i32; 3]) -> impl Iterator<Item = [i32; 3]> {
     let range = move |k: usize| low[k]..=high[k];
     range(0).flat_map(move |x| range(1).flat_map(move |y| range(2).map(move |z| [x, y, z])))
-}
-
-/// Whether the way from a point meets a triangle (Moeller and Trumbore 1997).
-fn hits(from: Vec3, way: Vec3, [a, b, c]: [Vec3; 3]) -> bool {
-    let (u, v) = (b - a, c - a);
-    let p = way.cross(v);
-    let det = u.dot(p);
-    if det.abs() < f32::MIN_POSITIVE {
-        return false;
-    }
-    let s = (from - a) / det;
-    let q = s.cross(u);
-    let (x, y, t) = (s.dot(p), way.dot(q), v.dot(q));
-    x >= 0.0 && y >= 0.0 && x + y <= 1.0 && (0.0..=1.0).contains(&t)
 }
 
 #[cfg(test)]

@@ -63,10 +63,12 @@ pub struct Crossing {
 /// All edges that pierce a triangle that they share no vertex with, once a pair; none on a sound surface.
 pub fn crossings(mesh: &Mesh) -> Vec<Crossing> {
     let grid = TriangleGrid::new(mesh);
+    // Edges of a border belong to one triangle, which may name them either way round.
+    let mut edges: Vec<[u32; 2]> = mesh.triangles.iter().flat_map(sides).map(|(i, j)| [i.min(j), i.max(j)]).collect();
+    edges.sort_unstable();
+    edges.dedup();
     let mut found = Vec::new();
-    for (i, j) in mesh.triangles.iter().flat_map(sides).filter(|(i, j)| i < j) {
-        grid.pierced(mesh, [i, j], &mut found);
-    }
+    edges.into_iter().for_each(|edge| grid.pierced(mesh, edge, &mut found));
     found
 }
 
@@ -184,7 +186,7 @@ impl TriangleGrid {
 }
 
 /// Whether a segment passes through a triangle (signed volumes, in f64).
-fn pierces(a: Vec3, b: Vec3, [p, q, r]: [Vec3; 3]) -> bool {
+pub(crate) fn pierces(a: Vec3, b: Vec3, [p, q, r]: [Vec3; 3]) -> bool {
     if p.max(q).max(r).cmplt(a.min(b)).any() || p.min(q).min(r).cmpgt(a.max(b)).any() {
         return false;
     }

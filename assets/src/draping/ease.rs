@@ -53,8 +53,9 @@ fn of_arranged(sewn: &SewnMesh, arranged: &Arrangement, body: &Body) -> Vec<Zone
     zones.into_iter().filter_map(zone).collect()
 }
 
-/// Woven cloth that goes on a body without stretching has at least this much ease (m).
-const LEAST_EASE_M: f64 = 0.01;
+/// Woven cloth that goes on a body without stretching has at least this much ease (m): contact keeps it from the skin all round,
+/// by a circle's girth over [`CONTACT_M`](super::limits::CONTACT_M).
+const LEAST_EASE_M: f64 = 0.025;
 
 /// The largest size of a table on whose body a pattern has ease everywhere; the first where it has it on none.
 ///

@@ -30,6 +30,6 @@ mod worn;
 pub use drape::{DrapeLevel, DrapedPattern, drape};
 pub use ease::{ZoneEase, ease, fitting_size};
 pub use error::DrapeError;
-pub use package::{FABRIC, PackageError, PatternPackage, SPACING_MM, is_pattern, read_package};
+pub use package::{AS_DRAFTED, FABRIC, PackageError, PatternPackage, SPACING_MM, is_pattern, read_package};
 pub use quality::DrapeQuality;
 pub use skin_field::SkinField;

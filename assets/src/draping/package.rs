@@ -129,6 +129,9 @@ pub fn read_package(path: &Path, seams: Option<&Path>) -> Result<PatternPackage,
     })
 }
 
+/// The size of a pattern: it has the one that it is drafted in.
+pub const AS_DRAFTED: &str = "as drafted";
+
 impl PatternPackage {
     /// The checked pattern.
     ///
@@ -169,7 +172,7 @@ impl PatternPackage {
         let fabric = Fabric::built_in(&self.fabric)?;
         let shape = self.draft(body, &fabric)?;
         let failed = |source| PackageError::Drape { name: self.name.clone(), source: DrapeError::Mesh(source) };
-        let mut garment = bake(&self.name, "made to measure", &shape, &fabric).map_err(failed)?;
+        let mut garment = bake(&self.name, AS_DRAFTED, &shape, &fabric).map_err(failed)?;
         garment.layer = LAYER;
         Ok(garment)
     }

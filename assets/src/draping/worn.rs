@@ -24,7 +24,16 @@ impl DrapedPattern {
         let mut out = shape(&self.sewn, self.at.clone());
         self.turn_warp_down(&mut out);
         let skin = SkinByHeight::new(body);
-        out.parts = (0..self.at.len()).map(|v| self.part(v, body, &skin)).collect();
+        // Between an arm and the trunk cloth would be pinched; what hangs free below meets hands as well.
+        let sleeves = self.arranged.panels.iter().any(|p| matches!(p.around, Around::LeftArm | Around::RightArm));
+        let on_trunk = |p: Vec3| self.arranged.shoulders && (sleeves || p.y > body.levels.waist);
+        let hollow = |p: Vec3| self.arranged.shoulders && skin.in_armpit(p);
+        let part = |(v, p): (usize, &Vec3)| match self.limb(v) {
+            _ if hollow(*p) => Part::Hollow,
+            Part::All if on_trunk(*p) => Part::Trunk,
+            limb => limb,
+        };
+        out.parts = self.at.iter().enumerate().map(part).collect();
         out.fixed = self.fixed(body, field);
         let upper = self.arranged.shoulders;
         let carries = |_: Vec3, bone| weights::trunk(bone) || (upper && weights::shoulders(bone));
@@ -54,11 +63,8 @@ impl DrapedPattern {
         self.at.iter().enumerate().map(|(v, p)| trunk(v) && rests(p)).collect()
     }
 
-    /// The part of the body that a vertex meets.
-    fn part(&self, v: usize, body: &Body, skin: &SkinByHeight<'_>) -> Part {
-        if self.arranged.shoulders && skin.in_armpit(self.at[v]) {
-            return Part::Hollow;
-        }
+    /// The limb that the panels of a vertex are laid around, [`Part::All`] where that is none.
+    fn limb(&self, v: usize) -> Part {
         let members = &self.sewn.members[v];
         let panels = || members.iter().map(|m| (m, &self.arranged.panels[m[0] as usize]));
         if panels().all(|(_, p)| p.around == Around::LeftArm) {
@@ -78,10 +84,7 @@ impl DrapedPattern {
                 }
             }
         }
-        // Between an arm and the trunk cloth would be pinched; what hangs free below meets hands as well.
-        let sleeves = self.arranged.panels.iter().any(|p| matches!(p.around, Around::LeftArm | Around::RightArm));
-        let beside_arms = self.arranged.shoulders && (sleeves || self.at[v].y > body.levels.waist);
-        if beside_arms { Part::Trunk } else { Part::All }
+        Part::All
     }
 
     /// Turns the flat faces of panels that hang upside down, so that warp runs down.

@@ -249,7 +249,7 @@ fn draft_pattern(args: &BakeArgs) -> Result<DraftedShape, AppError> {
     let body = Body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(AppError::internal)?;
     let fabric = Fabric::built_in(&package.fabric).map_err(AppError::input)?;
     let shape = package.draft(&body, &fabric).map_err(AppError::input)?;
-    let size = "made to measure".into();
+    let size = draping::AS_DRAFTED.into();
     Ok(DraftedShape { name: package.name, size, fabric: package.fabric, shape, notes: Vec::new() })
 }
 
