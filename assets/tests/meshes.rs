@@ -177,7 +177,11 @@ fn other_units_are_recognised_and_said() {
     // A flat cone of more than four metres is a frill in decimetres, or nothing; as which it is worn is said.
     match OwnMesh::read(&folder.write("skirt.obj", skirt(8.0, 1.0))) {
         Ok(own) => {
-            assert!(own.notes.iter().any(|note| note.contains(own.axes.unit) && note.contains("; ")), "{:?}", own.notes)
+            assert!(
+                own.notes.iter().any(|note| note.contains(own.axes.unit) && note.contains("; ")),
+                "{:?}",
+                own.notes
+            );
         }
         Err(error) => is_one_sentence(&error),
     }
