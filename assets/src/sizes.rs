@@ -5,13 +5,13 @@
 //! Part 2 of the standard names the primary and secondary measures of each kind of garment, part 3 tabulates them. The
 //! tables are data (`data/sizes/*.toml`, centimetres as on a tape); here everything is in metres.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::body::{Measures, Sex};
 
 named! {
     /// What a garment is, as far as sizing is concerned (EN 13402-2).
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize)]
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize, Serialize)]
     pub enum GarmentKind {
         /// A dress.
         #[serde(rename = "dress")]
@@ -25,6 +25,9 @@ named! {
         /// Trousers.
         #[serde(rename = "trousers")]
         Trousers = "trousers",
+        /// A skirt.
+        #[serde(rename = "skirt")]
+        Skirt = "skirt",
     }
 }
 
@@ -39,6 +42,17 @@ named! {
         Waist = "waist",
         /// At the greatest protrusion of the buttocks.
         Hip = "hip",
+    }
+}
+
+impl Girth {
+    /// This girth of a body (m).
+    pub const fn of(self, body: &Measures) -> f32 {
+        match self {
+            Self::Chest => body.chest_girth,
+            Self::Waist => body.waist_girth,
+            Self::Hip => body.hip_girth,
+        }
     }
 }
 

@@ -11,7 +11,7 @@ use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::draping::{self, DrapeError, DrapedPattern, SkinField, drape, ease, read_package};
 use toile_assets::fabric::Fabric;
 use toile_assets::import::pattern::{parse, read};
-use toile_assets::pattern::Pattern;
+use toile_assets::pattern::{Panel, Pattern};
 use toile_assets::sizes::{Girth, SizeTable};
 
 /// Spacing at which the laws are looked at (m): coarse, so that a test takes seconds.
@@ -79,7 +79,7 @@ fn a_tube_hangs_around_the_waist_with_the_girth_that_it_was_cut_with() {
     laws("tube", &pattern, &body, &draped);
     assert!(draped.quality.strain_p99 < 0.06 && draped.quality.crossings == 0, "{:?}", draped.quality);
     // Its ease is the pattern's own: twice 530 mm less the waist.
-    let zones = ease(&pattern, &body).unwrap();
+    let zones = ease(&pattern, &body).unwrap().zones;
     let waist = zones.iter().find(|z| z.zone == Girth::Waist).unwrap();
     assert!((waist.pattern - 1.06).abs() < 1e-3, "{waist:?}");
     // The mesh bakes: rest lengths are those of the flat panels.
@@ -171,11 +171,119 @@ fn a_package_keeps_what_it_is_made_of() {
     let kept = folder.join("kept.json");
     std::fs::write(&kept, package.text()).unwrap();
     assert_eq!(read_package(&kept, None).unwrap(), package);
-    let garment = package.dress(&women("38")).unwrap();
+    let garment = package.dress(draping::AS_DRAFTED, &women("38")).unwrap();
     assert!(garment.particles() > 100 && garment.layer > 0);
     std::fs::write(&kept, package.text().replace("\"spacing_mm\": 30.0", "\"spacing_mm\": 900.0")).unwrap();
     assert!(read_package(&kept, None).unwrap_err().to_string().contains("spacing"));
     std::fs::write(&kept, package.text().replace("\"name\"", "\"nom\"")).unwrap();
     assert!(read_package(&kept, None).unwrap_err().to_string().contains("nom"));
     std::fs::remove_dir_all(&folder).unwrap();
+}
+
+/// A tube for size 38 in a package that also has one for 42.
+fn tubes() -> draping::PatternPackage {
+    let folder = std::env::temp_dir().join(format!("toile-sizes-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = folder.join("tube.json");
+    std::fs::write(&path, tube(48.0, 30.0)).unwrap();
+    let mut package = read_package(&path, None).unwrap();
+    std::fs::remove_dir_all(&folder).unwrap();
+    let larger = draping::SizedDraft { size: "42".into(), pattern: tube(54.0, 30.0), seams: None };
+    let kind = toile_assets::sizes::GarmentKind::Skirt;
+    let (table, size) = ("women".into(), "38".into());
+    package.sizes = Some(draping::PatternSizes { table, kind, size, drafts: vec![larger] });
+    package
+}
+
+#[test]
+fn a_pattern_is_graded_between_its_drafts() {
+    let package = tubes();
+    let graded = package.graded().unwrap().unwrap();
+    let made = graded.made();
+    assert_eq!(made.iter().map(|(code, _)| code.as_str()).collect::<Vec<_>>(), ["38", "40", "42"]);
+    // Waists of 72, 76 and 80 cm: 40 lies in the middle, and a waist of 74 cm a quarter of the way.
+    let around = |pattern: &Pattern| 2.0 * pattern.panels()[0].lengths()[0];
+    let got: Vec<f64> = made.iter().map(|(_, pattern)| around(pattern)).collect();
+    for (got, want) in got.into_iter().zip([0.96, 1.02, 1.08]) {
+        assert!((got - want).abs() < 1e-9, "{got} {want}");
+    }
+    let body = Measures { waist_girth: 0.74, ..Measures::average(Sex::Female) };
+    assert!((around(&graded.to_measure(&body)) - 0.99).abs() < 1e-6);
+    let stout = Measures { waist_girth: 1.1, ..body };
+    assert!((around(&graded.to_measure(&stout)) - 1.08).abs() < 1e-9);
+}
+
+#[test]
+fn a_size_that_is_not_made_names_those_that_are() {
+    let package = tubes();
+    let body = women("38").measures;
+    let told = package.sized("44", &body).unwrap_err().to_string();
+    assert_eq!(told, "tube is not made in size 44; choose one of 38, 40, 42");
+    let mut wrong = package.clone();
+    wrong.sizes.as_mut().unwrap().size = "42".into();
+    assert!(wrong.graded().unwrap_err().to_string().contains("two drafts for size 42"));
+    wrong.sizes.as_mut().unwrap().table = "giants".into();
+    assert!(wrong.graded().unwrap_err().to_string().contains("giants"));
+    wrong.sizes = None;
+    let told = wrong.sized("38", &body).unwrap_err().to_string();
+    assert_eq!(told, "tube is not made in size 38; choose one of as drafted");
+}
+
+#[test]
+fn what_a_garment_is_its_panels_say() {
+    let Some(aaron) = aaron() else { return };
+    let body = women("38");
+    assert_eq!(ease(&aaron, &body).unwrap().kind.name(), "t-shirt");
+    let skirt = parse("tube", &tube(48.0, 50.0), None).unwrap();
+    assert_eq!(ease(&skirt, &body).unwrap().kind.name(), "skirt");
+    for (file, kind) in [
+        ("garment-pattern-generator/pants_straight_sides.json", "trousers"),
+        ("garment-pattern-generator/dress_sleeveless.json", "dress"),
+        ("garment-pattern-generator/jumpsuit_sleeveless.json", "dress"),
+        ("garment-pattern-generator/tee.json", "t-shirt"),
+        ("garment-pattern-generator/skirt_8_panels.json", "skirt"),
+        ("garmentcode/dress_pencil_specification.json", "dress"),
+        ("garmentcode/hoody_mean_specification.json", "t-shirt"),
+    ] {
+        let Some(path) = shared(file) else { return };
+        assert_eq!(ease(&read(&path, None).unwrap(), &body).unwrap().kind.name(), kind, "{file}");
+    }
+}
+
+/// A draft of FreeSewing's for one of its bodies.
+fn drafted(name: &str, size: &str) -> Pattern {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let draft = folder.join(format!("tests/data/freesewing/{name}{size}.json"));
+    read(&draft, Some(&folder.join(format!("data/patterns/{name}.toml")))).unwrap()
+}
+
+#[test]
+fn grading_meets_the_draft_that_it_has_not_seen() {
+    // Sandy's waistband is 80 or 100 mm wide and nothing between, and its skirt makes up for that.
+    for (name, table, [small, unseen, large], most) in [
+        ("aaron", "freesewing-women", ["34", "38", "42"], 0.002),
+        ("sandy", "freesewing-women", ["34", "38", "42"], 0.006),
+        ("brian", "freesewing-men", ["36", "40", "44"], 0.002),
+    ] {
+        let table = SizeTable::embedded(table).unwrap();
+        let girth = |size: &str| {
+            let [low, high] = table.size(size).unwrap().range(if name == "sandy" { Girth::Waist } else { Girth::Chest });
+            f64::from(low + high)
+        };
+        let t = (girth(unseen) - girth(small)) / (girth(large) - girth(small));
+        let graded = drafted(name, small).between(&drafted(name, large), t).unwrap();
+        let truth = drafted(name, unseen);
+        let mut worst: f64 = 0.0;
+        let in_steps = |panel: &&Panel| panel.name.contains("band");
+        assert_eq!(graded.panels().iter().filter(in_steps).count(), usize::from(name == "sandy"));
+        for (got, want) in graded.panels().iter().zip(truth.panels()).filter(|(got, _)| !in_steps(got)) {
+            let lengths = got.lengths().into_iter().zip(want.lengths());
+            worst = lengths.map(|(a, b)| (a - b).abs()).fold(worst, f64::max);
+            let corners = got.edges.iter().zip(&want.edges).map(|(a, b)| (a.curve.start() - b.curve.start()).length());
+            worst = corners.fold(worst, f64::max);
+        }
+        let moved = (drafted(name, small).panels()[0].lengths()[0] - drafted(name, large).panels()[0].lengths()[0]).abs();
+        println!("{name}: {:.2} mm off, of {:.0} mm", worst * 1e3, moved * 1e3);
+        assert!(worst < most, "{name}: {:.2} mm off", worst * 1e3);
+    }
 }

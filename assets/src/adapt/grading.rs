@@ -35,7 +35,8 @@ impl OwnMesh {
 
     /// The same in another size: girths grow as those of the bodies do.
     pub fn finished_in(&self, sizes: &MeshSizes, body: &SizeBody) -> Vec<(Girth, f32)> {
-        let grown = |(zone, m)| (zone, m * girth_of(body, zone) / girth_of(&sizes.body, zone));
+        let [to, from] = [body, &sizes.body].map(|b| Measures::from(*b));
+        let grown = |(zone, m): (Girth, f32)| (zone, m * zone.of(&to) / zone.of(&from));
         self.finished().into_iter().map(grown).collect()
     }
 
@@ -67,7 +68,8 @@ impl OwnMesh {
         let made = MadeFor::mannequin(sizes.sex(), &Measures::from(size), String::new());
         let mut made = made.map_err(|source| AdaptError::Body { path: self.path.clone(), source })?;
         made.hold_arms(&self.mesh);
-        let times = Girth::ALL.map(|zone| girth_of(&size, zone) / girth_of(&sizes.body, zone));
+        let [to, from] = [size, sizes.body].map(Measures::from);
+        let times = Girth::ALL.map(|zone| zone.of(&to) / zone.of(&from));
         let way = BodyWay::growing(&self.made_for.body, &made.body, times);
         let mut mesh = self.mesh.clone();
         let below = self.below();
@@ -80,14 +82,5 @@ impl OwnMesh {
     /// What each vertex's piece hangs around below the crotch.
     pub fn below(&self) -> Vec<Below> {
         super::wear::below(&self.mesh, &super::surface::pieces(&self.mesh), self.made_for.body.levels.crotch)
-    }
-}
-
-/// A girth of the body of a size (m).
-const fn girth_of(body: &SizeBody, zone: Girth) -> f32 {
-    match zone {
-        Girth::Chest => body.chest_girth,
-        Girth::Waist => body.waist_girth,
-        Girth::Hip => body.hip_girth,
     }
 }

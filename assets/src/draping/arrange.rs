@@ -30,6 +30,8 @@ pub struct Arrangement {
     pub top: f64,
     /// How wide its panels are together just below that (m).
     pub upper_edge: f64,
+    /// The highest coordinate of the seams that join front and back at the sides (m), if there are any.
+    pub underarm: Option<f64>,
     /// Whether it hangs from the shoulders.
     pub shoulders: bool,
     /// Its legs, if it has any.
@@ -50,7 +52,8 @@ pub fn arrange(pattern: &Pattern, sewn: &SewnMesh, body: &Body) -> Result<Arrang
     let inside_out = inside_out(pattern, &all);
     sleeves::unroll(pattern, sewn, &mut all);
     align(pattern, sewn, &mut all);
-    let shoulder = shoulder(pattern, sewn, &all);
+    let runs = front_to_back(pattern, sewn, &all);
+    let shoulder = shoulder(&runs, sewn, &all);
     for (i, panel) in all.iter_mut().enumerate() {
         let lowest = outline(sewn, i).map(|p| panel.at(p).y).fold(f64::MAX, f64::min);
         if panel.around == Around::Trunk
@@ -69,12 +72,15 @@ pub fn arrange(pattern: &Pattern, sewn: &SewnMesh, body: &Body) -> Result<Arrang
     let lift = match shoulder {
         Some(seam) => shoulder_height(body, seam.x) + f64::from(CLEARANCE_M) - seam.y,
         None => {
-            let hung = hanging_height(body, upper_edge) - top;
+            // Just below the edge, where its panels are as wide as it is.
+            let at = |drop: f64| width(sewn, &all, top - drop.max(BELOW_EDGE_M), |_| true);
+            let hung = hanging_height(body, at) - top;
             // Trousers are not pulled up into the body.
             legs.as_ref().map_or(hung, |l| hung.min(f64::from(body.levels.crotch) - 0.01 - l.crotch))
         }
     };
-    Ok(Arrangement { panels: all, lift, top, upper_edge, shoulders: shoulder.is_some(), legs, inside_out })
+    let underarm = underarm(&runs);
+    Ok(Arrangement { panels: all, lift, top, upper_edge, underarm, shoulders: shoulder.is_some(), legs, inside_out })
 }
 
 /// Whether most panels show their inside outwards: then so do all.
@@ -135,10 +141,12 @@ fn align(pattern: &Pattern, sewn: &SewnMesh, all: &mut [ArrangedPanel]) {
 /// Seams of shoulders lie in the upper part of the panels that they join (part of their height).
 const UPPER: f64 = 0.55;
 
-/// The middle of the shoulder seams, if there are any: how far from the middle of the body, and how high. They join front
-/// and back, run across rather than down, and lie near the top.
-fn shoulder(pattern: &Pattern, sewn: &SewnMesh, all: &[ArrangedPanel]) -> Option<DVec2> {
-    let (mut sum, mut count) = (DVec2::ZERO, 0.0);
+/// A run of a seam that joins front and back of the trunk: the panel of this side, and its course there (m).
+type FrontToBack = (usize, Vec<DVec2>);
+
+/// Both sides of every seam that joins front and back of the trunk.
+fn front_to_back(pattern: &Pattern, sewn: &SewnMesh, all: &[ArrangedPanel]) -> Vec<FrontToBack> {
+    let mut runs = Vec::new();
     for (seam, points) in pattern.seams().iter().zip(&sewn.seams) {
         let sides = seam.sides.map(|s| s.panel);
         let facing = sides.map(|p| (all[p].around == Around::Trunk).then(|| faces(all[p].angle)).flatten());
@@ -149,18 +157,40 @@ fn shoulder(pattern: &Pattern, sewn: &SewnMesh, all: &[ArrangedPanel]) -> Option
         for panel in sides {
             let of = |v: &u32| sewn.members[*v as usize].iter().find(|m| m[0] as usize == panel).copied();
             let run: Vec<DVec2> = points.iter().filter_map(of).map(|m| coordinates(sewn, all, m)).collect();
-            let (Some(from), Some(to)) = (run.first(), run.last()) else { continue };
-            let span = outline(sewn, panel).map(|p| all[panel].at(p).y);
-            let (low, high) = span.fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
-            let middle = 0.5 * (*from + *to);
-            let across = (to.x - from.x).abs() > (to.y - from.y).abs();
-            if across && middle.y > low + UPPER * (high - low) && middle.x.abs() > 0.02 {
-                sum += DVec2::new(middle.x.abs(), middle.y);
-                count += 1.0;
+            if run.len() > 1 {
+                runs.push((panel, run));
             }
         }
     }
+    runs
+}
+
+/// Whether a run goes across rather than down.
+fn goes_across(run: &[DVec2]) -> bool {
+    let way = run[run.len() - 1] - run[0];
+    way.x.abs() > way.y.abs()
+}
+
+/// The middle of the shoulder seams, if there are any: how far from the middle of the body, and how high. They join front
+/// and back, run across rather than down, and lie near the top.
+fn shoulder(runs: &[FrontToBack], sewn: &SewnMesh, all: &[ArrangedPanel]) -> Option<DVec2> {
+    let (mut sum, mut count) = (DVec2::ZERO, 0.0);
+    for (panel, run) in runs {
+        let span = outline(sewn, *panel).map(|p| all[*panel].at(p).y);
+        let (low, high) = span.fold((f64::MAX, f64::MIN), |(l, h), y| (l.min(y), h.max(y)));
+        let middle = 0.5 * (run[0] + run[run.len() - 1]);
+        if goes_across(run) && middle.y > low + UPPER * (high - low) && middle.x.abs() > 0.02 {
+            sum += DVec2::new(middle.x.abs(), middle.y);
+            count += 1.0;
+        }
+    }
     (count > 0.0).then(|| sum / count)
+}
+
+/// Where the side seams end above, at the armpits (m): below it the panels go all around.
+fn underarm(runs: &[FrontToBack]) -> Option<f64> {
+    let down = runs.iter().filter(|(_, run)| !goes_across(run)).flat_map(|(_, run)| run.iter().map(|p| p.y));
+    down.reduce(f64::max)
 }
 
 /// Height of the shoulder at a distance from the middle (m).
@@ -174,18 +204,28 @@ fn shoulder_height(body: &Body, x: f64) -> f64 {
     heights.fold(f64::MIN, f64::max).max(f64::from(body.levels.shoulder))
 }
 
+/// How far below its upper edge the edge's length is taken (m).
+const BELOW_EDGE_M: f64 = 0.015;
+
 /// Length of the upper edge of a garment without shoulders (m): how wide its panels are just below it.
 fn upper_edge(sewn: &SewnMesh, all: &[ArrangedPanel], top: f64) -> f64 {
-    width(sewn, all, top - 0.015, |_| true)
+    width(sewn, all, top - BELOW_EDGE_M, |_| true)
 }
 
-/// The height at which the trunk is as wide as an edge (m): the waist if it is narrower, at most half of the way to the hip.
-fn hanging_height(body: &Body, edge: f64) -> f64 {
+/// The height at which a garment hangs by its upper edge (m): the lowest, between the waist and half of the way to the hip,
+/// at which it is wider than the trunk all the way down to the hip; where it is nowhere, that at which least is missing.
+fn hanging_height(body: &Body, width: impl Fn(f64) -> f64) -> f64 {
     let (waist, hip) = (f64::from(body.levels.waist), f64::from(body.levels.hip));
-    let lowest = 0.5 * (waist + hip);
-    let mut height = waist;
-    while height > lowest && f64::from(girth(body, height as f32)) + TAU * 0.002 < edge {
-        height -= 0.005;
-    }
-    height
+    let steps = (0.5 * (waist - hip) / STEP_M) as usize;
+    let trunk: Vec<f64> = (0..=2 * steps).map(|i| f64::from(girth(body, (waist - i as f64 * STEP_M) as f32))).collect();
+    let garment: Vec<f64> = (0..=2 * steps).map(|i| width(i as f64 * STEP_M)).collect();
+    let missing = |edge: usize| {
+        let levels = trunk[edge..].iter().zip(&garment).filter(|(_, width)| **width > 0.0);
+        levels.map(|(trunk, width)| (trunk + TAU * 0.002 - width).max(0.0)).fold(0.0, f64::max)
+    };
+    let best = (0..=steps).rev().min_by(|a, b| missing(*a).total_cmp(&missing(*b))).unwrap_or(0);
+    waist - best as f64 * STEP_M
 }
+
+/// Steps in which a garment's height is looked for (m).
+const STEP_M: f64 = 0.005;

@@ -2,10 +2,11 @@
 
 use super::arrange::{Arrangement, arrange};
 use super::error::DrapeError;
-use super::outlines::width;
-use crate::body::{Body, Measures, Sex};
+use super::outlines::{outline, width};
+use super::panels::Around;
+use crate::body::{Body, Measures, Sex, tape};
 use crate::pattern::Pattern;
-use crate::sizes::{Girth, SizeTable};
+use crate::sizes::{GarmentKind, Girth, SizeTable};
 use crate::tailor::{SewnMesh, sew};
 
 use super::limits::LEVELS_M;
@@ -17,7 +18,7 @@ pub struct ZoneEase {
     pub zone: Girth,
     /// How wide the panels are there together, by their outlines (m).
     pub pattern: f64,
-    /// Girth of the body (m).
+    /// Girth of the body (m); what hangs by its upper edge meets it there, which may be below the waist.
     pub body: f64,
 }
 
@@ -28,13 +29,54 @@ impl ZoneEase {
     }
 }
 
+/// How a pattern fits, by its own lengths.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PatternEase {
+    /// What the garment is, by what it hangs from and where it ends.
+    pub kind: GarmentKind,
+    /// The zones that it reaches, from the top down.
+    pub zones: Vec<ZoneEase>,
+}
+
+impl PatternEase {
+    /// The zones by which a fit is judged: those that `primary` names, and others where it does not hang free of the body.
+    pub fn judged(&self, primary: &[Girth]) -> Vec<ZoneEase> {
+        let judged = |z: &&ZoneEase| primary.contains(&z.zone) || z.pattern < HANGS_FREE * z.body;
+        self.zones.iter().filter(judged).copied().collect()
+    }
+}
+
+/// What is wider than the body by this hangs free by design, as a skirt does at the hip.
+const HANGS_FREE: f64 = 1.25;
+
+/// A garment that hangs from the shoulders and ends lower than this below the hip (m) is a dress.
+const DRESS_BELOW_HIP_M: f64 = 0.15;
+
+/// How far below the armholes a girth is taken at the highest (m): there the mesh of the panels is whole.
+const BELOW_ARMHOLE_M: f64 = 0.01;
+
 /// The ease of a pattern on a body, at the zones that it reaches.
 ///
 /// # Errors
 /// As [`super::drape`].
-pub fn ease(pattern: &Pattern, body: &Body) -> Result<Vec<ZoneEase>, DrapeError> {
+pub fn ease(pattern: &Pattern, body: &Body) -> Result<PatternEase, DrapeError> {
     let sewn = sew(pattern, LEVELS_M[0])?;
-    Ok(of_arranged(&sewn, &arrange(pattern, &sewn, body)?, body))
+    let arranged = arrange(pattern, &sewn, body)?;
+    Ok(PatternEase { kind: kind(&sewn, &arranged, body), zones: of_arranged(&sewn, &arranged, body) })
+}
+
+fn kind(sewn: &SewnMesh, arranged: &Arrangement, body: &Body) -> GarmentKind {
+    if !arranged.shoulders {
+        return if arranged.legs.is_some() { GarmentKind::Trousers } else { GarmentKind::Skirt };
+    }
+    let hung = (0..arranged.panels.len()).filter(|&i| arranged.panels[i].around == Around::Trunk);
+    let heights = hung.flat_map(|i| outline(sewn, i).map(move |p| arranged.panels[i].at(p).y));
+    let ends = heights.fold(f64::MAX, f64::min) + arranged.lift;
+    if arranged.legs.is_some() || ends < f64::from(body.levels.hip) - DRESS_BELOW_HIP_M {
+        GarmentKind::Dress
+    } else {
+        GarmentKind::Tshirt
+    }
 }
 
 fn of_arranged(sewn: &SewnMesh, arranged: &Arrangement, body: &Body) -> Vec<ZoneEase> {
@@ -43,12 +85,15 @@ fn of_arranged(sewn: &SewnMesh, arranged: &Arrangement, body: &Body) -> Vec<Zone
         (Girth::Waist, body.levels.waist, body.measures.waist_girth),
         (Girth::Hip, body.levels.hip, body.measures.hip_girth),
     ];
-    let width = |level: f32| width(sewn, &arranged.panels, f64::from(level) - arranged.lift, |_| true);
+    // What covers the chest goes all around it below the armholes alone.
+    let closed = arranged.underarm.filter(|_| arranged.shoulders).map_or(f64::INFINITY, |y| y - BELOW_ARMHOLE_M);
+    let width = |level: f32| width(sewn, &arranged.panels, (f64::from(level) - arranged.lift).min(closed), |_| true);
     let zone = |(zone, level, girth): (Girth, f32, f32)| {
-        // What hangs by its upper edge has that at the waist.
+        // What hangs by its upper edge has that at the waist, and meets the body where it hangs.
         let edge = zone == Girth::Waist && !arranged.shoulders;
-        let pattern = if edge { arranged.upper_edge } else { width(level) };
-        (pattern > 0.0).then_some(ZoneEase { zone, pattern, body: f64::from(girth) })
+        let hangs = || f64::from(tape::girth(body, (arranged.top + arranged.lift) as f32)).max(f64::from(girth));
+        let (pattern, body) = if edge { (arranged.upper_edge, hangs()) } else { (width(level), f64::from(girth)) };
+        (pattern > 0.0).then_some(ZoneEase { zone, pattern, body })
     };
     zones.into_iter().filter_map(zone).collect()
 }

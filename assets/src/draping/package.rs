@@ -7,15 +7,17 @@ use thiserror::Error;
 
 use super::drape::{DrapedPattern, drape};
 use super::error::DrapeError;
+use super::graded::{AS_DRAFTED, PatternSizes, TO_MEASURE};
 use super::skin_field::SkinField;
 use crate::bake::bake;
-use crate::body::Body;
+use crate::body::{Body, Measures, Sex};
 use crate::fabric::{Fabric, FabricError};
 use crate::file::{self, FileError, FileKind};
 use crate::garment::{Garment, Shape};
 use crate::import::pattern::{self, PatternError};
 use crate::pattern::Pattern;
 use crate::pattern::limits::MAX_PATTERN_BYTES;
+use crate::sizes::{Population, SizeError, SizeTable};
 use crate::tailor::TailorError;
 use crate::tailor::limits::SPACING_M;
 
@@ -57,6 +59,9 @@ pub struct PatternPackage {
     pub spacing_mm: f64,
     /// A fabric that is built in.
     pub fabric: String,
+    /// For whom its drafts are, where that is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sizes: Option<PatternSizes>,
 }
 
 /// Why a package or pattern cannot be worn.
@@ -79,6 +84,19 @@ pub enum PackageError {
     /// A fabric that is not there.
     #[error(transparent)]
     Fabric(#[from] FabricError),
+    /// A size of a table that is not there.
+    #[error(transparent)]
+    Size(#[from] SizeError),
+    /// A size that the pattern is not made in.
+    #[error("{name} is not made in size {size}; choose one of {made}")]
+    NotMade {
+        /// Name of the garment.
+        name: String,
+        /// The size asked for.
+        size: String,
+        /// Those that there are.
+        made: String,
+    },
     /// A pattern that cannot be draped on this body.
     #[error("{name}: {source}")]
     Drape {
@@ -126,11 +144,9 @@ pub fn read_package(path: &Path, seams: Option<&Path>) -> Result<PatternPackage,
         seams: seams.map(|s| file::read_text(s, &SEAMS)).transpose()?,
         spacing_mm: SPACING_MM,
         fabric: FABRIC.into(),
+        sizes: None,
     })
 }
-
-/// The size of a pattern: it has the one that it is drafted in.
-pub const AS_DRAFTED: &str = "as drafted";
 
 impl PatternPackage {
     /// The checked pattern.
@@ -147,32 +163,74 @@ impl PatternPackage {
         serde_json::to_string_pretty(self).unwrap_or_default()
     }
 
-    /// The pattern draped on a body, in a fabric.
+    /// The checked pattern in a size: `as drafted` or one that it is drafted for, `to measure` for the body that is given,
+    /// or one between two drafts.
+    ///
+    /// # Errors
+    /// As [`Self::parse`]; a size that is not made.
+    pub fn sized(&self, size: &str, body: &Measures) -> Result<Pattern, PackageError> {
+        if size == AS_DRAFTED {
+            return Ok(self.parse()?);
+        }
+        let not_made =
+            || PackageError::NotMade { name: self.name.clone(), size: size.into(), made: AS_DRAFTED.into() };
+        self.graded()?.ok_or_else(not_made)?.sized(&self.name, size, body)
+    }
+
+    /// The size that its own draft is for.
+    pub fn own_size(&self) -> &str {
+        self.sizes.as_ref().map_or(AS_DRAFTED, |sizes| &sizes.size)
+    }
+
+    /// Whose bodies it is made for.
+    ///
+    /// # Errors
+    /// A table that there is not.
+    pub fn population(&self) -> Result<Population, SizeError> {
+        self.sizes.as_ref().map_or(Ok(Population::Mixed), |s| Ok(SizeTable::embedded(&s.table)?.population))
+    }
+
+    /// The body that a size of its table is for; none for a size that is no code of a table.
+    ///
+    /// # Errors
+    /// A table or size that there is not, a size of which no body can be made.
+    pub fn body_of(&self, size: &str) -> Result<Option<Body>, PackageError> {
+        let Some(sizes) = self.sizes.as_ref().filter(|_| size != AS_DRAFTED && size != TO_MEASURE) else {
+            return Ok(None);
+        };
+        let table = SizeTable::embedded(&sizes.table)?;
+        let sex = if table.population == Population::Men { Sex::Male } else { Sex::Female };
+        let body = Body::build(sex, &Measures::from(table.size_body(size)?));
+        body.map(Some).map_err(|e| PackageError::Content { file: self.name.clone(), reason: e.to_string() })
+    }
+
+    /// A pattern draped on a body, in a fabric.
     ///
     /// # Errors
     /// The panel or seam that is at fault.
-    pub fn drape(&self, body: &Body, fabric: &Fabric) -> Result<DrapedPattern, PackageError> {
-        drape(&self.parse()?, body, fabric, self.spacing_mm * 1e-3)
+    pub fn drape(&self, pattern: &Pattern, body: &Body, fabric: &Fabric) -> Result<DrapedPattern, PackageError> {
+        drape(pattern, body, fabric, self.spacing_mm * 1e-3)
             .map_err(|source| PackageError::Drape { name: self.name.clone(), source })
     }
 
-    /// The garment's shape on a body.
+    /// The garment's shape on a body, in a size.
     ///
     /// # Errors
-    /// As [`Self::drape`].
-    pub fn draft(&self, body: &Body, fabric: &Fabric) -> Result<Shape, PackageError> {
-        Ok(self.drape(body, fabric)?.shape(body, &SkinField::new(body)))
+    /// As [`Self::sized`] and [`Self::drape`].
+    pub fn draft(&self, size: &str, body: &Body, fabric: &Fabric) -> Result<Shape, PackageError> {
+        let pattern = self.sized(size, &body.measures)?;
+        Ok(self.drape(&pattern, body, fabric)?.shape(body, &SkinField::new(body)))
     }
 
-    /// The garment on a body, baked.
+    /// The garment on a body, in a size, baked.
     ///
     /// # Errors
-    /// As [`Self::drape`].
-    pub fn dress(&self, body: &Body) -> Result<Garment, PackageError> {
+    /// As [`Self::draft`].
+    pub fn dress(&self, size: &str, body: &Body) -> Result<Garment, PackageError> {
         let fabric = Fabric::built_in(&self.fabric)?;
-        let shape = self.draft(body, &fabric)?;
+        let shape = self.draft(size, body, &fabric)?;
         let failed = |source| PackageError::Drape { name: self.name.clone(), source: DrapeError::Mesh(source) };
-        let mut garment = bake(&self.name, AS_DRAFTED, &shape, &fabric).map_err(failed)?;
+        let mut garment = bake(&self.name, size, &shape, &fabric).map_err(failed)?;
         garment.layer = LAYER;
         Ok(garment)
     }

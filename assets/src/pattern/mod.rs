@@ -4,6 +4,7 @@
 //! Budget: at load only; [`limits`] bound what a pattern may hold.
 //! Thread: the loading thread.
 
+mod between;
 mod check;
 mod crossing;
 pub mod curve;
@@ -12,6 +13,7 @@ pub mod limits;
 mod panel;
 mod seam;
 
+pub use between::GradingError;
 pub use crossing::crossing;
 pub use curve::Curve;
 pub use flaw::PatternFlaw;

@@ -81,6 +81,19 @@ pub fn dress(own: &OwnMesh, size: Option<&str>, shopper: &Body) -> Result<Dresse
 /// # Errors
 /// A garment of the wardrobe that cannot be read.
 pub fn comfort(own: &OwnMesh, kind: GarmentKind) -> Result<Vec<(Girth, [f32; 2])>, WardrobeError> {
+    let like = comfort_of(kind)?;
+    let usual = |zone: Girth| like.iter().find(|(z, _)| *z == zone).map(|(_, range)| *range);
+    let range = |zone: Girth| own.measures.comfort_mm.at(zone).or_else(|| usual(zone));
+    Ok(Girth::ALL.into_iter().filter_map(|zone| range(zone).map(|r| (zone, r))).collect())
+}
+
+/// The ease that a wearer finds good at each zone (m), as garments of a kind in the wardrobe have it; a skirt's is that of
+/// trousers, which sit on the waist as it does.
+///
+/// # Errors
+/// As [`comfort`].
+pub fn comfort_of(kind: GarmentKind) -> Result<Vec<(Girth, [f32; 2])>, WardrobeError> {
+    let kind = if kind == GarmentKind::Skirt { GarmentKind::Trousers } else { kind };
     let mut like = None;
     for name in super::names() {
         let style = super::style(name)?;
@@ -88,6 +101,6 @@ pub fn comfort(own: &OwnMesh, kind: GarmentKind) -> Result<Vec<(Girth, [f32; 2])
             like = Some(style.comfort_mm);
         }
     }
-    let range = |zone: Girth| own.measures.comfort_mm.at(zone).or_else(|| like.and_then(|comfort| comfort.at(zone)));
+    let range = |zone: Girth| like.and_then(|comfort| comfort.at(zone));
     Ok(Girth::ALL.into_iter().filter_map(|zone| range(zone).map(|r| (zone, r))).collect())
 }

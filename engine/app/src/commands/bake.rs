@@ -240,16 +240,16 @@ fn draft(args: &BakeArgs) -> Result<DraftedShape, AppError> {
     Ok(DraftedShape { name: style.name.clone(), size, fabric: style.fabric.clone(), shape, notes: Vec::new() })
 }
 
-/// Drapes a pattern or a package on the average woman.
+/// Drapes a pattern or a package on the average woman, or in a size on the body that it is for.
 fn draft_pattern(args: &BakeArgs) -> Result<DraftedShape, AppError> {
-    if let Some(size) = &args.size {
-        return Err(AppError::input(WardrobeError::NoSizes { name: args.garment.clone(), size: size.clone() }));
-    }
     let package = draping::read_package(Path::new(&args.garment), None).map_err(AppError::input)?;
-    let body = Body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(AppError::internal)?;
+    let average = Body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(AppError::internal)?;
+    let (size, body) = match &args.size {
+        None => (package.own_size().to_owned(), average),
+        Some(size) => (size.clone(), package.body_of(size).map_err(AppError::input)?.unwrap_or(average)),
+    };
     let fabric = Fabric::built_in(&package.fabric).map_err(AppError::input)?;
-    let shape = package.draft(&body, &fabric).map_err(AppError::input)?;
-    let size = draping::AS_DRAFTED.into();
+    let shape = package.draft(&size, &body, &fabric).map_err(AppError::input)?;
     Ok(DraftedShape { name: package.name, size, fabric: package.fabric, shape, notes: Vec::new() })
 }
 

@@ -3,6 +3,7 @@
 //! Reads: a pattern, its seam file and sizes, a fabric, a body's measures. Writes: a garment package, pictures, a report.
 //! Budget: 5 s a garment of 5,000 particles, pictures aside. Thread: the main thread.
 
+mod drafts;
 mod pictures;
 mod wearer;
 
@@ -14,6 +15,7 @@ use serde::Serialize;
 use toile_assets::body::Sex;
 use toile_assets::draping::{self, DrapedPattern, PatternPackage};
 use toile_assets::fabric::Fabric;
+use toile_assets::sizes::GarmentKind;
 use toile_assets::tailor::PanelQuality;
 
 use crate::arguments::{Printing, one_of};
@@ -42,13 +44,24 @@ pub struct TailorArgs {
     /// Body to drape on: female or male
     #[arg(long, value_name = "B", value_parser = one_of(Sex::ALL, Sex::name), default_value = "female")]
     pub body: Sex,
-    /// Size of that body (default: the largest of the table that the pattern's own lengths leave ease)
+    /// Size of that body, and of the pattern if it has sizes (default: that of its draft, else the largest of the table that
+    /// the pattern's own lengths leave ease)
     #[arg(long, value_name = "S", conflicts_with = "measures")]
     pub size: Option<String>,
-    /// Table of sizes (default: women, or men)
+    /// Table of sizes (default: that of the package, else women, or men)
     #[arg(long, value_name = "T")]
     pub table: Option<String>,
-    /// Measures of that body (mm), as JSON: stature, shoulder_breadth, chest, waist, hip; or FreeSewing's
+    /// Size that PATTERN is drafted for: its package has sizes then
+    #[arg(long, value_name = "S")]
+    pub drafted_for: Option<String>,
+    /// Draft of the same pattern for another size, SIZE=FILE: sizes between two are graded; may be repeated
+    #[arg(long, value_name = "SIZE=FILE", requires = "drafted_for")]
+    pub draft: Vec<String>,
+    /// What the garment is, which decides the girth that its sizes go by (default: what its panels show)
+    #[arg(long, value_name = "K", value_parser = one_of(GarmentKind::ALL, GarmentKind::name), requires = "drafted_for")]
+    pub kind: Option<GarmentKind>,
+    /// Measures of that body (mm), as JSON: stature, shoulder_breadth, chest, waist, hip; or FreeSewing's; a pattern with sizes
+    /// is graded to them
     #[arg(long, value_name = "FILE")]
     pub measures: Option<PathBuf>,
     /// Distance between particles (mm) (default: 15, or the package's own)
@@ -118,28 +131,29 @@ pub fn run(args: &TailorArgs) -> Result<(), AppError> {
     package.spacing_mm = args.spacing.unwrap_or(package.spacing_mm);
     package.fabric = args.fabric.clone().unwrap_or(package.fabric);
     let fabric = Fabric::built_in(&package.fabric).map_err(AppError::input)?;
-    let pattern = package.parse().map_err(AppError::input)?;
+    drafts::add(args, &mut package)?;
     let choice = wearer::WearerChoice {
         sex: args.body,
         size: args.size.as_deref(),
         table: args.table.as_deref(),
         measures: args.measures.as_deref(),
     };
-    let wearer = wearer::wearer(&choice, &pattern)?;
+    let wearer::TailoredBody { body, size, pattern } = wearer::wearer(&choice, &package)?;
     let named = |e| AppError::input(format!("{}: {e}", args.pattern.display()));
-    let ease = draping::ease(&pattern, &wearer.body).map_err(named)?;
+    let ease = draping::ease(&pattern, &body).map_err(named)?;
     let start = Instant::now();
-    let draped = draping::drape(&pattern, &wearer.body, &fabric, package.spacing_mm * 1e-3).map_err(named)?;
+    let draped = draping::drape(&pattern, &body, &fabric, package.spacing_mm * 1e-3).map_err(named)?;
     let seconds = start.elapsed().as_secs_f64();
     let mut report = report(&package, &draped, seconds);
-    report.size = wearer.size;
-    report.body = args.body.name();
+    report.size = size;
+    report.body = body.sex.name();
     report.panels = pattern.panels().len();
     report.seams = pattern.seams().len();
     report.regular_fraction =
         regular(&draped.sewn.panels.iter().zip(pattern.panels()).map(|(m, p)| m.quality(p)).collect::<Vec<_>>());
     let mm = |m: f64| (m * 1e4).round() / 10.0;
     report.ease = ease
+        .zones
         .iter()
         .map(|e| EaseReport {
             zone: e.zone.name(),
@@ -149,7 +163,7 @@ pub fn run(args: &TailorArgs) -> Result<(), AppError> {
         })
         .collect();
     if let Some(folder) = &mut folder {
-        pictures::draw(folder, &draped, &wearer.body, &fabric)?;
+        pictures::draw(folder, &draped, &body, &fabric)?;
     }
     if let Some(folder) = folder {
         report.files = folder.commit().map_err(AppError::input)?;

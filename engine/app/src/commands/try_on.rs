@@ -254,14 +254,9 @@ fn put_on(choices: &[Choice], size: Option<&str>, measured: &Measured, body: &Bo
     let mut put_on = PutOn { garments: Vec::new(), recommendations: Vec::new(), meshes: Vec::new() };
     for choice in choices {
         let worn = wish::put_on(choice, size, &measured.best, body)?;
-        put_on.recommendations.push(match (worn.fit, choice) {
-            (Some(fit), _) => fit.into(),
-            (None, Choice::Pattern(path)) => Recommendation {
-                garment: path.display().to_string(),
-                size: worn.garments.first().map(|g| g.size.clone()).unwrap_or_default(),
-                ..Recommendation::default()
-            },
-            (None, _) => Recommendation {
+        put_on.recommendations.push(match worn.fit {
+            Some(fit) => fit.into(),
+            None => Recommendation {
                 garment: worn.mesh.as_ref().map(|mesh| mesh.file.clone()).unwrap_or_default(),
                 size: own::UNKNOWN.to_owned(),
                 ..Recommendation::default()

@@ -11,6 +11,7 @@ pub mod body;
 pub mod depth;
 pub mod dressed;
 pub mod measured;
+pub mod pattern_size;
 pub mod player;
 pub mod recipe;
 pub mod session;

@@ -1,10 +1,10 @@
 //! What is to be worn.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use toile_assets::adapt::{MeshReport, OwnMesh, source};
 use toile_assets::body::{Body, Sex};
-use toile_assets::draping;
+use toile_assets::draping::{self, PatternPackage};
 use toile_assets::garment::Garment;
 use toile_assets::limits::MAX_GARMENTS;
 use toile_assets::sizes::Population;
@@ -17,7 +17,7 @@ use toile_track::recommend::Recommendation;
 use toile_track::tape_readings::TapeReadings;
 
 use super::measured::ShopperFacts;
-use super::size;
+use super::{pattern_size, size};
 use crate::FittingError;
 
 /// Garments, size and quality that are asked for, and what the shopper says of themselves.
@@ -52,10 +52,10 @@ pub enum Choice {
     /// A mesh of the user's own.
     Mesh(Box<OwnMesh>),
     /// A sewn pattern or a garment package.
-    Pattern(PathBuf),
+    Pattern(Box<PatternPackage>),
 }
 
-/// A garment on the body, and how its size fits; a mesh or pattern has no sizes.
+/// A garment on the body, and how its size fits; a mesh may have no sizes.
 #[derive(Debug, Clone)]
 pub struct Worn {
     /// The garment, baked; a mesh of several layers becomes one for each, the innermost first.
@@ -107,7 +107,8 @@ impl Wish {
 
 fn choice(name: &str) -> Result<Choice, FittingError> {
     if draping::is_pattern(name) && !wardrobe::names().contains(&name) {
-        return Ok(Choice::Pattern(name.into()));
+        let package = draping::read_package(Path::new(name), None).map_err(FittingError::input)?;
+        return Ok(Choice::Pattern(Box::new(package)));
     }
     let is_file = Path::new(name).exists() || source::is_mesh(name);
     if is_file && !wardrobe::names().contains(&name) {
@@ -131,7 +132,7 @@ pub fn population<'a>(styles: impl IntoIterator<Item = &'a Style>) -> Result<Pop
     Ok(Population::Mixed)
 }
 
-/// The same for choices; a pattern, and a mesh that does not say whose it is, are made for everybody.
+/// The same for choices; a pattern or mesh that does not say whose it is, is made for everybody.
 ///
 /// # Errors
 /// As [`population`].
@@ -140,7 +141,7 @@ pub fn population_of(choices: &[Choice]) -> Result<Population, FittingError> {
         let population = match choice {
             Choice::Style(style) => population([&**style])?,
             Choice::Mesh(own) => own.sex.into(),
-            Choice::Pattern(_) => Population::Mixed,
+            Choice::Pattern(package) => package.population().map_err(FittingError::input)?,
         };
         if population != Population::Mixed {
             return Ok(population);
@@ -152,7 +153,7 @@ pub fn population_of(choices: &[Choice]) -> Result<Population, FittingError> {
 /// Sizes a garment for measures and bakes it onto a body.
 ///
 /// # Errors
-/// A size that is not made, a size asked for of a mesh, a mesh that cannot be used.
+/// A size that is not made, a size asked for of a mesh, a mesh or pattern that cannot be used.
 pub fn put_on(choice: &Choice, size: Option<&str>, measured: &Measurements, body: &Body) -> Result<Worn, FittingError> {
     match choice {
         Choice::Style(style) => {
@@ -166,14 +167,10 @@ pub fn put_on(choice: &Choice, size: Option<&str>, measured: &Measurements, body
             let dressed = own::dress(mesh, size, body).map_err(FittingError::input)?;
             Ok(Worn { garments: dressed.garments, fit, mesh: Some(dressed.report) })
         }
-        Choice::Pattern(path) => {
-            if let Some(size) = size {
-                let (name, size) = (path.display().to_string(), size.to_owned());
-                return Err(FittingError::input(wardrobe::WardrobeError::NoSizes { name, size }));
-            }
-            let package = draping::read_package(path, None).map_err(FittingError::input)?;
-            let garment = package.dress(body).map_err(FittingError::input)?;
-            Ok(Worn { garments: vec![garment], fit: None, mesh: None })
+        Choice::Pattern(package) => {
+            let fit = pattern_size::judge_pattern(package, size, measured, body)?;
+            let garment = package.dress(&fit.size, body).map_err(FittingError::input)?;
+            Ok(Worn { garments: vec![garment], fit: Some(fit), mesh: None })
         }
     }
 }

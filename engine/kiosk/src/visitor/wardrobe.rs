@@ -137,7 +137,7 @@ impl WardrobeItem {
         let table = style.sizes().map_err(KioskError::input)?;
         let sizes: Vec<String> = table.codes().into_iter().map(str::to_owned).collect();
         let (layer, place, held, covers): (_, _, _, &'static [BodyHalf]) = match style.kind {
-            GarmentKind::Trousers => (Layer::Shirt, 0, FittingLevel::Waist, &[BodyHalf::Lower]),
+            GarmentKind::Trousers | GarmentKind::Skirt => (Layer::Shirt, 0, FittingLevel::Waist, &[BodyHalf::Lower]),
             GarmentKind::Tshirt => (Layer::Shirt, 1, FittingLevel::Shoulders, &[BodyHalf::Upper]),
             GarmentKind::Jacket => (Layer::Jacket, 0, FittingLevel::Shoulders, &[BodyHalf::Upper]),
             GarmentKind::Dress => (Layer::Shirt, 1, FittingLevel::Shoulders, &[BodyHalf::Upper, BodyHalf::Lower]),
@@ -169,7 +169,7 @@ fn palette(kind: GarmentKind, own: [f32; 3]) -> Vec<Colour> {
         GarmentKind::Dress => LAWN,
         GarmentKind::Tshirt => JERSEY,
         GarmentKind::Jacket => WOOL,
-        GarmentKind::Trousers => LINEN,
+        GarmentKind::Trousers | GarmentKind::Skirt => LINEN,
     };
     if ours[0].srgb == own {
         return ours.to_vec();

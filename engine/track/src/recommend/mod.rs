@@ -76,6 +76,28 @@ pub fn evaluate(measured: &Measurements, offer: &Offer, size: &str) -> Result<Re
     judge(measured, offer, Some(size))
 }
 
+/// Judges a garment that there is in one size, the first of the offer; the table need not know it.
+///
+/// # Errors
+/// A kind that the table does not know, no size or zone to judge by.
+pub fn judge_only(measured: &Measurements, offer: &Offer) -> Result<Recommendation, RecommendError> {
+    let scored = zones(measured, offer)?;
+    let only = &offer.sizes[0];
+    let zones: Vec<ZoneFit> = scored.iter().filter_map(|z| sentences::fit(z, only)).collect();
+    Ok(Recommendation {
+        garment: offer.garment.to_owned(),
+        size: only.code.clone(),
+        probability: 1.0,
+        sizes: vec![SizeProbability { size: only.code.clone(), probability: 1.0 }],
+        uncertain: false,
+        girth_to_take: None,
+        verdict: sentences::only(only, &zones),
+        zones,
+        runner_up: None,
+        note: sentences::unseen(measured, scored[0].ease.zone),
+    })
+}
+
 fn judge(measured: &Measurements, offer: &Offer, wanted: Option<&str>) -> Result<Recommendation, RecommendError> {
     let zones = zones(measured, offer)?;
     let index = |code: &str| offer.sizes.iter().position(|s| s.code == code);

@@ -41,6 +41,24 @@ pub(super) fn verdict(
     text
 }
 
+/// The verdict on a garment that there is in one size.
+pub(super) fn only(size: &MadeSize, zones: &[ZoneFit]) -> String {
+    let at = |verdict: Verdict| {
+        zones.iter().filter(|z| z.verdict == verdict).map(|z| z.zone.name()).collect::<Vec<_>>().join(" and ")
+    };
+    let parts = [Verdict::Tight, Verdict::Loose, Verdict::Unknown].map(|verdict| (verdict, at(verdict)));
+    let wrong: Vec<String> = parts
+        .into_iter()
+        .filter(|(_, zones)| !zones.is_empty())
+        .map(|(verdict, zones)| match verdict {
+            Verdict::Unknown => format!("not known at the {zones}"),
+            _ => format!("{} at the {zones}", verdict.name()),
+        })
+        .collect();
+    let how = if wrong.is_empty() { "it fits".to_owned() } else { wrong.join(", ") };
+    format!("There is one size, {}: {how}.", size.code)
+}
+
 /// What taking a girth by tape is good for.
 pub(super) fn girth_to_take(zone: Zone, now: f32, then: f32) -> String {
     let (now, then) = (100.0 * now, 100.0 * then);
@@ -114,12 +132,18 @@ pub(super) fn note(measured: &Measurements, offer: &Offer, zones: &[ScoredZone])
              {limit:.0} cm): it is the nearest."
         ));
     }
+    unseen(measured, zone)
+}
+
+/// Said where the girth at a zone was guessed.
+pub(super) fn unseen(measured: &Measurements, zone: Zone) -> Option<String> {
     let m = &measured.measures;
     let taken = match zone {
         Zone::Chest => m.chest_girth,
         Zone::Waist => m.waist_girth,
         Zone::Hip => m.hip_girth,
     };
+    let name = zone.name();
     taken
         .is_none()
         .then(|| format!("The {name} was not seen: its girth is guessed from the stature and the shoulders."))

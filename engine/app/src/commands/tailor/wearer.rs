@@ -4,17 +4,18 @@ use std::path::Path;
 
 use serde_json::Value;
 use toile_assets::body::{Body, Measures, Sex};
-use toile_assets::draping;
+use toile_assets::draping::{self, PatternPackage, PatternSizes, TO_MEASURE};
 use toile_assets::file::{self, FileKind};
 use toile_assets::pattern::Pattern;
 use toile_assets::sizes::SizeTable;
 
 use crate::exit::AppError;
 
-/// A body and what it is called.
+/// A body, what it is called, and the pattern for it.
 pub struct TailoredBody {
     pub body: Body,
     pub size: String,
+    pub pattern: Pattern,
 }
 
 /// How the body is asked for.
@@ -36,24 +37,46 @@ const MEASURES_FILE: FileKind =
 /// Stature over the height of the shoulder's highest point, the mean of ANSUR II, as the tables of FreeSewing's bodies have it.
 const STATURE_OVER_SHOULDER: f64 = 1.1576;
 
-/// The body that is asked for.
+/// The table of sizes where none is named.
+pub fn usual_table(sex: Sex) -> &'static str {
+    if sex == Sex::Male { "men" } else { "women" }
+}
+
+/// The body that is asked for, and the pattern graded for it, if it has sizes.
 ///
 /// # Errors
 /// A size, table or measures of which no body can be made, a pattern that cannot be laid around one.
-pub fn wearer(choice: &WearerChoice<'_>, pattern: &Pattern) -> Result<TailoredBody, AppError> {
+pub fn wearer(choice: &WearerChoice<'_>, package: &PatternPackage) -> Result<TailoredBody, AppError> {
     let sex = choice.sex;
     if let Some(path) = choice.measures {
         let body = Body::build(sex, &read(path, sex)?).map_err(AppError::input)?;
-        return Ok(TailoredBody { body, size: format!("measured by {}", path.display()) });
+        let measured = format!("measured by {}", path.display());
+        return match package.graded().map_err(AppError::input)? {
+            Some(graded) => {
+                let pattern = graded.to_measure(&body.measures);
+                Ok(TailoredBody { body, size: format!("{TO_MEASURE}, {measured}"), pattern })
+            }
+            None => Ok(TailoredBody { body, size: measured, pattern: package.parse().map_err(AppError::input)? }),
+        };
     }
-    let usual = if sex == Sex::Male { "men" } else { "women" };
-    let table = SizeTable::embedded(choice.table.unwrap_or(usual)).map_err(AppError::input)?;
+    let own_table = |sizes: &PatternSizes| choice.table.is_none_or(|table| table == sizes.table);
+    if package.sizes.as_ref().is_some_and(own_table) {
+        let size = choice.size.unwrap_or_else(|| package.own_size()).to_owned();
+        let body = package.body_of(&size).map_err(AppError::input)?;
+        let Some(body) = body else {
+            return Err(AppError::input(format!("size {size} says nothing of a body; give --measures FILE")));
+        };
+        let pattern = package.sized(&size, &body.measures).map_err(AppError::input)?;
+        return Ok(TailoredBody { body, size, pattern });
+    }
+    let pattern = package.parse().map_err(AppError::input)?;
+    let table = SizeTable::embedded(choice.table.unwrap_or_else(|| usual_table(sex))).map_err(AppError::input)?;
     let size = match choice.size {
         Some(size) => size.to_owned(),
-        None => draping::fitting_size(pattern, &table, sex).map_err(AppError::input)?,
+        None => draping::fitting_size(&pattern, &table, sex).map_err(AppError::input)?,
     };
     let measures = Measures::from(table.size_body(&size).map_err(AppError::input)?);
-    Ok(TailoredBody { body: Body::build(sex, &measures).map_err(AppError::input)?, size })
+    Ok(TailoredBody { body: Body::build(sex, &measures).map_err(AppError::input)?, size, pattern })
 }
 
 /// Measures of a file; what it leaves out is the mean person's.
