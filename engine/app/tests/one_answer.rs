@@ -78,7 +78,7 @@ fn one_answer(path: &Path, garment: &str) {
     // What the window judges by: the same function on the same measures.
     let session = session::open(Some(path), None).unwrap();
     let known = measured::measure(&session, ShopperFacts::default()).unwrap();
-    let judged = size::judge(&wardrobe::style(garment).unwrap(), None, &known.best).unwrap();
+    let judged = GarmentOffer::of_style(&wardrobe::style(garment).unwrap()).unwrap().judge(None, &known.best).unwrap();
     let by_window: Vec<(String, f64, String)> = judged
         .zones
         .iter()

@@ -5,7 +5,7 @@ use std::path::Path;
 use toile_assets::body::{Body, Measures as BodyMeasures, Sex};
 use toile_assets::draping::{PatternPackage, PatternSizes, SizedDraft, read_package};
 use toile_assets::sizes::{GarmentKind, SizeTable};
-use toile_fitting::dress::pattern_size::judge_pattern;
+use toile_fitting::dress::choice::{Choice, ChoiceSource};
 use toile_track::estimate::Estimate;
 use toile_track::measure::{Measurements, Source};
 use toile_track::measures::Measures;
@@ -40,9 +40,13 @@ fn wearer(size: &str, sigma: f32) -> (Body, Measurements) {
     (body, Measurements { measures, valid_pixels: 1, people: 1, frames: 30, source: Source::Depth, notes })
 }
 
+fn choice(package: &PatternPackage) -> Choice {
+    Choice { name: package.name.clone(), source: ChoiceSource::Pattern(Box::new(package.clone())) }
+}
+
 fn judge(package: &PatternPackage, size: Option<&str>, on: &str) -> Recommendation {
     let (body, measured) = wearer(on, 0.005);
-    judge_pattern(package, size, &measured, &body).unwrap()
+    choice(package).judge(size, &measured, &body).unwrap().unwrap()
 }
 
 #[test]
@@ -86,5 +90,6 @@ fn a_pattern_without_sizes_is_judged_by_its_own_lengths() {
     assert!((own.0 - larger.0 - (large - small)).abs() < 0.03, "{own:?} {larger:?} {small} {large}");
     assert_eq!(larger.1, Verdict::Tight);
     assert_eq!(larger.2, "There is one size, as drafted: tight at the chest.");
-    assert!(judge_pattern(&package, Some("40"), &wearer("34", 0.01).1, &wearer("34", 0.01).0).is_err());
+    let (body, measured) = wearer("34", 0.01);
+    assert!(choice(&package).judge(Some("40"), &measured, &body).is_err());
 }

@@ -24,7 +24,8 @@ use toile_engine::lines::{CAPACITY, Kind, Lines};
 use toile_engine::triple_buffer::Reader;
 use toile_fitting::dress::measured::{self, Measured};
 use toile_fitting::dress::player::Player;
-use toile_fitting::dress::wish::{self, Choice, Wish};
+use toile_fitting::dress::choice::Choice;
+use toile_fitting::dress::wish::{self, Wish};
 use toile_fitting::dress::{body, session};
 use toile_fitting::scene::StepTimes;
 use toile_fitting::scene::contact::ContactReport;
@@ -228,7 +229,7 @@ fn worn_body(
     choices: &[Choice],
     has_joints: bool,
 ) -> Result<(Body, Option<String>), AppError> {
-    let sex = measured.sex(wish::population_of(choices)?);
+    let sex = measured.sex(wish::population(choices)?);
     if let Some(Wearer::File(file)) = &args.body {
         let imported = crate::commands::body::wearer(file, sex)?;
         measured.best = body::read_off(measured.best.clone(), &imported.body);
@@ -253,7 +254,7 @@ struct PutOn {
 fn put_on(choices: &[Choice], size: Option<&str>, measured: &Measured, body: &Body) -> Result<PutOn, AppError> {
     let mut put_on = PutOn { garments: Vec::new(), recommendations: Vec::new(), meshes: Vec::new() };
     for choice in choices {
-        let worn = wish::put_on(choice, size, &measured.best, body)?;
+        let worn = choice.put_on(size, &measured.best, body)?;
         put_on.recommendations.push(match worn.fit {
             Some(fit) => fit.into(),
             None => Recommendation {

@@ -1,7 +1,8 @@
 //! Somebody dressed: a shopper of the measures that were taken, or the mannequin that stands in for one.
 
-use toile_assets::body::{Measures, Sex};
+use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::sizes::Population;
+use toile_assets::wardrobe::own;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::triple_buffer::Reader;
 use toile_sensors::frame::Joints;
@@ -63,22 +64,24 @@ pub fn shopper(session: &Session, wish: &Wish) -> Result<Dressed, FittingError> 
     Dressed::make(Recipe::choose(&session.name, &measured, wish)?, &track[0], false)
 }
 
-/// The mannequin that stands in the mirror while nobody is measured: the middle size of the outermost garment, as `pose` has it.
+/// The mannequin that stands in the mirror while nobody is measured: the middle size of the outermost garment that has sizes, as
+/// `pose` has it, and the others in their middle sizes on it.
 ///
 /// # Errors
-/// A garment that is not in the wardrobe, a size that is not made.
+/// A garment that there is not, a size that is not made.
 pub fn mannequin(wish: &Wish, pose: &Joints) -> Result<Dressed, FittingError> {
-    let (mut garments, mut body) = (Vec::new(), None);
-    for style in wish.styles()? {
-        let table = style.sizes().map_err(FittingError::input)?;
-        let codes = table.codes();
-        let size = wish.size.clone().unwrap_or_else(|| codes[codes.len() / 2].to_owned());
-        let sex = if table.population == Population::Men { Sex::Male } else { Sex::Female };
-        body = Some((sex, Measures::from(table.size_body(&size).map_err(FittingError::input)?)));
-        garments.push((style.name.clone(), size));
+    let average = Body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(FittingError::internal)?;
+    let (mut garments, mut body) = (Vec::new(), (Sex::Female, average.measures));
+    for choice in wish.choices()? {
+        let offer = choice.offer(&average)?;
+        let middle = offer.as_ref().map_or(own::UNKNOWN, |o| &o.sizes[o.sizes.len() / 2].code);
+        let size = wish.size.clone().unwrap_or_else(|| middle.to_owned());
+        if let Some(table) = offer.map(|o| o.table).filter(|table| table.size(&size).is_ok() || wish.size.is_some()) {
+            let sex = if table.population == Population::Men { Sex::Male } else { Sex::Female };
+            body = (sex, Measures::from(table.size_body(&size).map_err(FittingError::input)?));
+        }
+        garments.push((choice.name, size));
     }
-    let Some((sex, measures)) = body else {
-        return Err(FittingError::Input("no garment is named; name one in [wear]".into()));
-    };
+    let (sex, measures) = body;
     Dressed::make(Recipe::of_body("mannequin", sex, &measures, garments, wish.quality), pose, true)
 }

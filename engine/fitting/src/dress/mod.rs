@@ -8,12 +8,12 @@
 //! measures, sizes and verdicts everywhere.
 
 pub mod body;
+pub mod choice;
 pub mod depth;
 pub mod dressed;
 pub mod measured;
-pub mod pattern_size;
+pub mod offer;
 pub mod player;
 pub mod recipe;
 pub mod session;
-pub mod size;
 pub mod wish;

@@ -5,17 +5,17 @@ use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::garment::Garment;
 use toile_assets::rig::Rig;
 use toile_assets::sizes::Population;
-use toile_assets::wardrobe;
-use toile_assets::wardrobe::style::Style;
+use toile_assets::wardrobe::own;
 use toile_engine::cloth::{Quality, Settings};
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::triple_buffer::Reader;
 use toile_sensors::frame::Joints;
 use toile_track::measure::Measurements;
 
+use super::body;
+use super::choice::Choice;
 use super::measured::Measured;
 use super::wish::{self, Wish};
-use super::{body, size};
 use crate::FittingError;
 
 /// How a scene is made.
@@ -29,7 +29,7 @@ pub struct Recipe {
     pub sex: String,
     /// Stature, shoulder breadth, girths of chest, waist and hip: the bits of f32 (m).
     pub measures: [u32; 5],
-    /// Garments of the wardrobe and their sizes, inner first.
+    /// Garments, by name or path, and their sizes, inner first.
     pub garments: Vec<(String, String)>,
     /// Tested settings of the cloth.
     pub quality: String,
@@ -52,14 +52,17 @@ impl Recipe {
     /// Of somebody who was measured, in the sizes that fit them or the one that is asked for.
     ///
     /// # Errors
-    /// A garment that is not in the wardrobe, a size that is not made, measures that no body has.
+    /// A garment that there is not, a size that is not made, measures that no body has.
     pub fn choose(session: &str, measured: &Measured, wish: &Wish) -> Result<Self, FittingError> {
-        let styles = wish.styles()?;
-        let size = |style: &Style| size::judge(style, wish.size.as_deref(), &measured.best).map(|fit| fit.size);
-        let garments = styles.iter().map(|style| Ok((style.name.clone(), size(style)?)));
-        let garments = garments.collect::<Result<_, FittingError>>()?;
-        let sex = measured.sex(wish::population(&styles)?);
-        Self::of(session, &measured.best, sex, garments, wish.quality)
+        let choices = wish.choices()?;
+        let sex = measured.sex(wish::population(&choices)?);
+        let (body, _) = body::build(sex, &measured.best, Population::from(Some(sex)))?;
+        let sized = |choice: &Choice| {
+            let fit = choice.judge(wish.size.as_deref(), &measured.best, &body)?;
+            Ok((choice.name.clone(), fit.map_or_else(|| own::UNKNOWN.to_owned(), |fit| fit.size)))
+        };
+        let garments = choices.iter().map(sized).collect::<Result<_, FittingError>>()?;
+        Ok(Self::of_body(session, sex, &body.measures, garments, wish.quality))
     }
 
     /// Of somebody who was measured and has chosen what to wear: garments and sizes, inner first.
@@ -99,11 +102,10 @@ impl Recipe {
         let [stature, shoulder_breadth, chest_girth, waist_girth, hip_girth] = self.measures.map(f32::from_bits);
         let measures = Measures { stature, shoulder_breadth, chest_girth, waist_girth, hip_girth };
         let body = Body::build(sex, &measures).map_err(FittingError::input)?;
-        let garments = self.garments.iter().map(|(name, size)| {
-            let style = wardrobe::style(name).map_err(FittingError::input)?;
-            style.dress(size, &body).map_err(FittingError::input)
-        });
-        let garments = garments.collect::<Result<Vec<_>, FittingError>>()?;
+        let mut garments = Vec::with_capacity(self.garments.len());
+        for (name, size) in &self.garments {
+            garments.extend(Choice::find(name)?.dress(Some(size), &body)?.garments);
+        }
         let quality = self.quality.parse().map_err(FittingError::Input)?;
         let settings = Settings { quality, workers: 1, ..Settings::default() };
         Ok(Parts { rig: Rig::fit(&body), body, garments, settings })
