@@ -38,6 +38,8 @@ pub mod wardrobe;
 
 pub mod draping;
 
+pub mod catalogue;
+
 #[cfg(test)]
 #[path = "../../tests/src/recordings.rs"]
 mod recordings;

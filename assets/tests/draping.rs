@@ -191,7 +191,7 @@ fn tubes() -> draping::PatternPackage {
     let larger = draping::SizedDraft { size: "42".into(), pattern: tube(54.0, 30.0), seams: None };
     let kind = toile_assets::sizes::GarmentKind::Skirt;
     let (table, size) = ("women".into(), "38".into());
-    package.sizes = Some(draping::PatternSizes { table, kind, size, drafts: vec![larger] });
+    package.sizes = Some(draping::PatternSizes { table, kind, size, drafts: vec![larger], girths: Vec::new() });
     package
 }
 
@@ -267,7 +267,8 @@ fn grading_meets_the_draft_that_it_has_not_seen() {
     ] {
         let table = SizeTable::embedded(table).unwrap();
         let girth = |size: &str| {
-            let [low, high] = table.size(size).unwrap().range(if name == "sandy" { Girth::Waist } else { Girth::Chest });
+            let [low, high] =
+                table.size(size).unwrap().range(if name == "sandy" { Girth::Waist } else { Girth::Chest });
             f64::from(low + high)
         };
         let t = (girth(unseen) - girth(small)) / (girth(large) - girth(small));
@@ -282,7 +283,8 @@ fn grading_meets_the_draft_that_it_has_not_seen() {
             let corners = got.edges.iter().zip(&want.edges).map(|(a, b)| (a.curve.start() - b.curve.start()).length());
             worst = corners.fold(worst, f64::max);
         }
-        let moved = (drafted(name, small).panels()[0].lengths()[0] - drafted(name, large).panels()[0].lengths()[0]).abs();
+        let moved =
+            (drafted(name, small).panels()[0].lengths()[0] - drafted(name, large).panels()[0].lengths()[0]).abs();
         println!("{name}: {:.2} mm off, of {:.0} mm", worst * 1e3, moved * 1e3);
         assert!(worst < most, "{name}: {:.2} mm off", worst * 1e3);
     }

@@ -15,7 +15,7 @@ pub const AS_DRAFTED: &str = "as drafted";
 pub const TO_MEASURE: &str = "to measure";
 
 /// For whom a package's drafts are.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PatternSizes {
     /// A table of sizes that is built in.
@@ -27,6 +27,35 @@ pub struct PatternSizes {
     /// Drafts for other sizes.
     #[serde(default)]
     pub drafts: Vec<SizedDraft>,
+    /// Girths of every size that is made, as `toile tailor` found them; none where it has not looked.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub girths: Vec<SizeGirths>,
+}
+
+/// What a size measures around the bodies that it is for.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SizeGirths {
+    /// Code of the size.
+    pub size: String,
+    /// At the chest (mm), if it is judged there.
+    pub chest_mm: Option<f64>,
+    /// At the waist (mm).
+    pub waist_mm: Option<f64>,
+    /// At the hip (mm).
+    pub hip_mm: Option<f64>,
+}
+
+impl SizeGirths {
+    /// The girth at a zone (m).
+    pub fn at(&self, zone: Girth) -> Option<f64> {
+        match zone {
+            Girth::Chest => self.chest_mm,
+            Girth::Waist => self.waist_mm,
+            Girth::Hip => self.hip_mm,
+        }
+        .map(|mm| mm * 1e-3)
+    }
 }
 
 /// A draft for one size.
@@ -70,9 +99,10 @@ impl PatternPackage {
         let Some(sizes) = &self.sizes else { return Ok(None) };
         let table = SizeTable::embedded(&sizes.table)?;
         let named = |reason| PackageError::Content { file: self.name.clone(), reason };
-        let girth = table.designation(sizes.kind).and_then(|d| d.primary.first().copied()).ok_or_else(|| {
-            named(format!("the size table {} designates no {}", table.name, sizes.kind.name()))
-        })?;
+        let girth = table
+            .designation(sizes.kind)
+            .and_then(|d| d.primary.first().copied())
+            .ok_or_else(|| named(format!("the size table {} designates no {}", table.name, sizes.kind.name())))?;
         let mut drafts = vec![Graded { girth: 0.0, size: sizes.size.clone(), pattern: self.parse()? }];
         for SizedDraft { size, pattern, seams } in &sizes.drafts {
             let names = [format!("{} for {size}", self.name), format!("the seams of {} for {size}", self.name)];

@@ -121,7 +121,19 @@ pub fn is_pattern(name: &str) -> bool {
 pub fn read_package(path: &Path, seams: Option<&Path>) -> Result<PatternPackage, PackageError> {
     let text = file::read_text(path, &PACKAGE)?;
     let shown = path.display().to_string();
-    if seams.is_none() && text.contains(SCHEMA) {
+    let beside = path.with_extension("toml");
+    let seams = seams.or_else(|| beside.is_file().then_some(beside.as_path()));
+    let seams = seams.map(|s| file::read_text(s, &SEAMS)).transpose()?;
+    parse_package(&shown, text, seams)
+}
+
+/// The same from text; `shown` stands in error messages, and its last part is the garment's name.
+///
+/// # Errors
+/// As [`read_package`].
+pub fn parse_package(shown: &str, text: String, seams: Option<String>) -> Result<PatternPackage, PackageError> {
+    let shown = shown.to_owned();
+    if text.contains(SCHEMA) {
         let wrong = |reason: String| PackageError::Content { file: shown.clone(), reason };
         let package: PatternPackage = serde_json::from_str(&text).map_err(|e| wrong(e.to_string()))?;
         if package.schema != SCHEMA {
@@ -135,13 +147,12 @@ pub fn read_package(path: &Path, seams: Option<&Path>) -> Result<PatternPackage,
         }
         return Ok(package);
     }
-    let beside = path.with_extension("toml");
-    let seams = seams.or_else(|| beside.is_file().then_some(beside.as_path()));
+    let name = Path::new(&shown).file_stem().map(|stem| stem.to_string_lossy().into_owned());
     Ok(PatternPackage {
         schema: SCHEMA.into(),
-        name: path.file_stem().map_or(shown, |stem| stem.to_string_lossy().into_owned()),
+        name: name.unwrap_or(shown),
         pattern: text,
-        seams: seams.map(|s| file::read_text(s, &SEAMS)).transpose()?,
+        seams,
         spacing_mm: SPACING_MM,
         fabric: FABRIC.into(),
         sizes: None,
@@ -172,8 +183,7 @@ impl PatternPackage {
         if size == AS_DRAFTED {
             return Ok(self.parse()?);
         }
-        let not_made =
-            || PackageError::NotMade { name: self.name.clone(), size: size.into(), made: AS_DRAFTED.into() };
+        let not_made = || PackageError::NotMade { name: self.name.clone(), size: size.into(), made: AS_DRAFTED.into() };
         self.graded()?.ok_or_else(not_made)?.sized(&self.name, size, body)
     }
 
@@ -227,10 +237,17 @@ impl PatternPackage {
     /// # Errors
     /// As [`Self::draft`].
     pub fn dress(&self, size: &str, body: &Body) -> Result<Garment, PackageError> {
-        let fabric = Fabric::built_in(&self.fabric)?;
-        let shape = self.draft(size, body, &fabric)?;
+        self.dress_in(&Fabric::built_in(&self.fabric)?, size, body)
+    }
+
+    /// The same in another fabric.
+    ///
+    /// # Errors
+    /// As [`Self::draft`].
+    pub fn dress_in(&self, fabric: &Fabric, size: &str, body: &Body) -> Result<Garment, PackageError> {
+        let shape = self.draft(size, body, fabric)?;
         let failed = |source| PackageError::Drape { name: self.name.clone(), source: DrapeError::Mesh(source) };
-        let mut garment = bake(&self.name, size, &shape, &fabric).map_err(failed)?;
+        let mut garment = bake(&self.name, size, &shape, fabric).map_err(failed)?;
         garment.layer = LAYER;
         Ok(garment)
     }

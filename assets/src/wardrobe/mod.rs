@@ -174,9 +174,16 @@ impl Style {
 
     /// The garment in a size on a shopper, baked.
     pub fn dress(&self, size: &str, shopper: &Body) -> Result<Garment, WardrobeError> {
+        self.dress_in(&Fabric::built_in(&self.fabric)?, size, shopper)
+    }
+
+    /// The same in another fabric.
+    ///
+    /// # Errors
+    /// A size that there is not, a garment that cannot be baked.
+    pub fn dress_in(&self, fabric: &Fabric, size: &str, shopper: &Body) -> Result<Garment, WardrobeError> {
         let shape = self.draft(size, shopper)?;
-        let fabric = Fabric::built_in(&self.fabric)?;
-        let mut garment = bake(&self.name, size, &shape, &fabric)
+        let mut garment = bake(&self.name, size, &shape, fabric)
             .map_err(|source| WardrobeError::Mesh { name: self.name.clone(), source })?;
         garment.substeps = self.substeps.unwrap_or(garment.substeps);
         garment.layer = self.layer;

@@ -59,7 +59,21 @@ pub fn draft(own: &OwnMesh, size: Option<&str>, shopper: &Body) -> Result<Drafte
 /// # Errors
 /// As [`draft`].
 pub fn dress(own: &OwnMesh, size: Option<&str>, shopper: &Body) -> Result<DressedMesh, WardrobeError> {
-    let DraftedMesh { worn, fabric } = draft(own, size, shopper)?;
+    dress_in(own, None, size, shopper)
+}
+
+/// The same in another fabric than its file of measures names.
+///
+/// # Errors
+/// As [`draft`].
+pub fn dress_in(
+    own: &OwnMesh,
+    fabric: Option<&Fabric>,
+    size: Option<&str>,
+    shopper: &Body,
+) -> Result<DressedMesh, WardrobeError> {
+    let DraftedMesh { worn, fabric: named } = draft(own, size, shopper)?;
+    let fabric = fabric.cloned().unwrap_or(named);
     let file = Path::new(&own.path).file_name().map(|name| name.to_string_lossy().into_owned());
     let name = own.measures.name.clone().or(file).unwrap_or_else(|| own.path.clone());
     let shapes = worn.shapes();

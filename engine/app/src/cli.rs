@@ -10,6 +10,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use crate::commands::bake::BakeArgs;
 use crate::commands::bench::BenchCommand;
 use crate::commands::body::BodyArgs;
+use crate::commands::catalogue::CatalogueCommand;
 use crate::commands::completions::CompletionsArgs;
 use crate::commands::convert::ConvertArgs;
 use crate::commands::doctor::DoctorArgs;
@@ -55,6 +56,8 @@ pub(crate) enum Command {
     Convert(ConvertArgs),
     Bake(BakeArgs),
     Tailor(TailorArgs),
+    #[command(subcommand)]
+    Catalogue(CatalogueCommand),
     Body(BodyArgs),
     Run(RunArgs),
     Doctor(DoctorArgs),

@@ -11,8 +11,9 @@ use common::Scratch;
 use serde_json::Value;
 use toile_assets::wardrobe;
 use toile_fitting::dress::measured::{self, ShopperFacts};
+use toile_fitting::dress::offer::GarmentOffer;
+use toile_fitting::dress::session;
 use toile_fitting::dress::wish::Wish;
-use toile_fitting::dress::{session, size};
 use toile_fitting::live::dresser::{DressJob, DressOutcome, Dresser, ShopperSource};
 
 /// The measures of the contract.

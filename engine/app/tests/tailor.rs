@@ -34,7 +34,8 @@ fn drafts_of_two_sizes_become_a_package_in_all_between() {
     let (small, large, seams) = (sandy("34"), sandy("42"), seams());
     let large = format!("42={large}");
     let line = [
-        &["tailor", &small, "--seams", &seams, "--table", "freesewing-women", "--drafted-for", "34", "--draft", &large][..],
+        &["tailor", &small, "--seams", &seams, "--table", "freesewing-women", "--drafted-for", "34", "--draft", &large]
+            [..],
         &["--spacing", "30", "--out", "sandy.toile.json", "--json"],
     ]
     .concat();
@@ -44,7 +45,8 @@ fn drafts_of_two_sizes_become_a_package_in_all_between() {
     assert_eq!(graded["size"], "38");
     // FreeSewing's own draft for 38 has a waistband of 942.97 mm.
     assert!((waist(&graded) - 942.97).abs() < 1.0 && waist(&own) < 860.0, "{graded}");
-    std::fs::write(scratch.path().join("me.json"), r#"{"stature": 1700, "chest": 930, "waist": 787, "seat": 1045}"#).unwrap();
+    std::fs::write(scratch.path().join("me.json"), r#"{"stature": 1700, "chest": 930, "waist": 787, "seat": 1045}"#)
+        .unwrap();
     let measured = json(&scratch, &["tailor", "sandy.toile.json", "--measures", "me.json", "--json"]);
     assert!(measured["size"].as_str().unwrap().starts_with("to measure"), "{measured}");
     assert!(waist(&measured) > waist(&own) + 20.0 && waist(&measured) < waist(&graded) - 20.0, "{measured}");

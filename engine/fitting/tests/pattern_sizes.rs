@@ -5,7 +5,7 @@ use std::path::Path;
 use toile_assets::body::{Body, Measures as BodyMeasures, Sex};
 use toile_assets::draping::{PatternPackage, PatternSizes, SizedDraft, read_package};
 use toile_assets::sizes::{GarmentKind, SizeTable};
-use toile_fitting::dress::choice::{Choice, ChoiceSource};
+use toile_fitting::dress::choice::{Choice, ChoiceSource, ShopChoice};
 use toile_track::estimate::Estimate;
 use toile_track::measure::{Measurements, Source};
 use toile_track::measures::Measures;
@@ -20,7 +20,8 @@ fn package(name: &str, kind: GarmentKind, [small, large]: [&str; 2]) -> PatternP
     };
     let (mut package, other) = (read(small), read(large));
     let drafts = vec![SizedDraft { size: large.into(), pattern: other.pattern, seams: other.seams }];
-    package.sizes = Some(PatternSizes { table: "freesewing-women".into(), kind, size: small.into(), drafts });
+    package.sizes =
+        Some(PatternSizes { table: "freesewing-women".into(), kind, size: small.into(), drafts, girths: Vec::new() });
     package
 }
 
@@ -41,7 +42,11 @@ fn wearer(size: &str, sigma: f32) -> (Body, Measurements) {
 }
 
 fn choice(package: &PatternPackage) -> Choice {
-    Choice { name: package.name.clone(), source: ChoiceSource::Pattern(Box::new(package.clone())) }
+    Choice {
+        name: package.name.clone(),
+        source: ChoiceSource::Pattern(Box::new(package.clone())),
+        own: ShopChoice::default(),
+    }
 }
 
 fn judge(package: &PatternPackage, size: Option<&str>, on: &str) -> Recommendation {

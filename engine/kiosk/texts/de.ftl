@@ -42,6 +42,8 @@ partly-cure = Ein Maßband an Taille und Hüfte macht es sicher.
 # The fitted body
 fitting-size = { $garment }, Größe { $size }
 fitting-best = Größe { $size } passt Ihnen am besten.
+fitting-one-size = Es gibt eine Größe.
+fitting-size-unknown = So gezeigt, wie es gemacht ist: Die Größe ist nicht bekannt.
 fitting-sure = Zu { $percent } % sicher.
 fitting-unsure = Es ist knapp: { $percent } % für diese Größe.
 fitting-better = Größe { $size } würde Ihnen besser passen.

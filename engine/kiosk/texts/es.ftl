@@ -42,6 +42,8 @@ partly-cure = Una cinta métrica en cintura y cadera lo deja claro.
 # The fitted body
 fitting-size = { $garment }, talla { $size }
 fitting-best = La talla { $size } es la que mejor le queda.
+fitting-one-size = Hay una sola talla.
+fitting-size-unknown = Se muestra tal como está hecho: no se conoce su talla.
 fitting-sure = Seguro al { $percent } %.
 fitting-unsure = Hay dudas: { $percent } % para esta talla.
 fitting-better = La talla { $size } le quedaría mejor.

@@ -42,6 +42,8 @@ partly-cure = Un mètre ruban à la taille et aux hanches lève le doute.
 # The fitted body
 fitting-size = { $garment }, taille { $size }
 fitting-best = La taille { $size } vous va le mieux.
+fitting-one-size = Il existe en une seule taille.
+fitting-size-unknown = Montré tel qu’il est fait : sa taille n’est pas connue.
 fitting-sure = Sûr à { $percent } %.
 fitting-unsure = On hésite : { $percent } % pour cette taille.
 fitting-better = La taille { $size } vous irait mieux.

@@ -42,6 +42,8 @@ partly-cure = Bel ve kalçadan mezurayla alınan ölçü kesinlik sağlar.
 # The fitted body
 fitting-size = { $garment }, { $size } beden
 fitting-best = Size en çok { $size } beden uyuyor.
+fitting-one-size = Tek bedeni var.
+fitting-size-unknown = Yapıldığı gibi gösteriliyor: bedeni bilinmiyor.
 fitting-sure = %{ $percent } eminiz.
 fitting-unsure = Arada kaldık: bu beden için %{ $percent }.
 fitting-better = Size { $size } beden daha iyi olurdu.

@@ -1,12 +1,17 @@
 //! A garment to wear: one of the wardrobe, a mesh, or a sewn pattern, each in its sizes.
 
+use std::fmt::Display;
 use std::path::Path;
 
-use toile_assets::adapt::{MeshReport, OwnMesh, source};
-use toile_assets::body::Body;
-use toile_assets::draping::{self, PatternPackage, TO_MEASURE};
+use toile_assets::adapt::{AdaptError, MeshReport, OwnMesh, source};
+use toile_assets::body::{Body, Measures, Sex};
+use toile_assets::catalogue::limits::{MAX_PACKAGE_BYTES, MAX_TOML_BYTES};
+use toile_assets::catalogue::package::ENDING;
+use toile_assets::catalogue::{GarmentPackage, word};
+use toile_assets::draping::{self, AS_DRAFTED, PatternPackage, TO_MEASURE};
+use toile_assets::fabric::Fabric;
 use toile_assets::garment::Garment;
-use toile_assets::sizes::Population;
+use toile_assets::sizes::{Population, SizeTable};
 use toile_assets::wardrobe;
 use toile_assets::wardrobe::own;
 use toile_assets::wardrobe::style::Style;
@@ -23,6 +28,17 @@ pub struct Choice {
     pub name: String,
     /// What it is made from.
     pub source: ChoiceSource,
+    /// What a shop has its own way: fabric and layer.
+    pub own: ShopChoice,
+}
+
+/// What a shop says of a garment besides how it is cut; what is left out is as its source has it.
+#[derive(Debug, Clone, Default)]
+pub struct ShopChoice {
+    /// The fabric that it is made of.
+    pub fabric: Option<Fabric>,
+    /// The layer in which it is worn.
+    pub layer: Option<u8>,
 }
 
 /// What a garment is made from.
@@ -55,6 +71,9 @@ impl Choice {
     /// A name that is none of these, a file that cannot be used.
     pub fn find(name: &str) -> Result<Self, FittingError> {
         let path = Path::new(name);
+        if name.ends_with(ENDING) {
+            return Self::open(path);
+        }
         let source = if wardrobe::names().contains(&name) {
             ChoiceSource::Style(Box::new(wardrobe::style(name).map_err(FittingError::input)?))
         } else if draping::is_pattern(name) {
@@ -64,7 +83,45 @@ impl Choice {
         } else {
             ChoiceSource::Style(Box::new(wardrobe::style(name).map_err(FittingError::input)?))
         };
-        Ok(Self { name: name.to_owned(), source })
+        Ok(Self { name: name.to_owned(), source, own: ShopChoice::default() })
+    }
+
+    /// The garment of a package.
+    ///
+    /// # Errors
+    /// A package that cannot be read, a pattern, mesh or fabric in it that cannot be used.
+    pub fn open(path: &Path) -> Result<Self, FittingError> {
+        let mut package = GarmentPackage::open(path).map_err(FittingError::input)?;
+        let manifest = package.manifest().map_err(FittingError::input)?;
+        let shown = path.display().to_string();
+        let inside = |e: &dyn Display| FittingError::Input(format!("{shown}: {e}"));
+        let source = if manifest.is_built_in() {
+            ChoiceSource::Style(Box::new(wardrobe::style(&manifest.garment).map_err(FittingError::input)?))
+        } else if manifest.is_pattern() {
+            let text = package.text(&manifest.garment, MAX_PACKAGE_BYTES).map_err(FittingError::input)?;
+            let seams = manifest.seams.as_deref().map(|seams| package.text(seams, MAX_TOML_BYTES)).transpose();
+            let seams = seams.map_err(FittingError::input)?;
+            let mut pattern = draping::parse_package(&manifest.garment, text, seams).map_err(|e| inside(&e))?;
+            pattern.name = word(&manifest.names, "en").to_owned();
+            ChoiceSource::Pattern(Box::new(pattern))
+        } else {
+            let unpacked = package.unpack().map_err(FittingError::input)?;
+            // Where it was unpacked says nothing to whoever packed it.
+            let folder = format!("{}/", unpacked.path.display());
+            let named = |e: AdaptError| FittingError::Input(format!("{shown}: {}", e.to_string().replace(&folder, "")));
+            let mut mesh = OwnMesh::read(&unpacked.path.join(&manifest.garment)).map_err(named)?;
+            mesh.measures.name.get_or_insert_with(|| word(&manifest.names, "en").to_owned());
+            ChoiceSource::Mesh(Box::new(mesh))
+        };
+        let fabric = manifest.fabric.as_deref().map(|fabric| match fabric.ends_with(".toml") {
+            true => {
+                let text = package.text(fabric, MAX_TOML_BYTES).map_err(FittingError::input)?;
+                Fabric::parse(fabric, &text).map_err(|e| inside(&e))
+            }
+            false => Fabric::built_in(fabric).map_err(|e| inside(&e)),
+        });
+        let own = ShopChoice { fabric: fabric.transpose()?, layer: manifest.layer };
+        Ok(Self { name: shown.clone(), source, own })
     }
 
     /// Whose bodies it is made for; what does not say is made for everybody.
@@ -79,6 +136,20 @@ impl Choice {
         }
     }
 
+    /// The fabric that it is made of.
+    ///
+    /// # Errors
+    /// A fabric that there is not.
+    pub fn fabric(&self) -> Result<Fabric, FittingError> {
+        let named = match (&self.own.fabric, &self.source) {
+            (Some(fabric), _) => return Ok(fabric.clone()),
+            (None, ChoiceSource::Style(style)) => &style.fabric,
+            (None, ChoiceSource::Mesh(own)) => own.measures.fabric.as_deref().unwrap_or(draping::FABRIC),
+            (None, ChoiceSource::Pattern(package)) => &package.fabric,
+        };
+        Fabric::built_in(named).map_err(FittingError::input)
+    }
+
     /// Its sizes; none of a mesh that has none. A pattern for nobody in particular is judged on `wearer`.
     ///
     /// # Errors
@@ -89,6 +160,58 @@ impl Choice {
             ChoiceSource::Mesh(own) => GarmentOffer::of_mesh(own),
             ChoiceSource::Pattern(package) => GarmentOffer::of_pattern(package, wearer).map(Some),
         }
+    }
+
+    /// The body that it is shown on where nobody is measured, and the size that it has there: the body of its middle size, the
+    /// one that a pattern for nobody in particular has ease on, the one that a mesh is made for.
+    ///
+    /// # Errors
+    /// As [`Self::offer`].
+    pub fn shown_on(&self) -> Result<(Sex, Measures, String), FittingError> {
+        let sex = if self.population()? == Population::Men { Sex::Male } else { Sex::Female };
+        let of_size = |table: &SizeTable, code: &str| {
+            let measures = Measures::from(table.size_body(code).map_err(FittingError::input)?);
+            Ok((sex, measures, code.to_owned()))
+        };
+        let middle = |codes: &[&str]| codes.get(codes.len() / 2).map_or_else(String::new, |code| (*code).to_owned());
+        match &self.source {
+            ChoiceSource::Style(style) => {
+                let table = style.sizes().map_err(FittingError::input)?;
+                of_size(&table, &middle(&table.codes()))
+            }
+            ChoiceSource::Mesh(own) => match &own.sizes {
+                Some(sizes) => of_size(&sizes.table, &middle(&sizes.table.codes())),
+                None => Ok((own.made_for.body.sex, own.made_for.body.measures, own::UNKNOWN.to_owned())),
+            },
+            ChoiceSource::Pattern(package) => match package.graded().map_err(FittingError::input)? {
+                Some(graded) => {
+                    let made = graded.made();
+                    let codes: Vec<&str> = made.iter().map(|(code, _)| code.as_str()).collect();
+                    of_size(&graded.table, &middle(&codes))
+                }
+                None => {
+                    let women = SizeTable::embedded("women").map_err(FittingError::internal)?;
+                    let pattern = package.parse().map_err(FittingError::input)?;
+                    let code = draping::fitting_size(&pattern, &women, sex).map_err(FittingError::input)?;
+                    Ok((sex, of_size(&women, &code)?.1, AS_DRAFTED.to_owned()))
+                }
+            },
+        }
+    }
+
+    /// Measures of the body that a size is for; none where it is a size of no table.
+    ///
+    /// # Errors
+    /// A size that is not made.
+    pub fn body_of(&self, size: &str) -> Result<Option<Measures>, FittingError> {
+        let table = match &self.source {
+            ChoiceSource::Style(style) => Some(style.sizes().map_err(FittingError::input)?),
+            ChoiceSource::Mesh(own) => own.sizes.as_ref().map(|sizes| sizes.table.clone()),
+            ChoiceSource::Pattern(package) => {
+                return Ok(package.body_of(size).map_err(FittingError::input)?.map(|body| body.measures));
+            }
+        };
+        table.map(|table| table.size_body(size).map(Measures::from)).transpose().map_err(FittingError::input)
     }
 
     /// The size that fits, or how the one asked for does; none of a mesh that has no sizes.
@@ -113,22 +236,35 @@ impl Choice {
     /// # Errors
     /// A size that is not made, a mesh or pattern that cannot be laid on the body.
     pub fn dress(&self, size: Option<&str>, wearer: &Body) -> Result<Worn, FittingError> {
-        let worn = |garments| Worn { garments, fit: None, mesh: None };
+        let mut worn = Worn { garments: Vec::new(), fit: None, mesh: None };
         match &self.source {
             ChoiceSource::Style(style) => {
                 let size = size.ok_or_else(|| FittingError::Internal(format!("{} has no size", self.name)))?;
-                Ok(worn(vec![style.dress(size, wearer).map_err(FittingError::input)?]))
+                let dressed = match &self.own.fabric {
+                    Some(fabric) => style.dress_in(fabric, size, wearer),
+                    None => style.dress(size, wearer),
+                };
+                worn.garments.push(dressed.map_err(FittingError::input)?);
             }
             ChoiceSource::Mesh(mesh) => {
-                let dressed = own::dress(mesh, size.filter(|size| *size != own::UNKNOWN), wearer);
+                let size = size.filter(|size| *size != own::UNKNOWN);
+                let dressed = own::dress_in(mesh, self.own.fabric.as_ref(), size, wearer);
                 let dressed = dressed.map_err(FittingError::input)?;
-                Ok(Worn { garments: dressed.garments, fit: None, mesh: Some(dressed.report) })
+                (worn.garments, worn.mesh) = (dressed.garments, Some(dressed.report));
             }
             ChoiceSource::Pattern(package) => {
                 let size = size.unwrap_or_else(|| package.own_size());
-                Ok(worn(vec![package.dress(size, wearer).map_err(FittingError::input)?]))
+                let dressed = match &self.own.fabric {
+                    Some(fabric) => package.dress_in(fabric, size, wearer),
+                    None => package.dress(size, wearer),
+                };
+                worn.garments.push(dressed.map_err(FittingError::input)?);
             }
         }
+        for garment in &mut worn.garments {
+            garment.layer = self.own.layer.unwrap_or(garment.layer);
+        }
+        Ok(worn)
     }
 
     /// Sizes the garment for measures and bakes it onto a body.

@@ -1,8 +1,5 @@
 //! Somebody dressed: a shopper of the measures that were taken, or the mannequin that stands in for one.
 
-use toile_assets::body::{Body, Measures, Sex};
-use toile_assets::sizes::Population;
-use toile_assets::wardrobe::own;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::triple_buffer::Reader;
 use toile_sensors::frame::Joints;
@@ -64,24 +61,24 @@ pub fn shopper(session: &Session, wish: &Wish) -> Result<Dressed, FittingError> 
     Dressed::make(Recipe::choose(&session.name, &measured, wish)?, &track[0], false)
 }
 
-/// The mannequin that stands in the mirror while nobody is measured: the middle size of the outermost garment that has sizes, as
-/// `pose` has it, and the others in their middle sizes on it.
+/// The mannequin that stands in the mirror while nobody is measured: the body that the outermost garment is shown on, as `pose` has
+/// it, each garment in its own middle size or the one that is asked for.
 ///
 /// # Errors
 /// A garment that there is not, a size that is not made.
 pub fn mannequin(wish: &Wish, pose: &Joints) -> Result<Dressed, FittingError> {
-    let average = Body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(FittingError::internal)?;
-    let (mut garments, mut body) = (Vec::new(), (Sex::Female, average.measures));
+    let (mut garments, mut body) = (Vec::new(), None);
     for choice in wish.choices()? {
-        let offer = choice.offer(&average)?;
-        let middle = offer.as_ref().map_or(own::UNKNOWN, |o| &o.sizes[o.sizes.len() / 2].code);
-        let size = wish.size.clone().unwrap_or_else(|| middle.to_owned());
-        if let Some(table) = offer.map(|o| o.table).filter(|table| table.size(&size).is_ok() || wish.size.is_some()) {
-            let sex = if table.population == Population::Men { Sex::Male } else { Sex::Female };
-            body = (sex, Measures::from(table.size_body(&size).map_err(FittingError::input)?));
-        }
+        let (sex, measures, size) = choice.shown_on()?;
+        let (measures, size) = match &wish.size {
+            Some(asked) => (choice.body_of(asked)?.unwrap_or(measures), asked.clone()),
+            None => (measures, size),
+        };
+        body = Some((sex, measures));
         garments.push((choice.name, size));
     }
-    let (sex, measures) = body;
+    let Some((sex, measures)) = body else {
+        return Err(FittingError::Input("no garment is named; name one in [wear]".into()));
+    };
     Dressed::make(Recipe::of_body("mannequin", sex, &measures, garments, wish.quality), pose, true)
 }

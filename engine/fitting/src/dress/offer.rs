@@ -1,8 +1,10 @@
 //! What there is to choose from of a garment: its sizes with their girths, and the ease that feels right.
 
 use toile_assets::adapt::OwnMesh;
-use toile_assets::body::{Body, Sex};
-use toile_assets::draping::{self, AS_DRAFTED, GradedPattern, PatternEase, PatternPackage, TO_MEASURE, ZoneEase};
+use toile_assets::body::{Body, Measures, Sex};
+use toile_assets::draping::{
+    self, AS_DRAFTED, PatternEase, PatternPackage, PatternSizes, SizeGirths, TO_MEASURE, ZoneEase,
+};
 use toile_assets::pattern::Pattern;
 use toile_assets::sizes::{GarmentKind, Girth, SizeBody, SizeError, SizeTable};
 use toile_assets::wardrobe::own;
@@ -52,13 +54,13 @@ impl GarmentOffer {
         Ok(Some(Self { garment, kind: mesh.kind, table: mesh.table.clone(), sizes, ease }))
     }
 
-    /// A sewn pattern. Its girths are those of its panels: on the bodies of its sizes where it has any, else on `wearer`.
+    /// A sewn pattern. Its girths are those of its panels: as its package has them, or on the bodies of its sizes where it has any, else on `wearer`.
     ///
     /// # Errors
     /// A pattern that cannot be read, or laid around the body.
     pub fn of_pattern(package: &PatternPackage, wearer: &Body) -> Result<Self, FittingError> {
-        match package.graded().map_err(FittingError::input)? {
-            Some(graded) => in_sizes(package, &graded),
+        match &package.sizes {
+            Some(sizes) => in_sizes(package, sizes),
             None => as_drafted(package, wearer),
         }
     }
@@ -112,10 +114,7 @@ fn ranges(comfort: impl IntoIterator<Item = (Girth, [f32; 2])>) -> Vec<EaseRange
 }
 
 /// Every size of a table with the finished girths of the garment.
-fn made(
-    table: &SizeTable,
-    finished: impl Fn(&SizeBody) -> Vec<(Girth, f32)>,
-) -> Result<Vec<MadeSize>, SizeError> {
+fn made(table: &SizeTable, finished: impl Fn(&SizeBody) -> Vec<(Girth, f32)>) -> Result<Vec<MadeSize>, SizeError> {
     let size = |code: &str| {
         let finished = finished(&table.size_body(code)?);
         let zones = finished.into_iter().map(|(zone, girth_m)| ZoneGirth { zone, girth_m }).collect();
@@ -124,17 +123,40 @@ fn made(
     table.codes().into_iter().map(size).collect()
 }
 
+/// The girths of every size of a pattern, by its panels on the bodies that the sizes are for; none of a pattern without sizes.
+///
+/// # Errors
+/// A pattern that cannot be read, or laid around a body.
+pub fn girths(package: &PatternPackage) -> Result<Vec<SizeGirths>, FittingError> {
+    let Some(graded) = package.graded().map_err(FittingError::input)? else { return Ok(Vec::new()) };
+    let mut girths = Vec::new();
+    for (size, pattern) in graded.made() {
+        let Some(own) = package.body_of(&size).map_err(FittingError::input)? else { continue };
+        let made = made_size(size, &on(package, &pattern, &own)?.judged(&[graded.girth]), &own);
+        let at = |zone: Girth| {
+            let girth = made.zones.iter().find(|z| z.zone == zone).map(|z| f64::from(z.girth_m));
+            girth.map(|m| (m * 1e4).round() * 0.1)
+        };
+        let [chest_mm, waist_mm, hip_mm] = [Girth::Chest, Girth::Waist, Girth::Hip].map(at);
+        girths.push(SizeGirths { size: made.code, chest_mm, waist_mm, hip_mm });
+    }
+    Ok(girths)
+}
+
 /// All sizes of a graded pattern. As wide a range of ease as garments of its kind have feels right around what the sizes leave
 /// the bodies that they are for, in the mean.
-fn in_sizes(package: &PatternPackage, graded: &GradedPattern) -> Result<GarmentOffer, FittingError> {
-    let (mut sizes, mut eases) = (Vec::new(), Vec::new());
-    for (code, pattern) in graded.made() {
-        let Some(own) = package.body_of(&code).map_err(FittingError::input)? else { continue };
-        let found = on(package, &pattern, &own)?.judged(&[graded.girth]);
-        eases.extend(found.iter().map(|z| (z.zone, z.ease() as f32)));
-        sizes.push(made_size(code, &found, &own));
+fn in_sizes(package: &PatternPackage, sizes: &PatternSizes) -> Result<GarmentOffer, FittingError> {
+    let table = SizeTable::embedded(&sizes.table).map_err(FittingError::input)?;
+    let girths = if sizes.girths.is_empty() { girths(package)? } else { sizes.girths.clone() };
+    let (mut made, mut eases) = (Vec::new(), Vec::new());
+    for size in &girths {
+        let own = Measures::from(table.size_body(&size.size).map_err(FittingError::input)?);
+        let zone = |zone: Girth| size.at(zone).map(|girth| ZoneGirth { zone, girth_m: girth as f32 });
+        let zones: Vec<ZoneGirth> = Girth::ALL.into_iter().filter_map(zone).collect();
+        eases.extend(zones.iter().map(|z| (z.zone, z.girth_m - z.zone.of(&own))));
+        made.push(MadeSize { code: size.size.clone(), zones });
     }
-    let usual = own::comfort_of(graded.kind).map_err(FittingError::input)?;
+    let usual = own::comfort_of(sizes.kind).map_err(FittingError::input)?;
     let around = usual.into_iter().map(|(zone, [least, most])| {
         let at: Vec<f32> = eases.iter().filter(|(at, _)| *at == zone).map(|(_, ease)| *ease).collect();
         let mean = at.iter().sum::<f32>() / at.len().max(1) as f32;
@@ -142,7 +164,7 @@ fn in_sizes(package: &PatternPackage, graded: &GradedPattern) -> Result<GarmentO
         (zone, [least + shift, most + shift])
     });
     let ease = ranges(around);
-    Ok(GarmentOffer { garment: package.name.clone(), kind: graded.kind, table: graded.table.clone(), sizes, ease })
+    Ok(GarmentOffer { garment: package.name.clone(), kind: sizes.kind, table, sizes: made, ease })
 }
 
 /// A pattern without sizes: what it is, its panels say.

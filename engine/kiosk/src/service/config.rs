@@ -13,6 +13,7 @@ use toile_engine::workers::SHARES;
 use super::config_keys;
 use super::session::SessionTimes;
 use crate::error::KioskError;
+use toile_assets::catalogue::{Catalogue, CatalogueItem};
 use toile_fitting::dress::measured::ShopperFacts;
 use toile_fitting::dress::wish::Wish;
 use toile_track::tape_readings::TapeReadings;
@@ -55,8 +56,11 @@ pub struct Config {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct WearConfig {
-    /// Garments of the wardrobe, inner first.
+    /// What is worn first, inner first: garments of the wardrobe, files of patterns, packages or meshes, article numbers of
+    /// the catalogue.
     pub garments: Vec<String>,
+    /// A folder of garment packages that hang in place of the built-in wardrobe.
+    pub catalogue: Option<PathBuf>,
     /// A size for everybody.
     pub size: Option<String>,
     /// Tested settings of the cloth.
@@ -195,7 +199,12 @@ pub struct CrashConfig {
 
 impl Default for WearConfig {
     fn default() -> Self {
-        Self { garments: vec!["sun-dress".into()], size: None, quality: Quality::default().name().into() }
+        Self {
+            garments: vec!["sun-dress".into()],
+            catalogue: None,
+            size: None,
+            quality: Quality::default().name().into(),
+        }
     }
 }
 
@@ -264,7 +273,33 @@ impl Config {
     pub fn open(path: Option<&Path>) -> Result<Self, KioskError> {
         let Some(path) = path else { return Ok(Self::default()) };
         let text = file::read_text(path, &CONFIGURATION).map_err(KioskError::input)?;
-        Self::parse(&path.display().to_string(), &text)
+        let mut config = Self::parse(&path.display().to_string(), &text)?;
+        config.find_articles(names_garments(&text))?;
+        Ok(config)
+    }
+
+    /// Puts packages in place of the catalogue's article numbers; where nothing is named, its first garment is worn.
+    fn find_articles(&mut self, named: bool) -> Result<(), KioskError> {
+        let Some(folder) = &self.wear.catalogue else { return Ok(()) };
+        let catalogue = Catalogue::read(folder).map_err(KioskError::input)?;
+        let shown = |item: &CatalogueItem| item.path.display().to_string();
+        if !named {
+            let first = catalogue.items.first().map(shown);
+            let none = || {
+                KioskError::Input(format!(
+                    "{}: no garment in it can be used; see toile catalogue check",
+                    folder.display()
+                ))
+            };
+            self.wear.garments = vec![first.ok_or_else(none)?];
+            return Ok(());
+        }
+        for name in &mut self.wear.garments {
+            if let Some(item) = catalogue.items.iter().find(|item| item.manifest.article == *name) {
+                *name = shown(item);
+            }
+        }
+        Ok(())
     }
 
     /// Reads a text; `file` is its name in errors.
@@ -324,6 +359,11 @@ impl Config {
         let times = &self.session;
         SessionTimes { step_in_ns: ns(times.step_in_s), step_out_ns: ns(times.step_out_s), wipe_ns: ns(times.wipe_s) }
     }
+}
+
+/// Whether a configuration says what is worn first.
+fn names_garments(text: &str) -> bool {
+    text.parse::<toml::Table>().is_ok_and(|table| table.get("wear").is_some_and(|wear| wear.get("garments").is_some()))
 }
 
 /// Seconds of the configuration, none of which is negative, as the loop counts them.

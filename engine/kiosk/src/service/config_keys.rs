@@ -7,7 +7,7 @@ use crate::error::KioskError;
 
 /// Every table and its keys.
 pub const KEYS: [(&str, &[&str]); 9] = [
-    ("wear", &["garments", "size", "quality"]),
+    ("wear", &["garments", "catalogue", "size", "quality"]),
     ("shopper", &["sex", "age", "measures"]),
     ("sensor", &["source", "session", "pause_s", "vmc"]),
     ("session", &["step_in_s", "measure_s", "step_out_s", "wipe_s"]),

@@ -9,7 +9,6 @@ use toile_engine::frame::{Frame, Snapshot};
 use toile_fitting::dress::dressed::Dressed;
 use toile_fitting::dress::measured::{self, ShopperFacts};
 use toile_fitting::dress::recipe::Recipe;
-use toile_fitting::dress::wish;
 use toile_fitting::live::background::{BackgroundJob, Finished};
 use toile_fitting::live::dresser::ShopperSource;
 use toile_sensors::frame::Joints;
@@ -160,7 +159,7 @@ impl DressingContext {
     }
 
     fn recipe(&self, client: &MeasuredVisitor, worn: &Outfit) -> Result<Recipe, KioskError> {
-        let mut styles = Vec::with_capacity(worn.len());
+        let mut population = Population::Mixed;
         let mut garments = Vec::with_capacity(worn.len());
         for w in worn {
             let item = self
@@ -169,10 +168,12 @@ impl DressingContext {
                 .get(w.item)
                 .ok_or_else(|| KioskError::internal("a garment is not in the wardrobe"))?;
             let size = item.sizes.get(w.size).ok_or_else(|| KioskError::internal("a size is not made"))?;
-            styles.push(item.style.clone());
-            garments.push((item.style.name.clone(), size.clone()));
+            if population == Population::Mixed {
+                population = item.population;
+            }
+            garments.push((item.name.clone(), size.clone()));
         }
-        let sex = measured::sex(client.known.population, wish::population(&styles)?);
+        let sex = measured::sex(client.known.population, population);
         Recipe::of("shopper", &client.known.measured, sex, garments, self.quality)
     }
 

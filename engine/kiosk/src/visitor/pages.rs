@@ -104,7 +104,8 @@ impl PageWriter<'_> {
 
     /// The name of a garment.
     fn garment(&self, item: &WardrobeItem) -> String {
-        item.word().map_or_else(|| item.style.title.clone(), |key| self.words(key))
+        let language = self.translation.language().tag();
+        item.word().map_or_else(|| item.title(language).to_owned(), |key| self.words(key))
     }
 
     /// The garment in hand.

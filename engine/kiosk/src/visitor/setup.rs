@@ -36,15 +36,8 @@ impl VisitorSetup {
         if let Some(fault) = mount.fault() {
             return Err(KioskError::Input(fault));
         }
-        let wardrobe = Arc::new(Wardrobe::stock()?);
-        let unknown = config.wear.garments.iter().find(|name| wardrobe.find(name).is_none());
-        if let Some(name) = unknown {
-            let known: Vec<&str> = wardrobe.items.iter().map(|item| item.style.name.as_str()).collect();
-            return Err(KioskError::Input(format!(
-                "wear.garments: {name} is not in the wardrobe; choose of {}",
-                known.join(", ")
-            )));
-        }
+        let tell = |why: &str| eprintln!("toile: left out of the catalogue: {why}");
+        let wardrobe = Arc::new(Wardrobe::shop(config.wear.catalogue.as_deref(), &config.wear.garments, tell)?);
         // Measures by tape are the visit's: they are listed, and can be removed.
         let mut facts = config.shopper.facts().map_err(KioskError::Input)?;
         let tape = std::mem::take(&mut facts.tape);

@@ -1,11 +1,12 @@
 //! Fit of a size: how a size sits at each zone, as a shopper reads it, and why.
 
 use toile_assets::sizes::{Girth, Population};
-use toile_fitting::dress::{measured, size};
+use toile_fitting::dress::measured;
+use toile_fitting::dress::offer::GarmentOffer;
 use toile_track::estimate::Estimate;
 use toile_track::fit::measuring::MEASURES;
 use toile_track::measure::{Measurements, Source};
-use toile_track::recommend::{Recommendation, Verdict};
+use toile_track::recommend::{MadeSize, Recommendation, Verdict};
 use toile_track::tape_readings::{BodyEstimate, TapeReadings};
 
 use super::measure_entry::OwnMeasure;
@@ -269,9 +270,36 @@ pub struct SizeFit {
     pub zones: Vec<ZoneFit>,
     /// Set where the primary girth lies outside of what is made.
     pub outside: Option<OutOfRange>,
+    /// What there is to choose from.
+    pub choice: SizeChoice,
+}
+
+/// What there is to choose from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SizeChoice {
+    /// Several sizes.
+    Several,
+    /// One size: how it fits is known.
+    One,
+    /// A garment that says nothing of its size: it is shown as it was made.
+    Unknown,
 }
 
 impl SizeFit {
+    /// Of a garment that says nothing of its size.
+    const fn unknown() -> Self {
+        Self {
+            size: 0,
+            best: 0,
+            other: None,
+            probability: 1.0,
+            girth_to_take: None,
+            zones: Vec::new(),
+            outside: None,
+            choice: SizeChoice::Unknown,
+        }
+    }
+
     /// Whether how some zone fits is not known.
     pub fn has_unknown(&self) -> bool {
         self.zones.iter().any(|zone| zone.feel.is_none())
@@ -292,35 +320,37 @@ pub enum OutOfRange {
 /// # Errors
 /// A garment that no size can be named of.
 pub fn judge(item: &WardrobeItem, known: &VisitorMeasures, size: Option<usize>) -> Result<SizeFit, KioskError> {
+    let Some(offer) = &item.offer else { return Ok(SizeFit::unknown()) };
     let code = size.and_then(|s| item.sizes.get(s)).map(String::as_str);
-    let judged = size::judge(&item.style, code, &known.measured)?;
+    let judged = offer.judge(code, &known.measured)?;
     let place = |code: &str| item.sizes.iter().position(|s| s == code);
     let chosen = place(&judged.size).unwrap_or_default();
     let best = judged.sizes.iter().max_by(|a, b| a.probability.total_cmp(&b.probability));
     let best = if code.is_none() { chosen } else { best.and_then(|s| place(&s.size)).unwrap_or(chosen) };
     let beside = if chosen + 1 < item.sizes.len() { Some(chosen + 1) } else { chosen.checked_sub(1) };
     let other = judged.runner_up.as_ref().and_then(|r| place(&r.size)).filter(|o| *o != chosen).or(beside);
-    let zones: Vec<ZoneFit> = zones(item, known, &judged);
+    let zones: Vec<ZoneFit> = zones(offer, known, &judged);
     Ok(SizeFit {
         size: chosen,
         best,
         other,
         probability: judged.probability,
         girth_to_take: judged.girth_to_take.as_ref().map(|t| t.zone),
-        outside: zones.iter().find(|z| z.primary && z.feel.is_some()).and_then(|z| outside(item, z)),
+        outside: zones.iter().find(|z| z.primary && z.feel.is_some()).and_then(|z| outside(offer, z)),
+        choice: if offer.is_single() { SizeChoice::One } else { SizeChoice::Several },
         zones,
     })
 }
 
-fn zones(item: &WardrobeItem, known: &VisitorMeasures, judged: &Recommendation) -> Vec<ZoneFit> {
-    let [_, _, chest, waist, hip] = known.measured.completed(item.table.population);
+fn zones(offer: &GarmentOffer, known: &VisitorMeasures, judged: &Recommendation) -> Vec<ZoneFit> {
+    let [_, _, chest, waist, hip] = known.measured.completed(offer.table.population);
     let zone = |z: &toile_track::recommend::ZoneFit| {
         let body = match z.zone {
             Girth::Chest => chest,
             Girth::Waist => waist,
             Girth::Hip => hip,
         };
-        let comfort_m = item.style.comfort_mm.at(z.zone)?;
+        let comfort_m = offer.comfort(z.zone)?;
         let place = |ease: f32| (ease - comfort_m[0]) / (comfort_m[1] - comfort_m[0]).max(1e-3);
         let guessed = z.verdict == Verdict::Unknown || known.is_unknown(z.zone);
         let feel = (!guessed).then(|| Feel::at(place(z.ease)));
@@ -341,8 +371,9 @@ fn zones(item: &WardrobeItem, known: &VisitorMeasures, judged: &Recommendation) 
     judged.zones.iter().filter_map(zone).collect()
 }
 
-fn outside(item: &WardrobeItem, zone: &ZoneFit) -> Option<OutOfRange> {
-    let (first, last) = (item.table.sizes.first()?, item.table.sizes.last()?);
+fn outside(offer: &GarmentOffer, zone: &ZoneFit) -> Option<OutOfRange> {
+    let size = |made: &MadeSize| offer.table.size(&made.code).ok();
+    let (first, last) = (offer.sizes.first().and_then(size)?, offer.sizes.last().and_then(size)?);
     match zone.body.value {
         v if v < first.range(zone.zone)[0] => Some(OutOfRange::Smaller),
         v if v > last.range(zone.zone)[1] => Some(OutOfRange::Larger),

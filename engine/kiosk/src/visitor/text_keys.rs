@@ -55,6 +55,8 @@ keys! {
     PartlyCure = "partly-cure",
     FittingSize = "fitting-size",
     FittingBest = "fitting-best",
+    FittingOneSize = "fitting-one-size",
+    FittingSizeUnknown = "fitting-size-unknown",
     FittingSure = "fitting-sure",
     FittingUnsure = "fitting-unsure",
     FittingBetter = "fitting-better",

@@ -2,10 +2,15 @@
 //!
 //! The eight layers, and where a garment is held on the body, are those of Ugur 2008, sections 6.1 and 6.2.
 
-use toile_assets::fabric::Fabric;
-use toile_assets::sizes::{GarmentKind, SizeTable};
+use std::path::Path;
+
+use toile_assets::body::{Body, Measures, Sex};
+use toile_assets::catalogue::{Catalogue, CatalogueItem, ManifestColour, Words, word};
+use toile_assets::sizes::{GarmentKind, Population};
 use toile_assets::wardrobe;
-use toile_assets::wardrobe::style::Style;
+use toile_assets::wardrobe::own;
+use toile_fitting::dress::choice::{Choice, ChoiceSource};
+use toile_fitting::dress::offer::GarmentOffer;
 
 use super::texts::TextKey;
 use crate::error::KioskError;
@@ -63,16 +68,18 @@ enum BodyHalf {
 }
 
 /// A colour that a garment comes in, with its name, for not everybody tells colours apart.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Colour {
     /// Key of the colour's name in the pages' texts.
     pub word: TextKey,
+    /// What a shop calls it in each language, in place of that.
+    pub words: Option<Words>,
     /// sRGB, 0 .. 1.
     pub srgb: [f32; 3],
 }
 
 const fn colour(word: TextKey, srgb: [f32; 3]) -> Colour {
-    Colour { word, srgb }
+    Colour { word, words: None, srgb }
 }
 
 /// Summer clothes; the first is that of the fabric.
@@ -111,13 +118,31 @@ const WOOL: [Colour; 5] = [
     colour(TextKey::ColourBrick, [0.62, 0.24, 0.19]),
 ];
 
+/// What a garment is called.
+#[derive(Debug, Clone, PartialEq)]
+enum ItemName {
+    /// A word of the pages.
+    Word(TextKey),
+    /// In one language.
+    Title(String),
+    /// What a shop calls it, by language.
+    Words(Words),
+}
+
 /// A garment of the wardrobe.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WardrobeItem {
-    /// How it is cut and what it is made of.
-    pub style: Style,
-    /// Size table that it is cut by.
-    pub table: SizeTable,
+    /// What it is asked for by: a garment that is built in, or the path of its file.
+    pub name: String,
+    /// A shop's article number.
+    pub article: Option<String>,
+    /// What it costs, as it is shown.
+    pub price: Option<String>,
+    title: ItemName,
+    /// Its sizes, as one is chosen by; none where it is shown as it was made, its size unknown.
+    pub offer: Option<GarmentOffer>,
+    /// Whose bodies it is made for.
+    pub population: Population,
     /// The codes of its sizes, smallest first.
     pub sizes: Vec<String>,
     /// The colours that it comes in, first that of its fabric.
@@ -131,35 +156,136 @@ pub struct WardrobeItem {
     covers: &'static [BodyHalf],
 }
 
-impl WardrobeItem {
-    fn new(name: &str) -> Result<Self, KioskError> {
-        let style = wardrobe::style(name).map_err(KioskError::input)?;
-        let table = style.sizes().map_err(KioskError::input)?;
-        let sizes: Vec<String> = table.codes().into_iter().map(str::to_owned).collect();
-        let (layer, place, held, covers): (_, _, _, &'static [BodyHalf]) = match style.kind {
-            GarmentKind::Trousers | GarmentKind::Skirt => (Layer::Shirt, 0, FittingLevel::Waist, &[BodyHalf::Lower]),
-            GarmentKind::Tshirt => (Layer::Shirt, 1, FittingLevel::Shoulders, &[BodyHalf::Upper]),
-            GarmentKind::Jacket => (Layer::Jacket, 0, FittingLevel::Shoulders, &[BodyHalf::Upper]),
-            GarmentKind::Dress => (Layer::Shirt, 1, FittingLevel::Shoulders, &[BodyHalf::Upper, BodyHalf::Lower]),
+/// Where a kind of garment is worn and held, and what it covers.
+struct WornPlace {
+    layer: Layer,
+    place: u8,
+    held: FittingLevel,
+    covers: &'static [BodyHalf],
+}
+
+impl WornPlace {
+    /// Of what is not known it is taken that nothing of its layer goes with it.
+    const fn of(kind: Option<GarmentKind>) -> Self {
+        let (layer, place, held, covers): (_, _, _, &'static [BodyHalf]) = match kind {
+            Some(GarmentKind::Trousers | GarmentKind::Skirt) => {
+                (Layer::Shirt, 0, FittingLevel::Waist, &[BodyHalf::Lower])
+            }
+            Some(GarmentKind::Tshirt) => (Layer::Shirt, 1, FittingLevel::Shoulders, &[BodyHalf::Upper]),
+            Some(GarmentKind::Jacket) => (Layer::Jacket, 0, FittingLevel::Shoulders, &[BodyHalf::Upper]),
+            Some(GarmentKind::Dress) | None => {
+                (Layer::Shirt, 1, FittingLevel::Shoulders, &[BodyHalf::Upper, BodyHalf::Lower])
+            }
         };
-        let own = Fabric::built_in(&style.fabric).map_err(KioskError::input)?.colour;
-        Ok(Self { colours: palette(style.kind, own), style, table, sizes, layer, place, held, covers })
+        Self { layer, place, held, covers }
+    }
+}
+
+impl WardrobeItem {
+    /// A garment that is built in, or the file of one.
+    ///
+    /// # Errors
+    /// A garment that there is not, a file, sizes or a fabric that cannot be used.
+    pub fn new(name: &str) -> Result<Self, KioskError> {
+        Self::of(&Choice::find(name)?)
     }
 
-    /// Its name in words; none for a garment that has no word, which goes by its title.
-    pub fn word(&self) -> Option<TextKey> {
-        match self.style.name.as_str() {
-            "sun-dress" => Some(TextKey::GarmentSunDress),
-            "t-shirt" => Some(TextKey::GarmentTShirt),
-            "jacket" => Some(TextKey::GarmentJacket),
-            "wide-trousers" => Some(TextKey::GarmentWideTrousers),
-            _ => None,
+    /// A garment of a shop's catalogue.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn of_package(item: &CatalogueItem) -> Result<Self, KioskError> {
+        let choice = Choice::open(&item.path)?;
+        let manifest = &item.manifest;
+        let mut hung = Self::of(&choice)?;
+        let own = |c: &ManifestColour| Colour { word: TextKey::ColourOwn, words: Some(c.name.clone()), srgb: c.srgb };
+        if !manifest.colours.is_empty() {
+            hung.colours = manifest.colours.iter().map(own).collect();
         }
+        hung.title = ItemName::Words(manifest.names.clone());
+        hung.article = Some(manifest.article.clone());
+        hung.price = manifest.price.as_ref().map(ToString::to_string);
+        hung.layer = match manifest.layer {
+            Some(1) => Layer::Underwear,
+            Some(2 | 3) => Layer::Shirt,
+            Some(4) => Layer::Jacket,
+            Some(_) => Layer::Coat,
+            None => hung.layer,
+        };
+        Ok(hung)
+    }
+
+    fn of(choice: &Choice) -> Result<Self, KioskError> {
+        let average = Body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(KioskError::internal)?;
+        let offer = choice.offer(&average)?;
+        let kind = match &choice.source {
+            ChoiceSource::Mesh(own) => own.measures.kind,
+            ChoiceSource::Style(_) | ChoiceSource::Pattern(_) => offer.as_ref().map(|offer| offer.kind),
+        };
+        let unsized_code = || vec![own::UNKNOWN.to_owned()];
+        let sizes = offer.as_ref().map_or_else(unsized_code, |o| o.sizes.iter().map(|s| s.code.clone()).collect());
+        let WornPlace { layer, place, held, covers } = WornPlace::of(kind);
+        let colours = palette(kind.unwrap_or(GarmentKind::Dress), choice.fabric()?.colour);
+        Ok(Self {
+            name: choice.name.clone(),
+            article: None,
+            price: None,
+            title: title(choice),
+            offer,
+            population: choice.population()?,
+            sizes,
+            colours,
+            layer,
+            place,
+            held,
+            covers,
+        })
+    }
+
+    /// Its name in words of the pages; none for a garment that has no word there, which goes by its title.
+    pub const fn word(&self) -> Option<TextKey> {
+        match self.title {
+            ItemName::Word(key) => Some(key),
+            ItemName::Title(_) | ItemName::Words(_) => None,
+        }
+    }
+
+    /// Its title in a language, where it has no word.
+    pub fn title(&self, language: &str) -> &str {
+        match &self.title {
+            ItemName::Word(key) => key.name(),
+            ItemName::Title(title) => title,
+            ItemName::Words(words) => word(words, language),
+        }
+    }
+
+    /// Whether it goes by a name or an article number.
+    fn is(&self, name: &str) -> bool {
+        self.name == name || self.article.as_deref() == Some(name)
     }
 
     /// Whether both cannot be worn at once: of one layer, over the same half of the body.
     pub fn excludes(&self, other: &Self) -> bool {
         self.layer == other.layer && self.covers.iter().any(|half| other.covers.contains(half))
+    }
+}
+
+fn title(choice: &Choice) -> ItemName {
+    let key = match choice.name.as_str() {
+        "sun-dress" => Some(TextKey::GarmentSunDress),
+        "t-shirt" => Some(TextKey::GarmentTShirt),
+        "jacket" => Some(TextKey::GarmentJacket),
+        "wide-trousers" => Some(TextKey::GarmentWideTrousers),
+        _ => None,
+    };
+    match (key, &choice.source) {
+        (Some(key), _) => ItemName::Word(key),
+        (None, ChoiceSource::Style(style)) => ItemName::Title(style.title.clone()),
+        (None, ChoiceSource::Pattern(package)) => ItemName::Title(package.name.clone()),
+        (None, ChoiceSource::Mesh(own)) => {
+            let file = Path::new(&choice.name).file_stem().map(|stem| stem.to_string_lossy().into_owned());
+            ItemName::Title(own.measures.name.clone().or(file).unwrap_or_else(|| choice.name.clone()))
+        }
     }
 }
 
@@ -174,7 +300,7 @@ fn palette(kind: GarmentKind, own: [f32; 3]) -> Vec<Colour> {
     if ours[0].srgb == own {
         return ours.to_vec();
     }
-    [&[colour(TextKey::ColourOwn, own)], &ours[..4]].concat()
+    std::iter::once(colour(TextKey::ColourOwn, own)).chain(ours[..4].iter().cloned()).collect()
 }
 
 /// A garment that is worn.
@@ -199,19 +325,51 @@ pub struct Wardrobe {
 }
 
 impl Wardrobe {
-    /// The garments of the wardrobe in the order of dressing.
+    /// The garments that are built in, in the order of dressing.
     ///
     /// # Errors
     /// A garment whose file, sizes or fabric cannot be used.
     pub fn stock() -> Result<Self, KioskError> {
-        let mut items = wardrobe::names().into_iter().map(WardrobeItem::new).collect::<Result<Vec<_>, _>>()?;
-        items.sort_by_key(|item| (item.layer, item.place));
-        Ok(Self { items })
+        Ok(Self::hung(wardrobe::names().into_iter().map(WardrobeItem::new).collect::<Result<_, _>>()?))
     }
 
-    /// The place of a garment by its name.
+    /// A shop's own garments, and those that are named besides; what cannot be used is left out and told.
+    ///
+    /// # Errors
+    /// A catalogue that cannot be read, nothing in it that can be worn, a named garment that cannot be used.
+    pub fn shop(folder: Option<&Path>, named: &[String], mut tell: impl FnMut(&str)) -> Result<Self, KioskError> {
+        let Some(folder) = folder else {
+            let mut stock = Self::stock()?.items;
+            for name in named.iter().filter(|name| !wardrobe::names().contains(&name.as_str())) {
+                stock.push(WardrobeItem::new(name)?);
+            }
+            return Ok(Self::hung(stock));
+        };
+        let catalogue = Catalogue::read(folder).map_err(KioskError::input)?;
+        catalogue.refused.iter().for_each(|refused| tell(&refused.why));
+        let mut items = Vec::with_capacity(catalogue.items.len());
+        for item in &catalogue.items {
+            match WardrobeItem::of_package(item) {
+                Ok(hung) => items.push(hung),
+                Err(why) => tell(&why.to_string()),
+            }
+        }
+        for name in named {
+            if !items.iter().any(|item| item.is(name)) {
+                items.push(WardrobeItem::new(name)?);
+            }
+        }
+        Ok(Self::hung(items))
+    }
+
+    fn hung(mut items: Vec<WardrobeItem>) -> Self {
+        items.sort_by_key(|item| (item.layer, item.place));
+        Self { items }
+    }
+
+    /// The place of a garment by its name or article number.
     pub fn find(&self, name: &str) -> Option<usize> {
-        self.items.iter().position(|item| item.style.name == name)
+        self.items.iter().position(|item| item.is(name))
     }
 
     /// Puts a garment on: what it excludes comes off, and the rest stays in the order of dressing.
@@ -237,7 +395,7 @@ mod tests {
         let wardrobe = wardrobe();
         let worn = |name: &&str| WornItem { item: wardrobe.find(name).unwrap(), size: 0, colour: 0 };
         let outfit = names.iter().map(worn).fold(Outfit::new(), |outfit, w| wardrobe.put_on(&outfit, w));
-        outfit.iter().map(|w| wardrobe.items[w.item].style.name.clone()).collect()
+        outfit.iter().map(|w| wardrobe.items[w.item].name.clone()).collect()
     }
 
     #[test]
@@ -272,16 +430,62 @@ mod tests {
     #[test]
     fn every_garment_has_sizes_a_word_and_colours_with_names_of_their_own() {
         for item in wardrobe().items {
-            assert!(item.word().is_some() && item.sizes.len() >= 3, "{}", item.style.name);
+            assert!(item.word().is_some() && item.sizes.len() >= 3, "{}", item.name);
             assert!((4..=5).contains(&item.colours.len()));
-            let own = Fabric::built_in(&item.style.fabric).unwrap().colour;
+            let own = Choice::find(&item.name).unwrap().fabric().unwrap().colour;
             assert_eq!(item.colours[0].srgb, own, "the first is the fabric's");
             for (i, colour) in item.colours.iter().enumerate() {
-                assert_ne!(colour.word, TextKey::ColourOwn, "{} has a colour without a name", item.style.name);
+                assert_ne!(colour.word, TextKey::ColourOwn, "{} has a colour without a name", item.name);
                 assert!(item.colours[..i].iter().all(|c| c.word != colour.word));
             }
         }
         let strange = palette(GarmentKind::Dress, [0.1, 0.9, 0.1]);
         assert_eq!((strange[0].word, strange.len()), (TextKey::ColourOwn, 5));
+    }
+
+    /// A shop's folder with two packages, made for this test.
+    fn shop(name: &str) -> std::path::PathBuf {
+        let folder = std::env::temp_dir().join(format!("toile-hung-{name}-{}", std::process::id()));
+        _ = std::fs::remove_dir_all(&folder);
+        for (article, garment, more) in [
+            ("DR-1", "sun-dress", "price = \"99.00 EUR\"\n"),
+            (
+                "JA-2",
+                "jacket",
+                "layer = 5\ncolours = [{ name = { en = \"Moss\", de = \"Moos\" }, srgb = [0.3, 0.4, 0.2] }]\n",
+            ),
+        ] {
+            let source = folder.join(article);
+            std::fs::create_dir_all(&source).unwrap();
+            let text = format!(
+                "article = \"{article}\"\ngarment = \"{garment}\"\nname = {{ en = \"Ours\", de = \"Unser\" }}\n{more}"
+            );
+            std::fs::write(source.join("garment.toml"), text).unwrap();
+            let (bytes, _) = toile_assets::catalogue::package::pack(&source).unwrap();
+            std::fs::write(folder.join(format!("{article}.toile")), bytes).unwrap();
+        }
+        std::fs::write(folder.join("broken.toile"), "nothing").unwrap();
+        std::fs::write(folder.join("catalogue.toml"), "shop = \"Atelier\"\n").unwrap();
+        folder
+    }
+
+    #[test]
+    fn a_shops_own_garments_hang_in_place_of_the_stock() {
+        let folder = shop("own");
+        let mut told = Vec::new();
+        let hung = Wardrobe::shop(Some(&folder), &["DR-1".into()], |why| told.push(why.to_owned())).unwrap();
+        assert_eq!((hung.items.len(), told.len()), (2, 1), "{told:?}");
+        assert!(told[0].contains("broken.toile"));
+        let [dress, coat] = ["DR-1", "JA-2"].map(|article| &hung.items[hung.find(article).unwrap()]);
+        assert_eq!((dress.title("de"), dress.title("tr"), dress.word()), ("Unser", "Ours", None));
+        assert_eq!((dress.price.as_deref(), dress.layer), (Some("99.00 EUR"), Layer::Shirt));
+        assert_eq!((coat.layer, coat.colours.len()), (Layer::Coat, 1));
+        assert_eq!(coat.colours[0].words.as_ref().map(|words| word(words, "de")), Some("Moos"));
+        assert!(dress.sizes.len() > 3 && dress.name.ends_with("DR-1.toile"));
+        // What is named besides hangs there as well; what there is not is refused.
+        let more = Wardrobe::shop(Some(&folder), &["t-shirt".into()], |_| ()).unwrap();
+        assert_eq!(more.items.len(), 3);
+        assert!(Wardrobe::shop(Some(&folder), &["DR-9".into()], |_| ()).is_err());
+        std::fs::remove_dir_all(&folder).unwrap();
     }
 }

@@ -6,6 +6,8 @@ use toile_assets::body::{Body, Measures};
 use toile_assets::draping::{self, PatternPackage, PatternSizes, SizedDraft};
 use toile_assets::sizes::SizeTable;
 
+use toile_fitting::dress::offer;
+
 use super::TailorArgs;
 use super::wearer::usual_table;
 use crate::exit::AppError;
@@ -28,15 +30,19 @@ pub fn add(args: &TailorArgs, package: &mut PatternPackage) -> Result<(), AppErr
             found.map_err(|e| AppError::input(format!("{}: {e}", args.pattern.display())))?.kind
         }
     };
-    package.sizes = Some(PatternSizes { table: table.into(), kind, size: size.clone(), drafts });
-    package.graded().map_err(AppError::input)?;
+    let girths = Vec::new();
+    package.sizes = Some(PatternSizes { table: table.into(), kind, size: size.clone(), drafts, girths });
+    let girths = offer::girths(package)?;
+    package.sizes.iter_mut().for_each(|sizes| sizes.girths.clone_from(&girths));
     Ok(())
 }
 
 /// A draft for a size, SIZE=FILE, sewn as the pattern is.
 fn draft(text: &str, seams: Option<&Path>) -> Result<SizedDraft, AppError> {
     let Some((size, file)) = text.split_once('=').filter(|(size, file)| !size.is_empty() && !file.is_empty()) else {
-        return Err(AppError::input(format!("--draft {text}: it is not SIZE=FILE; give a size of the table and a file")));
+        return Err(AppError::input(format!(
+            "--draft {text}: it is not SIZE=FILE; give a size of the table and a file"
+        )));
     };
     let read = draping::read_package(Path::new(file), seams).map_err(AppError::input)?;
     if read.sizes.is_some() {

@@ -1,17 +1,31 @@
 //! The fitted body and the garments to choose from.
 
 use super::super::screen::{Block, Page};
-use super::super::size_fit::OutOfRange;
+use super::super::size_fit::{OutOfRange, SizeChoice};
 use super::super::texts::{TextKey, TextValue};
+use super::super::wardrobe::Colour;
 use super::PageWriter;
+use toile_assets::catalogue::word;
 
 /// As sure as this, a size is simply the best.
 const SURE: f32 = toile_track::recommend::SURE;
+
+/// What is said where there is no size to choose.
+const fn only(choice: SizeChoice) -> Option<TextKey> {
+    match choice {
+        SizeChoice::Several => None,
+        SizeChoice::One => Some(TextKey::FittingOneSize),
+        SizeChoice::Unknown => Some(TextKey::FittingSizeUnknown),
+    }
+}
 
 impl PageWriter<'_> {
     pub(super) fn worn_heading(&self) -> String {
         let (Some(item), Some(worn)) = (self.item(), self.model.worn()) else { return self.words(TextKey::DoGarments) };
         let name = self.garment(item);
+        if self.model.visit.fit.as_ref().is_some_and(|fit| only(fit.choice).is_some()) {
+            return name;
+        }
         self.format(
             TextKey::FittingSize,
             &[("garment", TextValue::Text(&name)), ("size", TextValue::Text(self.size(worn.size)))],
@@ -29,7 +43,9 @@ impl PageWriter<'_> {
         }
         let Some(fit) = &visit.fit else { return blocks };
         let percent = ("percent", TextValue::Count((100.0 * fit.probability).round() as u32));
-        if fit.size == fit.best {
+        if let Some(key) = only(fit.choice) {
+            blocks.push(self.paragraph(key));
+        } else if fit.size == fit.best {
             let size = TextValue::Text(self.size(fit.size));
             blocks.push(Block::Text(self.format(TextKey::FittingBest, &[("size", size)])));
             let how = if fit.probability >= SURE { TextKey::FittingSure } else { TextKey::FittingUnsure };
@@ -63,8 +79,12 @@ impl PageWriter<'_> {
     }
 
     pub(super) fn colour_name(&self, colour: usize) -> String {
-        let word = self.item().and_then(|item| item.colours.get(colour)).map(|c| c.word);
-        word.map(|key| self.words(key)).unwrap_or_default()
+        let language = self.translation.language().tag();
+        let named = |c: &Colour| match &c.words {
+            Some(words) => word(words, language).to_owned(),
+            None => self.words(c.word),
+        };
+        self.item().and_then(|item| item.colours.get(colour)).map(named).unwrap_or_default()
     }
 
     /// A garment's name, and what pressing it does.
@@ -81,7 +101,8 @@ impl PageWriter<'_> {
             let off = visit.outfit.iter().filter_map(|w| wardrobe.get(w.item)).filter(|other| other.excludes(item));
             let names: Vec<String> = off.map(|other| self.garment(other)).collect();
             let others = self.translation.list(&names);
-            (!names.is_empty()).then(|| self.format(TextKey::GarmentsInstead, &[("others", TextValue::Text(&others))]))
+            let instead = || self.format(TextKey::GarmentsInstead, &[("others", TextValue::Text(&others))]);
+            if names.is_empty() { item.price.clone() } else { Some(instead()) }
         };
         (self.garment(item), detail)
     }

@@ -1,0 +1,140 @@
+//! A shop's catalogue: a folder of garment packages beside `catalogue.toml`.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+
+use super::error::CatalogueError;
+use super::limits::{MAX_GARMENTS, MAX_TOML_BYTES};
+use super::manifest::GarmentManifest;
+use super::package::{ENDING, GarmentPackage};
+use crate::file::{self, FileKind};
+
+/// What is read as a catalogue.
+const CATALOGUE: FileKind = FileKind { name: "a catalogue", max_bytes: MAX_TOML_BYTES, cure: "name each package once" };
+
+/// The catalogue's own file.
+const FILE: &str = "catalogue.toml";
+
+/// What `catalogue.toml` says.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ShopFile {
+    /// The shop's name.
+    pub shop: String,
+    /// The packages in the order in which they are shown; left out, all of the folder by name.
+    pub garments: Option<Vec<String>>,
+}
+
+/// A garment of a catalogue.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CatalogueItem {
+    /// Where its package is.
+    pub path: PathBuf,
+    /// What the shop says of it.
+    pub manifest: GarmentManifest,
+}
+
+/// A package that is left out.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RefusedPackage {
+    /// Its file's name.
+    pub package: String,
+    /// Why, in one sentence.
+    pub why: String,
+}
+
+/// A catalogue: what each garment says of itself. Patterns, meshes and photographs stay in their files until they are used.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Catalogue {
+    /// The shop's name.
+    pub shop: String,
+    /// Its garments, in the order in which they are shown.
+    pub items: Vec<CatalogueItem>,
+    /// The packages that are left out.
+    pub refused: Vec<RefusedPackage>,
+}
+
+impl Catalogue {
+    /// Reads a catalogue; a package that cannot be used, or has another's article number, is left out and named.
+    ///
+    /// # Errors
+    /// A folder that cannot be read or holds no catalogue.
+    pub fn read(folder: &Path) -> Result<Self, CatalogueError> {
+        let wrong = |reason: String| CatalogueError::Folder { folder: folder.display().to_string(), reason };
+        if !folder.is_dir() {
+            return Err(wrong("it is no folder".into()));
+        }
+        let text = file::read_text(&folder.join(FILE), &CATALOGUE)?;
+        let shop: ShopFile = toml::from_str(&text).map_err(|e| {
+            let line = e.span().map_or(1, |s| text[..s.start.min(text.len())].matches('\n').count() + 1);
+            wrong(format!("{FILE}: line {line}: {}", e.message().lines().next().unwrap_or("it is not TOML")))
+        })?;
+        let names = match shop.garments {
+            Some(names) => names,
+            None => packages(folder).map_err(|e| wrong(format!("it cannot be read ({e})")))?,
+        };
+        let mut catalogue = Self { shop: shop.shop, items: Vec::new(), refused: Vec::new() };
+        let mut articles: BTreeMap<String, String> = BTreeMap::new();
+        for (place, name) in names.into_iter().enumerate() {
+            match read_item(folder, &name, place, &articles) {
+                Ok(item) => {
+                    articles.insert(item.manifest.article.clone(), name);
+                    catalogue.items.push(item);
+                }
+                Err(why) => catalogue.refused.push(RefusedPackage { package: name, why }),
+            }
+        }
+        Ok(catalogue)
+    }
+
+    /// Bytes that it holds: manifests and paths.
+    pub fn bytes(&self) -> usize {
+        let words = |words: &super::manifest::Words| words.iter().map(|(k, v)| k.len() + v.len() + 64).sum::<usize>();
+        let of = |item: &CatalogueItem| {
+            let m = &item.manifest;
+            let files: usize = m.files().map(str::len).sum();
+            let colours: usize = m.colours.iter().map(|c| size_of_val(c) + words(&c.name)).sum();
+            size_of_val(item) + item.path.as_os_str().len() + m.article.len() + words(&m.names) + files + colours
+        };
+        self.items.iter().map(of).sum::<usize>()
+            + self.refused.iter().map(|r| size_of_val(r) + r.package.len() + r.why.len()).sum::<usize>()
+    }
+}
+
+/// The packages of a folder by name.
+fn packages(folder: &Path) -> std::io::Result<Vec<String>> {
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(folder)? {
+        let name = entry?.file_name().to_string_lossy().into_owned();
+        if name.ends_with(ENDING) {
+            names.push(name);
+        }
+    }
+    names.sort();
+    Ok(names)
+}
+
+fn read_item(
+    folder: &Path,
+    name: &str,
+    place: usize,
+    articles: &BTreeMap<String, String>,
+) -> Result<CatalogueItem, String> {
+    if place >= MAX_GARMENTS {
+        return Err(format!("{name}: a catalogue has {MAX_GARMENTS} garments at most; divide it"));
+    }
+    if Path::new(name).components().count() != 1 || !name.ends_with(ENDING) {
+        return Err(format!("{name}: it is no name of a package; give one that ends in {ENDING} beside {FILE}"));
+    }
+    let path = folder.join(name);
+    let manifest = GarmentPackage::open(&path).and_then(|mut package| package.manifest()).map_err(|e| e.to_string())?;
+    if let Some(other) = articles.get(&manifest.article) {
+        return Err(format!(
+            "{name}: its article number {} is that of {other}; give each garment its own",
+            manifest.article
+        ));
+    }
+    Ok(CatalogueItem { path, manifest })
+}

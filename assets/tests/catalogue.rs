@@ -1,0 +1,221 @@
+//! Catalogues and packages that anybody may have made: what is read, what is left out, and that each fault is one sentence.
+
+use std::fs;
+use std::io::{Cursor, Write};
+use std::path::{Path, PathBuf};
+
+use toile_assets::catalogue::package::pack;
+use toile_assets::catalogue::{Catalogue, CatalogueError, GarmentPackage};
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipWriter};
+
+/// A folder of its own, removed when it is dropped.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("toile-catalogue-{name}-{}", std::process::id()));
+        _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn file(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
+        let path = self.0.join(name);
+        fs::write(&path, content).unwrap();
+        path
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+fn manifest(article: &str, garment: &str) -> String {
+    format!(
+        "article = \"{article}\"\ngarment = \"{garment}\"\nname = {{ en = \"Skirt\", de = \"Rock\" }}\nprice = \"49.90 EUR\"\n"
+    )
+}
+
+fn zipped(files: &[(&str, &[u8])]) -> Vec<u8> {
+    let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
+    let options = SimpleFileOptions::default().compression_method(CompressionMethod::Deflated);
+    for (name, bytes) in files {
+        zip.start_file(*name, options).unwrap();
+        zip.write_all(bytes).unwrap();
+    }
+    zip.finish().unwrap().into_inner()
+}
+
+/// One sentence: what, where, and the cure.
+fn sentence(error: &CatalogueError) -> String {
+    let text = error.to_string();
+    assert!(!text.contains('\n') && text.contains("; ") && text.len() < 600, "{text}");
+    text
+}
+
+fn refused(bytes: Vec<u8>) -> String {
+    let opened = GarmentPackage::of_bytes("skirt.toile", bytes).and_then(|mut package| package.manifest());
+    sentence(&opened.unwrap_err())
+}
+
+/// A picture's head, of so many pixels.
+fn png(width: u32, height: u32) -> Vec<u8> {
+    let mut bytes = b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR".to_vec();
+    bytes.extend(width.to_be_bytes());
+    bytes.extend(height.to_be_bytes());
+    bytes.extend([8, 2, 0, 0, 0, 0, 0, 0, 0]);
+    bytes
+}
+
+#[test]
+fn what_is_packed_is_read_again() {
+    let scratch = Scratch::new("pack");
+    scratch.file("garment.toml", manifest("SK-1", "skirt.json") + "photographs = [\"front.png\"]\n");
+    scratch.file("skirt.json", b"{\"parts\": {}}");
+    scratch.file("front.png", png(800, 1200));
+    let (bytes, packed) = pack(&scratch.0).unwrap();
+    let mut package = GarmentPackage::of_bytes("skirt.toile", bytes).unwrap();
+    assert_eq!(package.manifest().unwrap(), packed);
+    assert_eq!(package.text("skirt.json", 100).unwrap(), "{\"parts\": {}}");
+    let unpacked = package.unpack().unwrap();
+    assert_eq!(fs::read(unpacked.path.join("front.png")).unwrap(), png(800, 1200));
+    let folder = unpacked.path.clone();
+    drop(unpacked);
+    assert!(!folder.exists(), "what is unpacked is removed");
+    // A mesh brings what goes by its name.
+    scratch.file("garment.toml", manifest("CO-1", "coat.obj"));
+    for name in ["coat.obj", "coat.mtl", "coat.toml", "coatrack.obj"] {
+        scratch.file(name, name);
+    }
+    let (bytes, _) = pack(&scratch.0).unwrap();
+    let mut package = GarmentPackage::of_bytes("coat.toile", bytes).unwrap();
+    assert_eq!(package.text("coat.toml", 100).unwrap(), "coat.toml");
+    assert!(package.text("coatrack.obj", 100).is_err());
+}
+
+#[test]
+fn packages_that_are_none_are_refused_in_one_sentence() {
+    let good = manifest("SK-1", "skirt.json");
+    let whole: &[(&str, &[u8])] = &[("garment.toml", good.as_bytes()), ("skirt.json", b"{}")];
+    GarmentPackage::of_bytes("skirt.toile", zipped(whole)).unwrap().manifest().unwrap();
+    assert!(refused(b"no archive".to_vec()).contains("no garment package"));
+    assert!(refused(zipped(&whole[1..])).contains("garment.toml"));
+    assert!(refused(zipped(&whole[..1])).contains("skirt.json"));
+    assert!(refused(zipped(&[whole[0], whole[1], ("../escape", b"x")])).contains("no plain file name"));
+    assert!(refused(zipped(&[whole[0], whole[1], ("a/b", b"x")])).contains("no plain file name"));
+    let many: Vec<String> = (0..80).map(|i| format!("{i}.png")).collect();
+    let many: Vec<(&str, &[u8])> = many.iter().map(|name| (name.as_str(), &b"x"[..])).collect();
+    assert!(refused(zipped(&many)).contains("80 files"));
+    assert!(refused(zipped(&[("garment.toml", b"\xff\xfe"), whole[1]])).contains("UTF-8"));
+    let huge = "x".repeat(400 << 10);
+    assert!(refused(zipped(&[("garment.toml", huge.as_bytes()), whole[1]])).contains("unpacks to more"));
+    let pictured = good.clone() + "photographs = [\"p.png\"]\n";
+    let with = |picture: &[u8]| zipped(&[("garment.toml", pictured.as_bytes()), whole[1], ("p.png", picture)]);
+    assert!(refused(with(&png(100_000, 100))).contains("100000 x 100 pixels"));
+    assert!(refused(with(&png(0, 100))).contains("0 x 100 pixels"));
+    assert!(refused(with(b"GIF89a")).contains("PNG or JPEG"));
+}
+
+#[test]
+fn a_bomb_is_refused_before_it_unpacks() {
+    let zeros = vec![0u8; 64 << 20];
+    let good = manifest("SK-1", "skirt.json");
+    let bomb =
+        zipped(&[("garment.toml", good.as_bytes()), ("skirt.json", &zeros), ("a.bin", &zeros), ("b.bin", &zeros)]);
+    assert!(bomb.len() < 1 << 20);
+    let start = std::time::Instant::now();
+    assert!(refused(bomb).contains("unpack to"));
+    println!("refused in {:?}", start.elapsed());
+    // One that lies about its size is stopped where it is read.
+    let mut lying = zipped(&[("garment.toml", &vec![b'#'; 4 << 20])]);
+    let size = (4u32 << 20).to_le_bytes();
+    while let Some(at) = lying.windows(4).position(|w| w == size) {
+        lying[at..at + 4].copy_from_slice(&100u32.to_le_bytes());
+    }
+    refused(lying);
+}
+
+#[test]
+fn packages_cut_short_and_garbled_are_refused_or_read_but_never_more() {
+    let good = manifest("SK-1", "skirt.json") + "photographs = [\"p.png\"]\n";
+    let whole =
+        zipped(&[("garment.toml", good.as_bytes()), ("skirt.json", b"{\"parts\": {}}"), ("p.png", &png(40, 60))]);
+    let read = |bytes: Vec<u8>| {
+        let opened = GarmentPackage::of_bytes("skirt.toile", bytes);
+        let read = opened.and_then(|mut package| Ok((package.manifest()?, package.text("skirt.json", 1 << 20)?)));
+        if let Err(error) = read {
+            sentence(&error);
+        }
+    };
+    for length in 0..whole.len() {
+        read(whole[..length].to_vec());
+    }
+    for at in 0..whole.len() {
+        for flip in [0x01, 0x80, 0xff] {
+            let mut bytes = whole.clone();
+            bytes[at] ^= flip;
+            read(bytes);
+        }
+    }
+}
+
+#[test]
+fn a_catalogue_leaves_out_what_cannot_be_used_and_names_it() {
+    let scratch = Scratch::new("shop");
+    let package = |name: &str, article: &str| {
+        let text = manifest(article, "sun-dress");
+        scratch.file(name, zipped(&[("garment.toml", text.as_bytes())]))
+    };
+    package("a.toile", "A-1");
+    package("b.toile", "B-1");
+    package("c.toile", "A-1");
+    scratch.file("d.toile", b"nothing");
+    scratch.file("notes.txt", b"not a package");
+    scratch.file("catalogue.toml", "shop = \"Atelier\"\n");
+    let read = Catalogue::read(&scratch.0).unwrap();
+    assert_eq!(read.shop, "Atelier");
+    let names: Vec<_> = read.items.iter().map(|item| item.path.file_name().unwrap().to_str().unwrap()).collect();
+    assert_eq!(names, ["a.toile", "b.toile"]);
+    let why: Vec<&str> = read.refused.iter().map(|r| r.why.as_str()).collect();
+    assert!(why[0].contains("c.toile") && why[0].contains("article number A-1 is that of a.toile"), "{why:?}");
+    assert!(why[1].contains("d.toile") && why.len() == 2, "{why:?}");
+    assert!(read.bytes() > 200 && read.bytes() < 10_000, "{}", read.bytes());
+
+    // The shop's own order; a package that has gone since is left out, and so is a path out of the folder.
+    scratch.file(
+        "catalogue.toml",
+        "shop = \"Atelier\"\ngarments = [\"b.toile\", \"gone.toile\", \"../a.toile\", \"a.toile\"]\n",
+    );
+    let read = Catalogue::read(&scratch.0).unwrap();
+    assert_eq!(read.items.iter().map(|i| i.manifest.article.as_str()).collect::<Vec<_>>(), ["B-1", "A-1"]);
+    assert_eq!(read.refused.len(), 2);
+}
+
+#[test]
+fn a_folder_that_is_no_catalogue_is_refused() {
+    let scratch = Scratch::new("none");
+    assert!(sentence(&Catalogue::read(&scratch.0).unwrap_err()).contains("catalogue.toml"));
+    assert!(sentence(&Catalogue::read(Path::new("/no/such/folder")).unwrap_err()).contains("no folder"));
+    scratch.file("catalogue.toml", "shop = 3\n");
+    assert!(sentence(&Catalogue::read(&scratch.0).unwrap_err()).contains("line 1"));
+    scratch.file("catalogue.toml", "shop = \"A\"\nlogo = \"x\"\n");
+    assert!(sentence(&Catalogue::read(&scratch.0).unwrap_err()).contains("line 2"));
+}
+
+#[test]
+fn two_hundred_garments_are_read_in_little_memory() {
+    let scratch = Scratch::new("many");
+    scratch.file("catalogue.toml", "shop = \"Department store\"\n");
+    for i in 0..200 {
+        let text = manifest(&format!("N-{i}"), "t-shirt");
+        scratch.file(&format!("{i:03}.toile"), zipped(&[("garment.toml", text.as_bytes())]));
+    }
+    let start = std::time::Instant::now();
+    let read = Catalogue::read(&scratch.0).unwrap();
+    println!("{} garments, {} bytes, {:?}", read.items.len(), read.bytes(), start.elapsed());
+    assert_eq!((read.items.len(), read.refused.len()), (200, 0));
+    assert!(read.bytes() < 200 * 2_048, "{}", read.bytes());
+}

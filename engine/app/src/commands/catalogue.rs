@@ -1,0 +1,287 @@
+//! `toile catalogue`: a shop's garments are packed, checked, and shown on one sheet.
+//!
+//! Reads: a folder of garment packages, or of what one is made from. Writes: a package, a picture, a report.
+//! Budget: 1 ms a package to check, 10 s a garment to draw. Thread: the main thread.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+use toile_assets::body::{Body, Measures, Sex};
+use toile_assets::catalogue::{Catalogue, CatalogueItem, GarmentManifest, package, word};
+use toile_assets::wardrobe::own;
+use toile_fitting::dress::choice::Choice;
+use toile_fitting::dress::wish::Wish;
+use toile_fitting::dress::{dressed, session};
+use toile_sensors::frame::Joints;
+use toile_view::contact_sheet;
+use toile_view::drawn_frame;
+use toile_view::image::{Image, Size, linear};
+
+use crate::arguments::Printing;
+use crate::exit::AppError;
+use crate::output::{Inputs, OutputFile};
+use crate::report::Document;
+use crate::terminal::{self, Paint, Tone, Words};
+
+/// A shop's catalogue of garment packages.
+///
+/// `check` reads every package, `sheet` draws all garments on one picture, `pack` makes a package of a folder. docs/catalogue.md says what is
+/// in one.
+// The help of a command is the doc of its arguments, which a doc of the variant would replace.
+#[derive(Debug, Clone, PartialEq, clap::Subcommand)]
+pub(crate) enum CatalogueCommand {
+    Check(CheckArgs),
+    Sheet(SheetArgs),
+    Pack(PackArgs),
+}
+
+/// Read every package of a catalogue, and say which cannot be used and why.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(after_help = "Example: before the shop opens\n  toile catalogue check /etc/toile/catalogue")]
+pub(crate) struct CheckArgs {
+    /// Folder that holds catalogue.toml and garment packages
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
+    /// What is printed.
+    #[command(flatten)]
+    pub printing: Printing,
+}
+
+/// Draw all garments of a catalogue on one sheet, each on a body of its middle size.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(after_help = "Example: a sheet for the wall\n  toile catalogue sheet /etc/toile/catalogue --out sheet.png")]
+pub(crate) struct SheetArgs {
+    /// Folder that holds catalogue.toml and garment packages
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
+    /// Picture to write
+    #[arg(long, value_name = "FILE", default_value = "catalogue.png")]
+    pub out: PathBuf,
+    /// What is printed.
+    #[command(flatten)]
+    pub printing: Printing,
+}
+
+/// Pack a folder that holds garment.toml and the files that it names into one garment package.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(after_help = "Example: a garment for the catalogue\n  toile catalogue pack skirt/ --out shop/skirt.toile")]
+pub(crate) struct PackArgs {
+    /// Folder that holds garment.toml
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
+    /// Package to write, ending in .toile
+    #[arg(long, value_name = "PACKAGE")]
+    pub out: PathBuf,
+    /// What is printed.
+    #[command(flatten)]
+    pub printing: Printing,
+}
+
+/// A garment of a catalogue, as it is reported.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct GarmentReport {
+    package: String,
+    article: String,
+    name: String,
+    languages: Vec<String>,
+    sizes: Vec<String>,
+    price: Option<String>,
+}
+
+/// A package that is left out.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct RefusedReport {
+    package: String,
+    why: String,
+}
+
+/// The body of the three.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct CatalogueReport {
+    shop: String,
+    garments: Vec<GarmentReport>,
+    refused: Vec<RefusedReport>,
+    memory_bytes: usize,
+    files: Vec<PathBuf>,
+}
+
+/// Runs `toile catalogue`.
+///
+/// # Errors
+/// A folder that is no catalogue, a garment that cannot be packed, a file that cannot be written.
+pub(crate) fn run(command: &CatalogueCommand) -> Result<(), AppError> {
+    match command {
+        CatalogueCommand::Check(args) => check(args),
+        CatalogueCommand::Sheet(args) => sheet(args),
+        CatalogueCommand::Pack(args) => pack(args),
+    }
+}
+
+fn check(args: &CheckArgs) -> Result<(), AppError> {
+    let report = Checked::of(&args.folder)?.report;
+    finish(report, args.printing)
+}
+
+/// A catalogue with the garments that can be worn.
+struct Checked {
+    report: CatalogueReport,
+    items: Vec<(CatalogueItem, Choice)>,
+}
+
+impl Checked {
+    fn of(folder: &Path) -> Result<Self, AppError> {
+        let catalogue = Catalogue::read(folder).map_err(AppError::input)?;
+        let memory_bytes = catalogue.bytes();
+        let refused = catalogue.refused.into_iter().map(|r| RefusedReport { package: r.package, why: r.why });
+        let mut report = CatalogueReport {
+            shop: catalogue.shop,
+            garments: Vec::new(),
+            refused: refused.collect(),
+            memory_bytes,
+            files: Vec::new(),
+        };
+        let mut items = Vec::new();
+        for item in catalogue.items {
+            let package = item.path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+            match opened(&item.path) {
+                Ok((choice, sizes)) => {
+                    report.garments.push(garment(package, &item.manifest, sizes));
+                    items.push((item, choice));
+                }
+                Err(why) => report.refused.push(RefusedReport { package, why: why.to_string() }),
+            }
+        }
+        Ok(Self { report, items })
+    }
+}
+
+/// The garment of a package and its sizes.
+fn opened(path: &Path) -> Result<(Choice, Vec<String>), AppError> {
+    let average = Body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(AppError::internal)?;
+    let choice = Choice::open(path)?;
+    choice.fabric()?;
+    let offer = choice.offer(&average)?;
+    let unsized_code = || vec![own::UNKNOWN.to_owned()];
+    let sizes = offer.map_or_else(unsized_code, |o| o.sizes.into_iter().map(|s| s.code).collect());
+    Ok((choice, sizes))
+}
+
+fn garment(package: String, manifest: &GarmentManifest, sizes: Vec<String>) -> GarmentReport {
+    GarmentReport {
+        package,
+        article: manifest.article.clone(),
+        name: word(&manifest.names, "en").to_owned(),
+        languages: manifest.names.keys().cloned().collect(),
+        sizes,
+        price: manifest.price.as_ref().map(ToString::to_string),
+    }
+}
+
+/// A garment on the sheet.
+const PICTURE: Size = Size::new(240, 400);
+
+/// Garments beside each other on the sheet.
+const COLUMNS: usize = 8;
+
+/// Steps in which cloth comes to rest on the mannequin: two seconds.
+const SETTLING: usize = 240;
+
+fn sheet(args: &SheetArgs) -> Result<(), AppError> {
+    let out = OutputFile::prepare(&args.out, Inputs::new([&args.folder])).map_err(AppError::input)?;
+    let Checked { mut report, items } = Checked::of(&args.folder)?;
+    let words = Words::new(args.printing.quiet);
+    let bar = words.bar(items.len() as u64, "drawing");
+    let embedded = session::open(None, None)?;
+    let pose = session::standing(&embedded)?[0];
+    let mut pictures = Vec::with_capacity(items.len());
+    let mut captions = Vec::with_capacity(items.len());
+    for (item, choice) in &items {
+        match draw(&item.manifest, choice, &pose) {
+            Ok(image) => {
+                let price = item.manifest.price.as_ref().map_or_else(String::new, |p| format!(", {p}"));
+                captions.push(format!("{}{price}", word(&item.manifest.names, "en")));
+                pictures.push(image);
+            }
+            Err(why) => report.refused.push(RefusedReport { package: choice.name.clone(), why: why.to_string() }),
+        }
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    if pictures.is_empty() {
+        return Err(AppError::input(format!(
+            "{}: no garment in it can be drawn; see toile catalogue check",
+            args.folder.display()
+        )));
+    }
+    let pictures: Vec<&Image> = pictures.iter().collect();
+    let captions: Vec<&str> = captions.iter().map(String::as_str).collect();
+    let sheet = contact_sheet::contact_sheet(&pictures, COLUMNS, &captions);
+    let mut png = Vec::new();
+    sheet.write_png(&mut png).map_err(AppError::internal)?;
+    report.files = out.write(&png).map_err(AppError::input)?;
+    finish(report, args.printing)
+}
+
+/// A garment on a body of its middle size, from the front.
+fn draw(manifest: &GarmentManifest, choice: &Choice, pose: &Joints) -> Result<Image, AppError> {
+    let wish = Wish { garments: vec![choice.name.clone()], ..Wish::default() };
+    let mut dressed = dressed::mannequin(&wish, pose)?;
+    for _ in 0..SETTLING {
+        dressed.frame.step(pose);
+    }
+    let snapshot = dressed.reader.latest().clone();
+    let colour = manifest.colours.first().map_or(choice.fabric()?.colour, |c| c.srgb).map(linear);
+    let colours = vec![colour; dressed.frame.garments().len()];
+    Ok(drawn_frame::still(&dressed.frame, &snapshot, 0.0, &colours, PICTURE))
+}
+
+fn pack(args: &PackArgs) -> Result<(), AppError> {
+    if args.out.extension().is_none_or(|end| format!(".{}", end.to_string_lossy()) != package::ENDING) {
+        return Err(AppError::input(format!(
+            "{}: a package ends in {}; name it so",
+            args.out.display(),
+            package::ENDING
+        )));
+    }
+    let out = OutputFile::prepare(&args.out, Inputs::new([&args.folder])).map_err(AppError::input)?;
+    let (bytes, manifest) = package::pack(&args.folder).map_err(AppError::input)?;
+    let files = out.write(&bytes).map_err(AppError::input)?;
+    let (_, sizes) = opened(&args.out)
+        .map_err(|e| AppError::input(format!("{e}; the package was written, and no catalogue will show it")))?;
+    let name = args.out.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let report = CatalogueReport {
+        shop: String::new(),
+        garments: vec![garment(name, &manifest, sizes)],
+        refused: Vec::new(),
+        memory_bytes: bytes.len(),
+        files,
+    };
+    finish(report, args.printing)
+}
+
+fn finish(report: CatalogueReport, printing: Printing) -> Result<(), AppError> {
+    if printing.json {
+        return terminal::print_json(&Document::new("catalogue", report));
+    }
+    terminal::print(&summary(&report, Paint::for_stdout()))
+}
+
+/// The report for a person.
+fn summary(report: &CatalogueReport, paint: Paint) -> String {
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let mut line = |words: String| _ = writeln!(text, "{words}");
+    if !report.shop.is_empty() {
+        line(paint.tone(&report.shop, Tone::Strong).into_owned());
+    }
+    for g in &report.garments {
+        let price = g.price.as_ref().map_or_else(String::new, |p| format!(", {p}"));
+        line(format!("  {} {}: sizes {}{price} ({})", g.article, g.name, g.sizes.join(", "), g.languages.join(", ")));
+    }
+    report.refused.iter().for_each(|r| line(format!("  left out: {}", r.why)));
+    let count = report.garments.len();
+    line(format!("{count} garments, {} left out, {} bytes in memory", report.refused.len(), report.memory_bytes));
+    report.files.iter().for_each(|file| line(format!("  wrote {}", file.display())));
+    text
+}

@@ -1,0 +1,112 @@
+//! `toile catalogue` as a shop meets it, and its packages in a try-on and in the kiosk.
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+
+use common::{Scratch, sentence, stdout};
+use serde_json::Value;
+
+fn json(scratch: &Scratch, line: &[&str]) -> Value {
+    let output = scratch.toile(line);
+    assert_eq!(output.status.code(), Some(0), "{line:?}: {}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_str(&stdout(&output)).expect("stdout is exactly one JSON object")
+}
+
+/// A folder of what one garment's package is made from.
+fn garment(scratch: &Scratch, name: &str, manifest: &str) -> String {
+    let folder = scratch.path().join(name);
+    fs::create_dir_all(&folder).unwrap();
+    fs::write(folder.join("garment.toml"), manifest).unwrap();
+    name.to_owned()
+}
+
+/// A shop with FreeSewing's circle skirt and a sun dress under a name of its own.
+fn shop(scratch: &Scratch) {
+    let skirt = "article = \"SK-1\"\ngarment = \"sandy.json\"\nname = { en = \"Circle skirt\", de = \"Tellerrock\" }\n\
+                 price = \"49.90 EUR\"\nfabric = \"linen-twill\"\n";
+    let skirt = garment(scratch, "skirt", skirt);
+    let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets");
+    let draft = assets.join("tests/data/freesewing/sandy34.json").display().to_string();
+    let seams = assets.join("data/patterns/sandy.toml").display().to_string();
+    let large = format!("42={}", assets.join("tests/data/freesewing/sandy42.json").display());
+    let sized = ["--table", "freesewing-women", "--drafted-for", "34", "--draft", &large, "--spacing", "30"];
+    let line = [&["tailor", &draft, "--seams", &seams, "--out", "skirt/sandy.json", "--json"][..], &sized].concat();
+    json(scratch, &line);
+    let dress = "article = \"SD-2\"\ngarment = \"sun-dress\"\nname = { en = \"Our dress\" }\nlayer = 3\n";
+    let dress = garment(scratch, "dress", dress);
+    fs::create_dir_all(scratch.path().join("shop")).unwrap();
+    for (folder, out) in [(skirt, "shop/skirt.toile"), (dress, "shop/dress.toile")] {
+        json(scratch, &["catalogue", "pack", &folder, "--out", out, "--json"]);
+    }
+    fs::write(scratch.path().join("shop/catalogue.toml"), "shop = \"Atelier\"\n").unwrap();
+}
+
+#[test]
+fn a_shop_packs_checks_shows_and_tries_on_its_garments() {
+    let scratch = Scratch::new("catalogue");
+    shop(&scratch);
+    fs::write(scratch.path().join("shop/broken.toile"), "nothing").unwrap();
+    let checked = json(&scratch, &["catalogue", "check", "shop", "--json"]);
+    assert_eq!((&checked["schema"], &checked["shop"]), (&"toile.catalogue/1".into(), &"Atelier".into()));
+    let [dress, skirt] = checked["garments"].as_array().unwrap().as_slice() else { panic!("{checked}") };
+    assert_eq!((&dress["article"], &skirt["article"]), (&"SD-2".into(), &"SK-1".into()));
+    assert_eq!(skirt["sizes"], serde_json::json!(["34", "36", "38", "40", "42"]));
+    assert_eq!((&skirt["price"], &skirt["languages"]), (&"49.90 EUR".into(), &serde_json::json!(["de", "en"])));
+    assert_eq!(checked["refused"][0]["package"], "broken.toile");
+    assert!(checked["memory_bytes"].as_u64().unwrap() < 10_000);
+
+    let drawn = json(&scratch, &["catalogue", "sheet", "shop", "--out", "sheet.png", "--json", "--quiet"]);
+    assert_eq!(drawn["garments"].as_array().map(Vec::len), Some(2));
+    let png = fs::read(scratch.path().join("sheet.png")).unwrap();
+    let side = |at: usize| u32::from_be_bytes(png[at..at + 4].try_into().unwrap());
+    assert!(side(16) > 480 && side(20) > 400, "{} x {}", side(16), side(20));
+
+    let line = ["try-on", "--garment", "shop/skirt.toile", "--no-pictures", "--json", "--quiet"];
+    let worn = json(&scratch, &line);
+    let fit = &worn["recommendation"];
+    assert_eq!((&fit["garment"], &fit["size"]), (&"Circle skirt".into(), &"34".into()), "{fit}");
+}
+
+#[test]
+fn a_kiosk_wears_what_its_catalogue_has() {
+    let scratch = Scratch::new("catalogue-kiosk");
+    shop(&scratch);
+    fs::write(scratch.path().join("kiosk.toml"), "[wear]\ncatalogue = \"shop\"\ngarments = [\"SK-1\"]\n").unwrap();
+    let line = ["kiosk", "--headless", "--seconds", "3", "--config", "kiosk.toml", "--instance", "catalogue", "--json"];
+    let report = json(&scratch, &line);
+    assert_eq!(report["schema"], "toile.kiosk/1", "{report}");
+    let refused = |config: &str, word: &str| {
+        fs::write(scratch.path().join("kiosk.toml"), config).unwrap();
+        let output = scratch.toile(&line);
+        assert_eq!(output.status.code(), Some(4), "{config}");
+        let message = sentence(&output);
+        assert!(message.contains(word), "{config}: {message}");
+    };
+    refused("[wear]\ncatalogue = \"nowhere\"\n", "nowhere");
+    refused("[wear]\ncatalogue = \"shop\"\ngarments = [\"SK-9\"]\n", "SK-9");
+    refused("[wear]\ngarments = [\"absent.obj\"]\n", "absent.obj");
+}
+
+#[test]
+fn what_cannot_be_packed_is_refused_in_one_sentence() {
+    let scratch = Scratch::new("catalogue-bad");
+    garment(&scratch, "empty", "article = \"A\"\ngarment = \"gone.json\"\nname = { en = \"Gone\" }\n");
+    garment(&scratch, "unnamed", "article = \"A\"\ngarment = \"sun-dress\"\n");
+    garment(&scratch, "wrong", "article = \"A\"\ngarment = \"p.json\"\nname = { en = \"Wrong\" }\n");
+    fs::write(scratch.path().join("wrong/p.json"), "{}").unwrap();
+    let refused: [(&[&str], &str); 5] = [
+        (&["catalogue", "pack", "empty", "--out", "a.toile"], "gone.json"),
+        (&["catalogue", "pack", "unnamed", "--out", "a.toile"], "name"),
+        (&["catalogue", "pack", "wrong", "--out", "a.toile"], "p.json"),
+        (&["catalogue", "pack", "empty", "--out", "a.zip"], ".toile"),
+        (&["catalogue", "check", "empty"], "catalogue.toml"),
+    ];
+    for (line, word) in refused {
+        let output = scratch.toile(line);
+        assert_eq!(output.status.code(), Some(4), "{line:?}");
+        let message = sentence(&output);
+        assert!(message.contains(word) && message.contains("; "), "{line:?}: {message}");
+    }
+}
