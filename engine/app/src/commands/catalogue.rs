@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use toile_assets::body::{Body, Measures, Sex};
-use toile_assets::catalogue::{Catalogue, CatalogueItem, GarmentManifest, package, word};
+use toile_assets::catalogue::{Catalogue, CatalogueItem, GarmentManifest, GarmentPackage, package, word};
 use toile_assets::wardrobe::own;
 use toile_fitting::dress::choice::Choice;
 use toile_fitting::dress::wish::Wish;
@@ -158,13 +158,17 @@ impl Checked {
 
 /// The garment of a package and its sizes.
 fn opened(path: &Path) -> Result<(Choice, Vec<String>), AppError> {
-    let average = Body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(AppError::internal)?;
     let choice = Choice::open(path)?;
+    let sizes = sizes(&choice)?;
+    Ok((choice, sizes))
+}
+
+fn sizes(choice: &Choice) -> Result<Vec<String>, AppError> {
+    let average = Body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(AppError::internal)?;
     choice.fabric()?;
     let offer = choice.offer(&average)?;
     let unsized_code = || vec![own::UNKNOWN.to_owned()];
-    let sizes = offer.map_or_else(unsized_code, |o| o.sizes.into_iter().map(|s| s.code).collect());
-    Ok((choice, sizes))
+    Ok(offer.map_or_else(unsized_code, |o| o.sizes.into_iter().map(|s| s.code).collect()))
 }
 
 fn garment(package: String, manifest: &GarmentManifest, sizes: Vec<String>) -> GarmentReport {
@@ -246,9 +250,10 @@ fn pack(args: &PackArgs) -> Result<(), AppError> {
     }
     let out = OutputFile::prepare(&args.out, Inputs::new([&args.folder])).map_err(AppError::input)?;
     let (bytes, manifest) = package::pack(&args.folder).map_err(AppError::input)?;
+    let shown = args.folder.display().to_string();
+    let package = GarmentPackage::of_bytes(&shown, bytes.clone()).map_err(AppError::input)?;
+    let sizes = sizes(&Choice::of_package(package, shown)?)?;
     let files = out.write(&bytes).map_err(AppError::input)?;
-    let (_, sizes) = opened(&args.out)
-        .map_err(|e| AppError::input(format!("{e}; the package was written, and no catalogue will show it")))?;
     let name = args.out.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let report = CatalogueReport {
         shop: String::new(),

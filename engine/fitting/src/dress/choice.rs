@@ -91,9 +91,16 @@ impl Choice {
     /// # Errors
     /// A package that cannot be read, a pattern, mesh or fabric in it that cannot be used.
     pub fn open(path: &Path) -> Result<Self, FittingError> {
-        let mut package = GarmentPackage::open(path).map_err(FittingError::input)?;
+        let package = GarmentPackage::open(path).map_err(FittingError::input)?;
+        Self::of_package(package, path.display().to_string())
+    }
+
+    /// The garment of a package that is open; `shown` is what it is called.
+    ///
+    /// # Errors
+    /// As [`Self::open`].
+    pub fn of_package(mut package: GarmentPackage, shown: String) -> Result<Self, FittingError> {
         let manifest = package.manifest().map_err(FittingError::input)?;
-        let shown = path.display().to_string();
         let inside = |e: &dyn Display| FittingError::Input(format!("{shown}: {e}"));
         let source = if manifest.is_built_in() {
             ChoiceSource::Style(Box::new(wardrobe::style(&manifest.garment).map_err(FittingError::input)?))
@@ -102,6 +109,8 @@ impl Choice {
             let seams = manifest.seams.as_deref().map(|seams| package.text(seams, MAX_TOML_BYTES)).transpose();
             let seams = seams.map_err(FittingError::input)?;
             let mut pattern = draping::parse_package(&manifest.garment, text, seams).map_err(|e| inside(&e))?;
+            pattern.name.clone_from(&manifest.garment);
+            pattern.parse().map_err(|e| inside(&e))?;
             pattern.name = word(&manifest.names, "en").to_owned();
             ChoiceSource::Pattern(Box::new(pattern))
         } else {
