@@ -12,6 +12,7 @@ impl From<recommend::Recommendation> for Recommendation {
             ease_mm: mm(fit.ease),
             sigma_mm: mm(fit.sigma),
             verdict: fit.verdict.name().into(),
+            feel: fit.feel.map(|feel| feel.name().into()),
             sentence: fit.sentence.clone(),
         });
         let share = |p: f32| (f64::from(p) * 1e3).round() / 1e3;

@@ -96,6 +96,8 @@ pub struct ZoneFitReport {
     pub sigma_mm: f64,
     /// `tight`, `good` or `loose`.
     pub verdict: String,
+    /// How it feels, from `too tight` to `too loose`; none where nobody saw the body there.
+    pub feel: Option<String>,
     /// The same for a person to read.
     pub sentence: String,
 }
@@ -342,6 +344,7 @@ mod tests {
             ease_mm: 40.0,
             sigma_mm: 8.0,
             verdict: "good".into(),
+            feel: Some("right".into()),
             sentence: "The waist is good.".into(),
         };
         let recommendation =

@@ -223,6 +223,7 @@ mod tests {
             ease_mm: -12.0,
             sigma_mm: 8.0,
             verdict: "tight".into(),
+            feel: Some("tight".into()),
             sentence: "Waist: tight.".into(),
         };
         let mut report = TryOn {

@@ -51,7 +51,7 @@ fn choice(package: &PatternPackage) -> Choice {
 
 fn judge(package: &PatternPackage, size: Option<&str>, on: &str) -> Recommendation {
     let (body, measured) = wearer(on, 0.005);
-    choice(package).judge(size, &measured, &body).unwrap().unwrap()
+    choice(package).judge(size, &measured, &body, &[]).unwrap().unwrap()
 }
 
 #[test]
@@ -96,5 +96,20 @@ fn a_pattern_without_sizes_is_judged_by_its_own_lengths() {
     assert_eq!(larger.1, Verdict::Tight);
     assert_eq!(larger.2, "There is one size, as drafted: tight at the chest.");
     let (body, measured) = wearer("34", 0.01);
-    assert!(choice(&package).judge(Some("40"), &measured, &body).is_err());
+    assert!(choice(&package).judge(Some("40"), &measured, &body, &[]).is_err());
+}
+
+#[test]
+fn what_is_worn_beneath_takes_its_thickness_all_around() {
+    let (body, measured) = wearer("38", 0.005);
+    let [shirt, jacket] = ["t-shirt", "jacket"].map(|name| Choice::find(name).unwrap());
+    let beneath = vec![shirt.offer(&body).unwrap().unwrap()];
+    let thickness = shirt.fabric().unwrap().thickness_mm * 1e-3;
+    let ease = |beneath: &[_]| {
+        let fit = jacket.judge(Some("M"), &measured, &body, beneath).unwrap().unwrap();
+        fit.zones.iter().map(|z| z.ease).collect::<Vec<_>>()
+    };
+    for (alone, over) in ease(&[]).into_iter().zip(ease(&beneath)) {
+        assert!((alone - over - std::f32::consts::TAU * thickness).abs() < 1e-5, "{alone} {over}");
+    }
 }

@@ -42,6 +42,7 @@ partly-cure = Ein Maßband an Taille und Hüfte macht es sicher.
 # The fitted body
 fitting-size = { $garment }, Größe { $size }
 fitting-best = Größe { $size } passt Ihnen am besten.
+fitting-nearest = Größe { $size } kommt am nächsten, passt aber nicht überall.
 fitting-one-size = Es gibt eine Größe.
 fitting-size-unknown = So gezeigt, wie es gemacht ist: Die Größe ist nicht bekannt.
 fitting-sure = Zu { $percent } % sicher.

@@ -43,6 +43,7 @@ partly-cure = A tape measure at the waist and hip makes it certain.
 # The fitted body
 fitting-size = { $garment }, size { $size }
 fitting-best = Size { $size } fits you best.
+fitting-nearest = Size { $size } comes nearest, but does not fit everywhere.
 fitting-one-size = It comes in one size.
 fitting-size-unknown = It is shown as it was made: its size is not known.
 fitting-sure = We are { $percent } % sure.

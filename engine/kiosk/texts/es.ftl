@@ -42,6 +42,7 @@ partly-cure = Una cinta métrica en cintura y cadera lo deja claro.
 # The fitted body
 fitting-size = { $garment }, talla { $size }
 fitting-best = La talla { $size } es la que mejor le queda.
+fitting-nearest = La talla { $size } es la más cercana, pero no queda bien en todas partes.
 fitting-one-size = Hay una sola talla.
 fitting-size-unknown = Se muestra tal como está hecho: no se conoce su talla.
 fitting-sure = Seguro al { $percent } %.

@@ -42,6 +42,7 @@ partly-cure = Un mètre ruban à la taille et aux hanches lève le doute.
 # The fitted body
 fitting-size = { $garment }, taille { $size }
 fitting-best = La taille { $size } vous va le mieux.
+fitting-nearest = La taille { $size } est la plus proche, mais ne va pas partout.
 fitting-one-size = Il existe en une seule taille.
 fitting-size-unknown = Montré tel qu’il est fait : sa taille n’est pas connue.
 fitting-sure = Sûr à { $percent } %.

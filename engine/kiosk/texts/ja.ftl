@@ -42,6 +42,7 @@ partly-cure = ウエストとヒップをメジャーで測ると確かになり
 # The fitted body
 fitting-size = { $garment }　サイズ{ $size }
 fitting-best = いちばん合うのはサイズ{ $size }です。
+fitting-nearest = { $size } サイズが最も近いですが、合わない部分があります。
 fitting-one-size = サイズは一つです。
 fitting-size-unknown = 作られたままの形で表示しています。サイズは不明です。
 fitting-sure = 確かさは{ $percent }%です。

@@ -42,6 +42,7 @@ partly-cure = Bel ve kalçadan mezurayla alınan ölçü kesinlik sağlar.
 # The fitted body
 fitting-size = { $garment }, { $size } beden
 fitting-best = Size en çok { $size } beden uyuyor.
+fitting-nearest = En yakını { $size } beden, ama her yerde oturmuyor.
 fitting-one-size = Tek bedeni var.
 fitting-size-unknown = Yapıldığı gibi gösteriliyor: bedeni bilinmiyor.
 fitting-sure = %{ $percent } eminiz.

@@ -36,6 +36,35 @@ pub fn colour(value: f32) -> Vec3 {
     Vec3::from_array(bytes.map(|b| tone_mapping::decode(f32::from(b) / 255.0)))
 }
 
+/// How far above and below a level the mean of a zone is taken (m).
+const BAND_M: f32 = 0.04;
+
+/// Beyond the highest and the lowest zone what a verdict says counts less, and so far off (m) nothing.
+const FADES_M: f32 = 0.25;
+
+/// How tight a garment sits at each particle, so that words and colours agree: around the level of each zone that was judged the mean
+/// is what the verdict says, between two levels what is added goes from one to the other, and what differs from place to place
+/// stays. `levels` are heights (m) and the verdicts' tightness there, from the top down; `heights` those of the particles (m).
+pub fn agreed(local: &[f32], heights: &[f32], levels: &[(f32, f32)]) -> Vec<f32> {
+    let shift = |(level, wanted): &(f32, f32)| {
+        let near = local.iter().zip(heights).filter(|(v, y)| v.is_finite() && (**y - level).abs() < BAND_M);
+        let (sum, count) = near.fold((0.0f64, 0u32), |(sum, n), (v, _)| (sum + f64::from(*v), n + 1));
+        (count > 0).then(|| (*level, wanted - (sum / f64::from(count)) as f32))
+    };
+    let shifts: Vec<(f32, f32)> = levels.iter().filter_map(shift).collect();
+    let at = |y: f32| -> f32 {
+        let above = shifts.iter().rfind(|(level, _)| *level >= y);
+        let below = shifts.iter().find(|(level, _)| *level < y);
+        let fading = |(level, by): (f32, f32)| by * (1.0 - (y - level).abs() / FADES_M).max(0.0);
+        match (above, below) {
+            (Some((high, a)), Some((low, b))) => b + (a - b) * (y - low) / (high - low).max(1e-6),
+            (Some(end), None) | (None, Some(end)) => fading(*end),
+            (None, None) => 0.0,
+        }
+    };
+    local.iter().zip(heights).map(|(v, y)| (v + at(*y)).clamp(-1.0, 1.0)).collect()
+}
+
 /// A strip with the eight steps and the words loose, good, tight, on the given paper (sRGB).
 pub fn legend(width: u32, paper: [u8; 3]) -> Image {
     let (bar, gap) = (14, 5);
@@ -69,6 +98,26 @@ mod tests {
 
     /// Least CIELAB distance between two steps; about 2.3 is just noticeable side by side, and a legend is not.
     const DISTINCT: f32 = 12.0;
+
+    #[test]
+    fn colours_and_words_agree_at_every_zone_and_places_still_differ() {
+        let heights: Vec<f32> = (0..=100).map(|i| 1.4 - 0.01 * i as f32).collect();
+        // A local unevenness over a garment that looks loose everywhere.
+        let local: Vec<f32> = (0..=100).map(|i| -0.6 + 0.1 * (i as f32 * 0.9).sin()).collect();
+        let levels = [(1.25, 0.1), (1.05, -0.3), (0.85, 0.6)];
+        let map = agreed(&local, &heights, &levels);
+        for (level, wanted) in levels {
+            let near: Vec<f32> =
+                map.iter().zip(&heights).filter(|(_, y)| (**y - level).abs() < 0.04).map(|(v, _)| *v).collect();
+            let mean = near.iter().sum::<f32>() / near.len() as f32;
+            // Half a colour: what is added bends at the level.
+            assert!((mean - wanted).abs() < 0.125, "{level}: {mean} {wanted}");
+            assert!(near.iter().any(|v| (v - mean).abs() > 0.03), "places differ");
+        }
+        assert_eq!(map[100], local[100], "far below the lowest zone nothing is added");
+        assert_eq!(agreed(&local, &heights, &[]), local);
+        assert!(agreed(&[f32::NAN; 2], &[1.0, 1.0], &[(1.0, 0.5)]).iter().all(|v| v.is_nan()));
+    }
 
     fn seen(matrix: &[[f32; 3]; 3], c: Vec3) -> Vec3 {
         Vec3::from_array(matrix.map(|row| Vec3::from_array(row).dot(c))).clamp(Vec3::ZERO, Vec3::ONE)

@@ -13,11 +13,12 @@ use toile_assets::export::{self, DressedBody, glb};
 use toile_assets::garment::Garment;
 use toile_assets::limits::{STEP_HZ, STEP_SECONDS};
 use toile_assets::rig::Rig;
+use toile_assets::sizes::Girth;
 use toile_assets::skeleton::{BONES, Joint};
 use toile_assets::wardrobe::own;
 use toile_engine::body::palette;
 use toile_engine::cloth::layers::tuck_in;
-use toile_engine::cloth::{Settings, measure};
+use toile_engine::cloth::{Cloth, Settings, measure};
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::frame_loop::governor::LADDER;
 use toile_engine::lines::{CAPACITY, Kind, Lines};
@@ -30,6 +31,7 @@ use toile_fitting::dress::{body, session};
 use toile_fitting::scene::StepTimes;
 use toile_fitting::scene::contact::ContactReport;
 use toile_sensors::frame::Joints;
+use toile_view::fit_map;
 
 use crate::arguments::{Printing, TapeArgs, one_of, quality};
 use crate::commands::crossings::CrossingCount;
@@ -38,7 +40,7 @@ use crate::output::Inputs;
 use crate::output::OutputFolder;
 use crate::pictures::{FinalState, Pictures, WorstMoment};
 use crate::renderer::{PictureRenderer, RendererChoice};
-use crate::report::{self, Document, Recommendation, TryOn};
+use crate::report::{self, Document, Recommendation, TryOn, ZoneFitReport};
 use crate::summary;
 use crate::terminal::{self, Paint, Progress, Words};
 use crate::video::Video;
@@ -171,7 +173,8 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     let track = session::standing(&session)?;
     let (body, note) = worn_body(args, &mut measured, &choices, has_joints)?;
     let notes: Vec<String> = note.into_iter().chain(measured.best.notes.iter().cloned()).collect();
-    let PutOn { mut garments, recommendations, meshes } = put_on(&choices, args.size.as_deref(), &measured, &body)?;
+    let PutOn { mut garments, recommendations, meshes, judged } =
+        put_on(&choices, args.size.as_deref(), &measured, &body)?;
     meshes.iter().flat_map(MeshReport::lines).for_each(|line| words.print_line(&line));
     args.tuck.iter().try_for_each(|name| tuck(&mut garments, name))?;
 
@@ -179,7 +182,7 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     let settings = LADDER[usize::from(args.rung)].of(&Settings { quality: args.quality, ..Settings::default() });
     let (mut frame, mut reader) = Frame::new(body, &rig, garments, settings).map_err(AppError::internal)?;
     let title = title(&recommendations);
-    let played = play((args, &words, &title), &mut out, &mut renderer, &mut frame, &mut reader, &track)?;
+    let played = play((args, &words, &title, &judged), &mut out, &mut renderer, &mut frame, &mut reader, &track)?;
 
     if args.glb {
         out.write("dressed.glb", &dressed(&frame, reader.latest()))?;
@@ -248,13 +251,24 @@ struct PutOn {
     recommendations: Vec<Recommendation>,
     /// Of the meshes of the user's own.
     meshes: Vec<MeshReport>,
+    /// How tight each garment was judged at each zone.
+    judged: Vec<JudgedTightness>,
 }
+
+/// How tight a garment was judged, -1 (loose) .. 1 (tight), at the zones where it is known.
+type JudgedTightness = Vec<(Girth, f32)>;
 
 /// Sizes and bakes every garment.
 fn put_on(choices: &[Choice], size: Option<&str>, measured: &Measured, body: &Body) -> Result<PutOn, AppError> {
-    let mut put_on = PutOn { garments: Vec::new(), recommendations: Vec::new(), meshes: Vec::new() };
+    let mut put_on =
+        PutOn { garments: Vec::new(), recommendations: Vec::new(), meshes: Vec::new(), judged: Vec::new() };
+    let mut beneath = Vec::new();
     for choice in choices {
-        let worn = choice.put_on(size, &measured.best, body)?;
+        let worn = choice.put_on(size, &measured.best, body, &beneath)?;
+        beneath.extend(choice.offer(body)?);
+        let zones = worn.fit.iter().flat_map(|fit| &fit.zones);
+        let judged: JudgedTightness = zones.filter_map(|z| Some((z.zone, z.tightness?))).collect();
+        put_on.judged.extend(worn.garments.iter().map(|_| judged.clone()));
         put_on.recommendations.push(match worn.fit {
             Some(fit) => fit.into(),
             None => Recommendation {
@@ -291,9 +305,27 @@ struct Played {
     hidden_mm: Option<f64>,
 }
 
+/// The fit map of each garment: how tight it sits from place to place, in the mean as tight as it was judged.
+fn fit_colours(frame: &Frame, judged: &[JudgedTightness]) -> Vec<Vec<f32>> {
+    let levels = &frame.body().levels;
+    let level = |zone: Girth| match zone {
+        Girth::Chest => levels.chest,
+        Girth::Waist => levels.waist,
+        Girth::Hip => levels.hip,
+    };
+    let map = |((cloth, garment), judged): ((&Cloth, &Garment), &JudgedTightness)| {
+        let local = measure::tightness(cloth, garment, frame.colliders());
+        let heights: Vec<f32> = garment.start.iter().map(|p| p.y).collect();
+        let mut known: Vec<(f32, f32)> = judged.iter().map(|(zone, tight)| (level(*zone), *tight)).collect();
+        known.sort_by(|a, b| b.0.total_cmp(&a.0));
+        fit_map::agreed(&local, &heights, &known)
+    };
+    frame.cloths().iter().zip(frame.garments()).zip(judged).map(map).collect()
+}
+
 /// Plays the session through the frame, 120 steps a second, and draws it.
 fn play(
-    (args, words, title): (&TryOnArgs, &Words, &str),
+    (args, words, title, judged): (&TryOnArgs, &Words, &str, &[JudgedTightness]),
     out: &mut OutputFolder,
     renderer: &mut PictureRenderer,
     frame: &mut Frame,
@@ -334,12 +366,7 @@ fn play(
     let drew = pictures.is_some() || video.is_some();
     let mut hidden_m = 0.0f32;
     if let Some(pictures) = pictures {
-        let tightness: Vec<Vec<f32>> = frame
-            .cloths()
-            .iter()
-            .zip(frame.garments())
-            .map(|(cloth, garment)| measure::tightness(cloth, garment, frame.colliders()))
-            .collect();
+        let tightness = fit_colours(frame, judged);
         draw_lines(&mut lines, &args.lines, frame);
         let (facing, worst) = (facing(frame), worst.as_ref());
         let ending = FinalState { tightness: &tightness, facing, title, lines: lines.as_slice(), worst };
@@ -402,7 +429,10 @@ fn dressed(frame: &Frame, snapshot: &Snapshot) -> Vec<u8> {
 /// Words over the stills: the first garment and its size, then each zone.
 fn title(recommendations: &[Recommendation]) -> String {
     let line = |r: &Recommendation| {
-        let zones = r.zones.iter().map(|z| format!("{} {} ({:+.0} mm)", z.zone, z.verdict, z.ease_mm));
+        let zone = |z: &ZoneFitReport| {
+            format!("{} {} ({:+.0} mm)", z.zone, z.feel.as_deref().unwrap_or(&z.verdict), z.ease_mm)
+        };
+        let zones = r.zones.iter().map(zone);
         format!("{}, size {}\n{}", r.garment, r.size, zones.collect::<Vec<_>>().join("   "))
     };
     recommendations.iter().map(line).collect::<Vec<_>>().join("\n")

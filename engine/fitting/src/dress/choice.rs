@@ -164,11 +164,13 @@ impl Choice {
     /// # Errors
     /// Sizes that cannot be used, a pattern that cannot be laid around a body.
     pub fn offer(&self, wearer: &Body) -> Result<Option<GarmentOffer>, FittingError> {
-        match &self.source {
+        let offer = match &self.source {
             ChoiceSource::Style(style) => GarmentOffer::of_style(style).map(Some),
             ChoiceSource::Mesh(own) => GarmentOffer::of_mesh(own),
             ChoiceSource::Pattern(package) => GarmentOffer::of_pattern(package, wearer).map(Some),
-        }
+        };
+        let thickness_m = self.fabric()?.thickness_mm * 1e-3;
+        Ok(offer?.map(|offer| GarmentOffer { thickness_m, ..offer }))
     }
 
     /// The body that it is shown on where nobody is measured, and the size that it has there: the body of its middle size, the
@@ -223,7 +225,7 @@ impl Choice {
         table.map(|table| table.size_body(size).map(Measures::from)).transpose().map_err(FittingError::input)
     }
 
-    /// The size that fits, or how the one asked for does; none of a mesh that has no sizes.
+    /// The size that fits over what is worn beneath, or how the one asked for does; none of a mesh that has no sizes.
     ///
     /// # Errors
     /// A size that is not made; as [`Self::offer`].
@@ -232,12 +234,13 @@ impl Choice {
         size: Option<&str>,
         measured: &Measurements,
         wearer: &Body,
+        beneath: &[GarmentOffer],
     ) -> Result<Option<Recommendation>, FittingError> {
         let offer = match (&self.source, size) {
             (ChoiceSource::Pattern(package), Some(TO_MEASURE)) => Some(GarmentOffer::made_to_measure(package, wearer)?),
             _ => self.offer(wearer)?,
         };
-        offer.map(|offer| offer.judge(size, measured)).transpose()
+        offer.map(|offer| offer.over(beneath).judge(size, measured)).transpose()
     }
 
     /// The garment in a size on a body, baked; a mesh without sizes has `unknown` or none.
@@ -276,12 +279,18 @@ impl Choice {
         Ok(worn)
     }
 
-    /// Sizes the garment for measures and bakes it onto a body.
+    /// Sizes the garment for measures, over what is worn beneath, and bakes it onto a body.
     ///
     /// # Errors
     /// As [`Self::judge`] and [`Self::dress`].
-    pub fn put_on(&self, size: Option<&str>, measured: &Measurements, wearer: &Body) -> Result<Worn, FittingError> {
-        let fit = self.judge(size, measured, wearer)?;
+    pub fn put_on(
+        &self,
+        size: Option<&str>,
+        measured: &Measurements,
+        wearer: &Body,
+        beneath: &[GarmentOffer],
+    ) -> Result<Worn, FittingError> {
+        let fit = self.judge(size, measured, wearer, beneath)?;
         let worn = self.dress(fit.as_ref().map(|fit| fit.size.as_str()).or(size), wearer)?;
         Ok(Worn { fit, ..worn })
     }

@@ -57,11 +57,12 @@ impl Recipe {
         let choices = wish.choices()?;
         let sex = measured.sex(wish::population(&choices)?);
         let (body, _) = body::build(sex, &measured.best, Population::from(Some(sex)))?;
-        let sized = |choice: &Choice| {
-            let fit = choice.judge(wish.size.as_deref(), &measured.best, &body)?;
-            Ok((choice.name.clone(), fit.map_or_else(|| own::UNKNOWN.to_owned(), |fit| fit.size)))
-        };
-        let garments = choices.iter().map(sized).collect::<Result<_, FittingError>>()?;
+        let (mut garments, mut beneath) = (Vec::with_capacity(choices.len()), Vec::new());
+        for choice in &choices {
+            let fit = choice.judge(wish.size.as_deref(), &measured.best, &body, &beneath)?;
+            garments.push((choice.name.clone(), fit.map_or_else(|| own::UNKNOWN.to_owned(), |fit| fit.size)));
+            beneath.extend(choice.offer(&body)?);
+        }
         Ok(Self::of_body(session, sex, &body.measures, garments, wish.quality))
     }
 

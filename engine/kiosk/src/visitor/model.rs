@@ -13,6 +13,7 @@ use super::texts::Language;
 use super::visit::{ComparedSizes, MeasureProgress, ViewTurn, Visit};
 use super::wardrobe::{Outfit, Wardrobe, WornItem};
 use crate::service::session::{SessionInput, SessionMachine, SessionState};
+use toile_fitting::dress::offer::GarmentOffer;
 
 /// The model of a visit.
 #[derive(Debug, Clone)]
@@ -340,7 +341,13 @@ impl VisitModel {
 
     /// The fit of a garment, in a size or in the best one.
     pub(super) fn judge(&self, item: usize, size: Option<usize>) -> Option<SizeFit> {
-        size_fit::judge(self.wardrobe.items.get(item)?, self.visit.known.as_ref()?, size).ok()
+        let garment = self.wardrobe.items.get(item)?;
+        // The outfit is in the order of dressing, as the wardrobe is.
+        let worn =
+            self.visit.outfit.iter().take_while(|w| w.item < item).filter_map(|w| self.wardrobe.items.get(w.item));
+        let beneath: Vec<GarmentOffer> =
+            worn.filter(|other| !other.excludes(garment)).filter_map(|other| other.offer.clone()).collect();
+        size_fit::judge(garment, self.visit.known.as_ref()?, size, &beneath).ok()
     }
 
     /// Takes another garment in hand, and judges it; without one the one in hand, or where it is not worn any more the outermost.

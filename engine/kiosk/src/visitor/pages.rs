@@ -12,11 +12,12 @@ mod visit;
 use super::measure_entry::{LengthUnit, OwnMeasure};
 use super::model::VisitModel;
 use super::reach::DisplayMount;
-use super::screen::{Action, Block, BodyView, Control, ControlStyle, Page, Screen};
+use super::screen::{Action, Block, BodyView, Control, ControlStyle, JudgedGarment, Page, Screen};
 use super::size_fit::{BodyPart, VisitorMeasures};
 use super::texts::{Language, TextKey, TextValue, Texts, Translation};
 use super::visit::MeasureProgress;
 use super::wardrobe::WardrobeItem;
+use toile_assets::sizes::Girth;
 use toile_view::image::linear;
 
 /// Large type, as a multiple of the ordinary one.
@@ -64,14 +65,24 @@ impl VisitModel {
             | Page::MeasureEntry
                 if shown =>
             {
-                BodyView::Shopper { yaw, fit: false, unknown: [false; 3] }
+                BodyView::Shopper { yaw, fit: false, unknown: [false; 3], judged: None }
             }
             Page::Zones | Page::Zone if shown => {
                 let unknown = visit.known.as_ref().map_or([false; 3], VisitorMeasures::unknown);
-                BodyView::Shopper { yaw, fit: visit.fit_map, unknown }
+                BodyView::Shopper { yaw, fit: visit.fit_map, unknown, judged: self.judged() }
             }
             _ => BodyView::Mannequin,
         }
+    }
+
+    /// The garment in hand as it was judged; none while another body than the one it was judged on is shown.
+    fn judged(&self) -> Option<JudgedGarment> {
+        let visit = &self.visit;
+        let worn = if visit.worn.is_empty() { &visit.outfit } else { &visit.worn };
+        let place = worn.iter().position(|w| w.item == visit.in_hand)?;
+        let fit = visit.fit.as_ref().filter(|fit| fit.size == worn[place].size)?;
+        let at = |girth: Girth| fit.zones.iter().find(|z| z.zone == girth).and_then(|z| z.tightness);
+        Some(JudgedGarment { place, tightness: [Girth::Chest, Girth::Waist, Girth::Hip].map(at) })
     }
 
     /// Colours of the garments that are shown.

@@ -38,6 +38,15 @@ pub enum Page {
     Leaving,
 }
 
+/// How a garment that is worn was judged.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JudgedGarment {
+    /// Its place among those that are worn, inner first.
+    pub place: usize,
+    /// Tightness at chest, waist and hip, -1 (loose) .. 1 (tight), where it is known.
+    pub tightness: [Option<f32>; 3],
+}
+
 /// What the three-dimensional part of the display shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum BodyView {
@@ -51,6 +60,8 @@ pub enum BodyView {
         fit: bool,
         /// Zones whose fit is not known, in the order of `Girth::ALL`: the fit map has no colour there.
         unknown: [bool; 3],
+        /// The garment in hand as it was judged, so that its colours say what its words do.
+        judged: Option<JudgedGarment>,
     },
     /// The same body in two sizes, left and right, under one yaw (rad).
     Two {

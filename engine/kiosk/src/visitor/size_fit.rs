@@ -6,7 +6,7 @@ use toile_fitting::dress::offer::GarmentOffer;
 use toile_track::estimate::Estimate;
 use toile_track::fit::measuring::MEASURES;
 use toile_track::measure::{Measurements, Source};
-use toile_track::recommend::{MadeSize, Recommendation, Verdict};
+use toile_track::recommend::{Feel, MadeSize, Recommendation, Verdict};
 use toile_track::tape_readings::{BodyEstimate, TapeReadings};
 
 use super::measure_entry::OwnMeasure;
@@ -176,56 +176,16 @@ fn count(measured: &Measurements) -> u32 {
     measured.measures.named().iter().filter(|(_, taken)| taken.is_some()).count() as u32
 }
 
-/// How a zone feels, from tight to loose. A garment is comfortable within the range that its file gives; its lower third is
-/// snug, its upper third roomy, and farther outside than a half of it is far too tight or loose.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Feel {
-    /// Far below the comfortable range.
-    TooTight,
-    /// Below the comfortable range.
-    Tight,
-    /// In its lower third.
-    Snug,
-    /// In its middle third.
-    Right,
-    /// In its upper third.
-    Roomy,
-    /// Above the comfortable range.
-    Loose,
-    /// Far above the comfortable range.
-    TooLoose,
-}
-
-impl Feel {
-    /// Where an ease lies in its comfortable range: 0 at its lower end, 1 at its upper.
-    fn at(place: f32) -> Self {
-        match place {
-            p if p < -0.5 => Self::TooTight,
-            p if p < 0.0 => Self::Tight,
-            p if p < 1.0 / 3.0 => Self::Snug,
-            p if p <= 2.0 / 3.0 => Self::Right,
-            p if p <= 1.0 => Self::Roomy,
-            p if p <= 1.5 => Self::Loose,
-            _ => Self::TooLoose,
-        }
-    }
-
-    /// Key of its name in the pages' texts.
-    pub const fn word(self) -> TextKey {
-        match self {
-            Self::TooTight => TextKey::FeelTooTight,
-            Self::Tight => TextKey::FeelTight,
-            Self::Snug => TextKey::FeelSnug,
-            Self::Right => TextKey::FeelRight,
-            Self::Roomy => TextKey::FeelRoomy,
-            Self::Loose => TextKey::FeelLoose,
-            Self::TooLoose => TextKey::FeelTooLoose,
-        }
-    }
-
-    /// Whether it is within the comfortable range.
-    pub const fn is_comfortable(self) -> bool {
-        matches!(self, Self::Snug | Self::Right | Self::Roomy)
+/// Key of a feel's name in the pages' texts.
+pub const fn feel_word(feel: Feel) -> TextKey {
+    match feel {
+        Feel::TooTight => TextKey::FeelTooTight,
+        Feel::Tight => TextKey::FeelTight,
+        Feel::Snug => TextKey::FeelSnug,
+        Feel::Right => TextKey::FeelRight,
+        Feel::Roomy => TextKey::FeelRoomy,
+        Feel::Loose => TextKey::FeelLoose,
+        Feel::TooLoose => TextKey::FeelTooLoose,
     }
 }
 
@@ -286,6 +246,11 @@ pub enum SizeChoice {
 }
 
 impl SizeFit {
+    /// Whether it is comfortable wherever that is known.
+    pub fn is_comfortable(&self) -> bool {
+        self.zones.iter().filter_map(|zone| zone.feel).all(Feel::is_comfortable)
+    }
+
     /// Of a garment that says nothing of its size.
     const fn unknown() -> Self {
         Self {
@@ -315,12 +280,18 @@ pub enum OutOfRange {
     Larger,
 }
 
-/// Judges a size of a garment, or without one the size that fits best.
+/// Judges a size of a garment worn over others, or without one the size that fits best.
 ///
 /// # Errors
 /// A garment that no size can be named of.
-pub fn judge(item: &WardrobeItem, known: &VisitorMeasures, size: Option<usize>) -> Result<SizeFit, KioskError> {
+pub fn judge(
+    item: &WardrobeItem,
+    known: &VisitorMeasures,
+    size: Option<usize>,
+    beneath: &[GarmentOffer],
+) -> Result<SizeFit, KioskError> {
     let Some(offer) = &item.offer else { return Ok(SizeFit::unknown()) };
+    let offer = &offer.clone().over(beneath);
     let code = size.and_then(|s| item.sizes.get(s)).map(String::as_str);
     let judged = offer.judge(code, &known.measured)?;
     let place = |code: &str| item.sizes.iter().position(|s| s == code);
@@ -351,21 +322,18 @@ fn zones(offer: &GarmentOffer, known: &VisitorMeasures, judged: &Recommendation)
             Girth::Hip => hip,
         };
         let comfort_m = offer.comfort(z.zone)?;
-        let place = |ease: f32| (ease - comfort_m[0]) / (comfort_m[1] - comfort_m[0]).max(1e-3);
-        let guessed = z.verdict == Verdict::Unknown || known.is_unknown(z.zone);
-        let feel = (!guessed).then(|| Feel::at(place(z.ease)));
-        let perhaps = [z.ease - z.sigma, z.ease + z.sigma].map(|ease| Feel::at(place(ease)));
-        let differs = |p: &Feel| feel.is_some_and(|feel| feel.is_comfortable() != p.is_comfortable());
+        // What nobody measured is a guess, though a recommendation may be made from it.
+        let known = (z.verdict != Verdict::Unknown && !known.is_unknown(z.zone)).then_some(());
         Some(ZoneFit {
             zone: z.zone,
             primary: z.primary,
-            feel,
-            perhaps: perhaps.into_iter().find(differs),
+            feel: known.and(z.feel),
+            perhaps: known.and(z.perhaps),
             ease: Estimate::new(z.ease, z.sigma),
             body,
             garment_m: body.value + z.ease,
             comfort_m,
-            tightness: (!guessed).then(|| (0.5 - place(z.ease)).clamp(-1.0, 1.0)),
+            tightness: known.and(z.tightness),
         })
     };
     judged.zones.iter().filter_map(zone).collect()
@@ -416,24 +384,9 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn feels_divide_the_comfortable_range_in_three() {
-        for (place, feel) in [
-            (-0.6, Feel::TooTight),
-            (-0.01, Feel::Tight),
-            (0.0, Feel::Snug),
-            (0.5, Feel::Right),
-            (1.0, Feel::Roomy),
-            (1.2, Feel::Loose),
-            (1.6, Feel::TooLoose),
-        ] {
-            assert_eq!(Feel::at(place), feel, "{place}");
-        }
-    }
-
-    #[test]
     fn a_larger_size_is_nowhere_tighter_and_its_ease_is_that_of_garment_less_body() {
         let (item, known) = (item("wide-trousers"), woman(0.90, 0.74, 0.98));
-        let fits: Vec<SizeFit> = (0..item.sizes.len()).map(|s| judge(&item, &known, Some(s)).unwrap()).collect();
+        let fits: Vec<SizeFit> = (0..item.sizes.len()).map(|s| judge(&item, &known, Some(s), &[]).unwrap()).collect();
         for pair in fits.windows(2) {
             for (small, large) in pair[0].zones.iter().zip(&pair[1].zones) {
                 assert!(large.ease.value > small.ease.value && large.tightness <= small.tightness);
@@ -445,7 +398,7 @@ pub(super) mod tests {
             assert_eq!(zone.ease.sigma, zone.body.sigma, "the garment is as its file says");
             assert_eq!(zone.tightness.unwrap().abs() <= 0.5, zone.feel.unwrap().is_comfortable(), "{zone:?}");
         }
-        let best = judge(&item, &known, None).unwrap();
+        let best = judge(&item, &known, None, &[]).unwrap();
         assert!(fits.iter().all(|f| f.best == best.size), "every size knows which would be better");
         assert_ne!(best.other, Some(best.size));
     }
@@ -453,9 +406,9 @@ pub(super) mod tests {
     #[test]
     fn a_body_beyond_the_table_is_told_so() {
         let item = item("sun-dress");
-        assert_eq!(judge(&item, &woman(0.60, 0.50, 0.70), None).unwrap().outside, Some(OutOfRange::Smaller));
-        assert_eq!(judge(&item, &woman(1.70, 1.60, 1.70), None).unwrap().outside, Some(OutOfRange::Larger));
-        assert_eq!(judge(&item, &woman(0.90, 0.74, 0.98), None).unwrap().outside, None);
+        assert_eq!(judge(&item, &woman(0.60, 0.50, 0.70), None, &[]).unwrap().outside, Some(OutOfRange::Smaller));
+        assert_eq!(judge(&item, &woman(1.70, 1.60, 1.70), None, &[]).unwrap().outside, Some(OutOfRange::Larger));
+        assert_eq!(judge(&item, &woman(0.90, 0.74, 0.98), None, &[]).unwrap().outside, None);
     }
 
     #[test]
@@ -466,7 +419,7 @@ pub(super) mod tests {
         let known = VisitorMeasures::new(known.measured, true);
         assert_eq!(known.missing, [BodyPart::Hip]);
         assert_eq!((known.basis(Girth::Hip), known.basis(Girth::Waist)), (MeasureBasis::Guessed, MeasureBasis::Seen));
-        let fit = judge(&item("wide-trousers"), &known, None).unwrap();
+        let fit = judge(&item("wide-trousers"), &known, None, &[]).unwrap();
         let hip = fit.zones.iter().find(|z| z.zone == Girth::Hip).unwrap();
         assert!(hip.ease.sigma > 0.02, "a guess is not sure: {hip:?}");
         assert!((hip.feel, hip.perhaps, hip.tightness) == (None, None, None) && fit.has_unknown(), "{hip:?}");
@@ -485,7 +438,7 @@ pub(super) mod tests {
             girth.as_mut().unwrap().sigma = 0.06;
         }
         let known = VisitorMeasures::new(known.measured, false);
-        let fit = judge(&item("sun-dress"), &known, None).unwrap();
+        let fit = judge(&item("sun-dress"), &known, None, &[]).unwrap();
         assert!(fit.zones.iter().all(|z| z.feel.is_none() && z.perhaps.is_none() && z.tightness.is_none()), "{fit:?}");
         assert!(fit.probability > 0.0 && fit.probability < toile_track::recommend::SURE, "{fit:?}");
         assert_eq!((known.unknown(), fit.outside), ([true; 3], None));
@@ -502,11 +455,11 @@ pub(super) mod tests {
         assert!((hip.value - 1.06).abs() < 0.005 && hip.sigma < 0.01, "{hip:?}");
         assert_eq!((known.basis(Girth::Hip), known.missing.len()), (MeasureBasis::Taped, 0));
         assert_eq!(known.basis(Girth::Waist), MeasureBasis::Seen);
-        let fit = judge(&item("wide-trousers"), &known, None).unwrap();
+        let fit = judge(&item("wide-trousers"), &known, None, &[]).unwrap();
         assert!(!fit.has_unknown());
         let sized = |chest: f32| {
             let tape = TapeReadings::default().with(OwnMeasure::Chest.index(), chest).unwrap();
-            judge(&item("sun-dress"), &before.with_tape(&tape), None).unwrap().size
+            judge(&item("sun-dress"), &before.with_tape(&tape), None, &[]).unwrap().size
         };
         assert!(sized(0.84) < sized(1.0), "sizes follow");
         assert_eq!(known.with_tape(&TapeReadings::default()), before);

@@ -55,6 +55,7 @@ keys! {
     PartlyCure = "partly-cure",
     FittingSize = "fitting-size",
     FittingBest = "fitting-best",
+    FittingNearest = "fitting-nearest",
     FittingOneSize = "fitting-one-size",
     FittingSizeUnknown = "fitting-size-unknown",
     FittingSure = "fitting-sure",

@@ -26,6 +26,10 @@ pub struct BodyModel {
     pub fit: Vec<Vec<f32>>,
     /// The zone that each particle of a garment counts to, by its height `[garments][particles]`.
     pub zones: Vec<Vec<Girth>>,
+    /// Height at which each particle is put on (m) `[garments][particles]`.
+    pub heights: Vec<Vec<f32>>,
+    /// Heights of chest, waist and hip (m).
+    pub levels: [f32; 3],
     /// Height of the body (m).
     pub stature: f32,
 }
@@ -86,6 +90,8 @@ impl BodyModel {
             recess: recesses,
             fit: frame.cloths().iter().zip(garments).map(tight).collect(),
             zones: garments.iter().map(|g| g.start.iter().map(|p| zone(&body.levels, p.y)).collect()).collect(),
+            heights: garments.iter().map(|g| g.start.iter().map(|p| p.y).collect()).collect(),
+            levels: [body.levels.chest, body.levels.waist, body.levels.hip],
             stature: body.measures.stature,
         }
     }

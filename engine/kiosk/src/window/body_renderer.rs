@@ -7,6 +7,7 @@ use glam::Vec3;
 use toile_assets::mesh::vertex_normals;
 use toile_assets::sizes::Girth;
 use toile_engine::frame::Snapshot;
+use toile_view::fit_map;
 use toile_view::image::Size;
 use toile_view::raster::{Backdrop, Gpu, Model, RenderQuality, Renderer, SurfaceInterpolation, Viewport};
 use toile_view::scene::Bounds;
@@ -14,7 +15,7 @@ use wgpu::{CommandEncoder, TextureFormat, TextureView};
 
 use super::body_model::{BodyModel, ModelPair};
 use super::camera;
-use crate::visitor::screen::BodyView;
+use crate::visitor::screen::{BodyView, JudgedGarment};
 
 /// A mannequin turns once in so many seconds.
 const TURN_S: f64 = 36.0;
@@ -35,6 +36,9 @@ pub struct BodyScene<'a> {
     pub time_s: Option<f64>,
 }
 
+/// What the fit map shows: zones that are not known, and how the garment in hand was judged.
+type FitColours = ([bool; 3], Option<JudgedGarment>);
+
 /// A body with its garments, on a device.
 pub struct BodyRenderer {
     renderer: Renderer,
@@ -47,14 +51,17 @@ pub struct BodyRenderer {
     pair: [usize; 2],
     fit: Vec<Vec<f32>>,
     zones: Vec<Vec<Girth>>,
+    heights: Vec<Vec<f32>>,
+    levels: [f32; 3],
     statures: [f32; 3],
     blends: Vec<SurfaceInterpolation>,
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
     /// Where the body stands (m), once it was seen.
     at: Option<Vec3>,
-    /// What was painted last: colours, and whether as a fit map, with the zones that it does not know.
-    painted: (Vec<[f32; 3]>, Option<[bool; 3]>),
+    /// What was painted last: colours, and whether as a fit map, with the zones that it does not know and how the garment in hand was
+    /// judged.
+    painted: (Vec<[f32; 3]>, Option<FitColours>),
 }
 
 impl BodyRenderer {
@@ -69,6 +76,8 @@ impl BodyRenderer {
             pair: [0; 2],
             fit: Vec::new(),
             zones: Vec::new(),
+            heights: Vec::new(),
+            levels: [0.0; 3],
             statures: [1.7; 3],
             blends: Vec::new(),
             positions: Vec::new(),
@@ -92,6 +101,7 @@ impl BodyRenderer {
         self.pair = pair.map_or([0; 2], |pair| pair.each_ref().map(|m| m.meshes.surfaces.len()));
         self.triangles = surfaces().map(|s| s.triangles.clone()).collect();
         (self.fit, self.zones) = (model.fit.clone(), model.zones.clone());
+        (self.heights, self.levels) = (model.heights.clone(), model.levels);
         self.statures = [model.stature, pair.map_or(1.7, |p| p[0].stature), pair.map_or(1.7, |p| p[1].stature)];
         self.blends = vec![SurfaceInterpolation::new(); self.worn];
         self.painted = (Vec::new(), None);
@@ -198,7 +208,7 @@ impl BodyRenderer {
     /// Colours and fit map, where they have changed.
     fn paint(&mut self, scene: &BodyScene<'_>) {
         let fit = match scene.body_view {
-            BodyView::Shopper { fit: true, unknown, .. } => Some(*unknown),
+            BodyView::Shopper { fit: true, unknown, judged, .. } => Some((*unknown, *judged)),
             _ => None,
         };
         if (&*self.painted.0, self.painted.1) == (scene.colours, fit) {
@@ -213,7 +223,14 @@ impl BodyRenderer {
             }
         }
         for (surface, (tight, zones)) in (1..self.worn).zip(self.fit.iter().zip(&self.zones)) {
-            let tight = fit.map(|unknown| BodyModel::known_fit(tight, zones, unknown));
+            let judged = fit.and_then(|(_, judged)| judged).filter(|judged| judged.place + 1 == surface);
+            let agreed = judged.map(|judged| {
+                let known = self.levels.into_iter().zip(judged.tightness);
+                let levels: Vec<(f32, f32)> = known.filter_map(|(level, tight)| Some((level, tight?))).collect();
+                fit_map::agreed(tight, &self.heights[surface - 1], &levels)
+            });
+            let tight = agreed.as_deref().unwrap_or(tight);
+            let tight = fit.map(|(unknown, _)| BodyModel::known_fit(tight, zones, unknown));
             _ = self.renderer.set_fit(surface, tight.as_deref());
         }
     }

@@ -8,6 +8,7 @@
 //! mean penalty is least is recommended, and every size has the share of bodies that it suits best as its probability.
 //! Where no size is sure, the measure is named whose exact knowledge would make the choice surest.
 
+mod feel;
 mod offer;
 mod probability;
 mod recommendation;
@@ -21,6 +22,7 @@ use crate::measure::{Measurements, Source};
 use probability::{SizeProbabilities, least};
 use scored_zone::{ScoredZone, WEIGHTS, WORTH_NAMING};
 
+pub use feel::Feel;
 pub use offer::{EaseRange, MadeSize, Offer, Zone, ZoneGirth};
 pub use recommendation::{Recommendation, RunnerUp, SURE, SizeProbability, TapeAdvice, Verdict, ZoneFit};
 
@@ -121,17 +123,18 @@ fn judge(measured: &Measurements, offer: &Offer, wanted: Option<&str>) -> Result
         .map(|i| RunnerUp { size: offer.sizes[i].code.clone(), probability: share[i] });
     let sizes = offer.sizes.iter().zip(&share);
     let sizes: Vec<_> = sizes.map(|(s, &p)| SizeProbability { size: s.code.clone(), probability: p }).collect();
+    let fits: Vec<ZoneFit> = zones.iter().filter_map(|z| sentences::fit(z, &offer.sizes[chosen])).collect();
     let uncertain = share.iter().all(|&p| p < SURE);
     let girth_to_take = if uncertain { girth_to_take(&zones, offer.sizes, &share) } else { None };
     Ok(Recommendation {
         garment: offer.garment.to_owned(),
         size: offer.sizes[chosen].code.clone(),
         probability: share[chosen],
-        verdict: sentences::verdict(&sizes, [chosen, best], girth_to_take.as_ref()),
+        verdict: sentences::verdict(&sizes, [chosen, best], girth_to_take.as_ref(), &fits),
         sizes,
         uncertain,
         girth_to_take,
-        zones: zones.iter().filter_map(|z| sentences::fit(z, &offer.sizes[chosen])).collect(),
+        zones: fits,
         runner_up,
         note: sentences::note(measured, offer, &zones),
     })

@@ -1,5 +1,6 @@
 //! A size, judged: how each zone fits, how probable each size is, and what to do where none is sure.
 
+use super::feel::Feel;
 use super::offer::Zone;
 
 toile_assets::named! {
@@ -28,8 +29,16 @@ pub struct ZoneFit {
     pub ease: f32,
     /// Standard deviation of the ease (m): that of the body's measure.
     pub sigma: f32,
-    /// How it will feel.
+    /// Whether it is comfortable.
     pub verdict: Verdict,
+    /// How it feels, in one of seven words; none where nobody saw the body there.
+    pub feel: Option<Feel>,
+    /// How it may feel too: what the ease less or more its error comes to, where that is comfortable when this is not or the
+    /// other way round.
+    pub perhaps: Option<Feel>,
+    /// -1 (loose) .. 1 (tight), within half of it where the zone is comfortable: the fit map's scale; none where nobody saw the
+    /// body there.
+    pub tightness: Option<f32>,
     /// The same for a person to read.
     pub sentence: String,
 }

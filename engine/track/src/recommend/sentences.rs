@@ -1,5 +1,6 @@
 //! A recommendation in sentences.
 
+use super::feel::{self, Feel};
 use super::probability::ease_of;
 use super::{
     EaseRange, MadeSize, Offer, SURE, ScoredZone, SizeProbability, TapeAdvice, Verdict, WEIGHTS, WORTH_NAMING, Zone,
@@ -12,6 +13,7 @@ pub(super) fn verdict(
     sizes: &[SizeProbability],
     [chosen, best]: [usize; 2],
     girth_to_take: Option<&TapeAdvice>,
+    zones: &[ZoneFit],
 ) -> String {
     let SizeProbability { size, probability } = &sizes[chosen];
     let percent = 100.0 * probability;
@@ -23,7 +25,11 @@ pub(super) fn verdict(
         );
     }
     if *probability >= SURE {
-        return format!("Size {size} fits best: {percent:.0} % sure.");
+        let misfits = misfits(zones, &[Verdict::Tight, Verdict::Loose]);
+        return match misfits.is_empty() {
+            true => format!("Size {size} fits best: {percent:.0} % sure."),
+            false => format!("Size {size} is the nearest: {misfits} ({percent:.0} % sure that no other is nearer)."),
+        };
     }
     let mut others: Vec<&SizeProbability> =
         sizes.iter().filter(|s| s.size != *size && s.probability >= WORTH_NAMING).collect();
@@ -43,20 +49,22 @@ pub(super) fn verdict(
 
 /// The verdict on a garment that there is in one size.
 pub(super) fn only(size: &MadeSize, zones: &[ZoneFit]) -> String {
-    let at = |verdict: Verdict| {
-        zones.iter().filter(|z| z.verdict == verdict).map(|z| z.zone.name()).collect::<Vec<_>>().join(" and ")
-    };
-    let parts = [Verdict::Tight, Verdict::Loose, Verdict::Unknown].map(|verdict| (verdict, at(verdict)));
-    let wrong: Vec<String> = parts
-        .into_iter()
-        .filter(|(_, zones)| !zones.is_empty())
-        .map(|(verdict, zones)| match verdict {
-            Verdict::Unknown => format!("not known at the {zones}"),
-            _ => format!("{} at the {zones}", verdict.name()),
-        })
-        .collect();
-    let how = if wrong.is_empty() { "it fits".to_owned() } else { wrong.join(", ") };
+    let misfits = misfits(zones, &[Verdict::Tight, Verdict::Loose, Verdict::Unknown]);
+    let how = if misfits.is_empty() { "it fits" } else { &misfits };
     format!("There is one size, {}: {how}.", size.code)
+}
+
+/// Where it does not fit: `tight at the chest and hip, loose at the waist`.
+fn misfits(zones: &[ZoneFit], verdicts: &[Verdict]) -> String {
+    let named = |verdict: &Verdict| {
+        let at =
+            zones.iter().filter(|z| z.verdict == *verdict).map(|z| z.zone.name()).collect::<Vec<_>>().join(" and ");
+        (!at.is_empty()).then(|| match verdict {
+            Verdict::Unknown => format!("not known at the {at}"),
+            _ => format!("{} at the {at}", verdict.name()),
+        })
+    };
+    verdicts.iter().filter_map(named).collect::<Vec<_>>().join(", ")
 }
 
 /// What taking a girth by tape is good for.
@@ -69,45 +77,56 @@ pub(super) fn girth_to_take(zone: Zone, now: f32, then: f32) -> String {
 pub(super) fn fit(zone: &ScoredZone, size: &MadeSize) -> Option<ZoneFit> {
     let ease = ease_of(zone, size)?;
     let EaseRange { least, most, zone: at } = zone.ease;
-    let verdict = match ease {
-        _ if zone.guessed => Verdict::Unknown,
-        e if e < least => Verdict::Tight,
-        e if e > most => Verdict::Loose,
-        _ => Verdict::Good,
-    };
     let sigma = zone.body.sigma;
     let cm = |m: f32| m * 100.0;
-    let how = match verdict {
-        Verdict::Tight => format!("tight by {:.1} cm", cm(least - ease)),
-        Verdict::Loose => format!("loose by {:.1} cm", cm(ease - most)),
-        Verdict::Good => "good".to_owned(),
-        Verdict::Unknown => {
-            let sentence = format!(
-                "How the {0} fits is not known: its ease of {1:.1} cm, give or take {2:.1} cm, is a guess from the stature and the \
-                 shoulders; take the {0} by tape.",
+    let feels = |ease: f32| Feel::at(feel::place(ease, [least, most]));
+    let feel = (!zone.guessed).then(|| feels(ease));
+    let verdict = match feel {
+        None => Verdict::Unknown,
+        Some(Feel::TooTight | Feel::Tight) => Verdict::Tight,
+        Some(Feel::Loose | Feel::TooLoose) => Verdict::Loose,
+        Some(_) => Verdict::Good,
+    };
+    let differs = |p: &Feel| feel.is_some_and(|feel| feel.is_comfortable() != p.is_comfortable());
+    let perhaps = [ease - sigma, ease + sigma].map(feels).into_iter().find(differs);
+    let sentence = match feel {
+        None => format!(
+            "How the {0} fits is not known: its ease of {1:.1} cm, give or take {2:.1} cm, is a guess from the stature and the \
+             shoulders; take the {0} by tape.",
+            at.name(),
+            cm(ease),
+            cm(sigma)
+        ),
+        Some(feel) => {
+            let by = match verdict {
+                Verdict::Tight => format!(" by {:.1} cm", cm(least - ease)),
+                Verdict::Loose => format!(" by {:.1} cm", cm(ease - most)),
+                Verdict::Good | Verdict::Unknown => String::new(),
+            };
+            let doubt = perhaps.map_or_else(String::new, |other| format!(", perhaps {}", other.name()));
+            format!(
+                "The {} has {:.1} cm of ease, give or take {:.1} cm: {}{by}{doubt} ({:.0} to {:.0} cm is comfortable).",
                 at.name(),
                 cm(ease),
-                cm(sigma)
-            );
-            return Some(ZoneFit { zone: at, primary: zone.weight == WEIGHTS[0], ease, sigma, verdict, sentence });
+                cm(sigma),
+                feel.name(),
+                cm(least),
+                cm(most)
+            )
         }
     };
-    let doubt = match verdict {
-        Verdict::Good if ease - least < sigma && ease - least < most - ease => ", perhaps tight",
-        Verdict::Good if most - ease < sigma => ", perhaps loose",
-        Verdict::Tight if least - ease < sigma => ", perhaps good",
-        Verdict::Loose if ease - most < sigma => ", perhaps good",
-        _ => "",
-    };
-    let sentence = format!(
-        "The {} has {:.1} cm of ease, give or take {:.1} cm: {how}{doubt} ({:.0} to {:.0} cm is comfortable).",
-        at.name(),
-        cm(ease),
-        cm(sigma),
-        cm(least),
-        cm(most)
-    );
-    Some(ZoneFit { zone: at, primary: zone.weight == WEIGHTS[0], ease, sigma, verdict, sentence })
+    let tightness = feel.map(|_| feel::tightness(feel::place(ease, [least, most])));
+    Some(ZoneFit {
+        zone: at,
+        primary: zone.weight == WEIGHTS[0],
+        ease,
+        sigma,
+        verdict,
+        feel,
+        perhaps,
+        tightness,
+        sentence,
+    })
 }
 
 /// What the person should know besides: that no size is made for them.

@@ -47,7 +47,9 @@ impl PageWriter<'_> {
             blocks.push(self.paragraph(key));
         } else if fit.size == fit.best {
             let size = TextValue::Text(self.size(fit.size));
-            blocks.push(Block::Text(self.format(TextKey::FittingBest, &[("size", size)])));
+            // What is tight or loose somewhere is the best there is, and no more.
+            let best = if fit.is_comfortable() { TextKey::FittingBest } else { TextKey::FittingNearest };
+            blocks.push(Block::Text(self.format(best, &[("size", size)])));
             let how = if fit.probability >= SURE { TextKey::FittingSure } else { TextKey::FittingUnsure };
             blocks.push(Block::Text(self.format(how, &[percent])));
         } else {

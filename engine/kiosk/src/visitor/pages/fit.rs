@@ -3,7 +3,7 @@
 use toile_assets::sizes::Girth;
 
 use super::super::screen::Block;
-use super::super::size_fit::{BodyPart, Feel, MeasureBasis, ZoneFit};
+use super::super::size_fit::{BodyPart, MeasureBasis, ZoneFit, feel_word};
 use super::super::texts::{TextKey, TextValue};
 use super::PageWriter;
 
@@ -47,7 +47,7 @@ impl PageWriter<'_> {
             let text = self.format(TextKey::FitUnknown, &[("zone", TextValue::Text(&name))]);
             return Block::Fit { text, tightness: None };
         };
-        let feel = self.words(feel.word());
+        let feel = self.words(feel_word(feel));
         // What is rounded to nothing is no lack.
         let (key, ease) = match cm(zone.ease.value).round() {
             e if e < 0.0 => (TextKey::FitLack, -zone.ease.value),
@@ -62,7 +62,7 @@ impl PageWriter<'_> {
         let fit = self.format(key, &values);
         let text = match zone.perhaps {
             Some(other) => {
-                let feel = self.words(other.word());
+                let feel = self.words(feel_word(other));
                 self.format(TextKey::FitPerhaps, &[("fit", TextValue::Text(&fit)), ("feel", TextValue::Text(&feel))])
             }
             None => fit,
@@ -73,7 +73,7 @@ impl PageWriter<'_> {
     pub(super) fn zone_label(&self, place: usize) -> (String, Option<String>) {
         let zone = self.model.visit.fit.as_ref().and_then(|fit| fit.zones.get(place));
         let Some(zone) = zone else { return Default::default() };
-        (self.zone_name(zone.zone), Some(self.words(zone.feel.map_or(TextKey::FeelUnknown, Feel::word))))
+        (self.zone_name(zone.zone), Some(self.words(zone.feel.map_or(TextKey::FeelUnknown, feel_word))))
     }
 
     /// The zone that is asked about.
@@ -145,7 +145,7 @@ impl PageWriter<'_> {
                 blocks.push(Block::Text(self.format(TextKey::CompareUnknown, &values)));
                 continue;
             };
-            let [a, b] = [a, b].map(|feel| self.words(feel.word()));
+            let [a, b] = [a, b].map(|feel| self.words(feel_word(feel)));
             blocks.push(Block::Text(if a == b {
                 self.format(TextKey::CompareSame, &[("zone", TextValue::Text(&zone)), ("feel", TextValue::Text(&a))])
             } else {

@@ -32,7 +32,7 @@ fn full() -> Screen {
         ],
         controls,
         focus: 0,
-        body_view: BodyView::Shopper { yaw: 0.0, fit: true, unknown: [false; 3] },
+        body_view: BodyView::Shopper { yaw: 0.0, fit: true, unknown: [false; 3], judged: None },
         type_scale: 1.0,
         reach: 0.65,
         reach_low: 0.1,
