@@ -67,7 +67,7 @@ impl OwnMesh {
         let size = sizes.table.size_body(code)?;
         let made = MadeFor::mannequin(sizes.sex(), &Measures::from(size), String::new());
         let mut made = made.map_err(|source| AdaptError::Body { path: self.path.clone(), source })?;
-        made.hold_arms(&self.mesh);
+        made.hold_limbs(&self.mesh);
         let [to, from] = [size, sizes.body].map(Measures::from);
         let times = Girth::ALL.map(|zone| zone.of(&to) / zone.of(&from));
         let way = BodyWay::growing(&self.made_for.body, &made.body, times);

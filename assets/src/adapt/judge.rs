@@ -25,6 +25,9 @@ const NEEDLE: f32 = 10.0;
 /// Stretch or compression with which 95 % of the edges may start (1): what starts beyond is folded or torn on this body.
 const MOST_STRAIN: f32 = 0.35;
 
+/// The same with which 99 % may start: few edges that far off are enough to tear a leg open.
+const WORST_STRAIN: f32 = 0.45;
+
 /// Vertices that move at once, of a whole mesh: twice the built-in outfits', which take half of a step's time.
 pub const MOST_MOVING: usize = 12_000;
 
@@ -78,6 +81,11 @@ impl PieceMeasures {
             Some(format!(
                 "5 % of its edges start more than {:.0} % off their length on this body",
                 self.strain[0] * 100.0
+            ))
+        } else if self.strain[1] > WORST_STRAIN {
+            Some(format!(
+                "1 % of its edges start more than {:.0} % off their length on this body",
+                self.strain[1] * 100.0
             ))
         } else {
             None

@@ -71,7 +71,7 @@ impl OwnMesh {
         check(&mesh.positions, &mesh.faces)
             .map_err(|flaw| AdaptError::Mesh { path: files.path.clone(), flaw: described(&mesh, &flaw) })?;
         if !known_pose {
-            made_for.hold_arms(&mesh);
+            made_for.hold_limbs(&mesh);
         }
         let weights = smooth_weights(&mesh, &made_for.body);
         let sex = sizes.as_ref().and_then(|s| sex_of(s.table.population));
