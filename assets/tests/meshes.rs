@@ -114,7 +114,10 @@ fn outfits_by_others_lie_on_a_shopper_whatever_is_known_of_them() {
             assert!((own.axes.lift - 0.819).abs() < 0.09, "{name}, {known}: {}", own.axes.lift);
             assert_eq!(worn.report.pieces.len(), 2);
             let moving: usize = worn.report.pieces.iter().map(|p| p.moving).sum();
-            assert!(moving > 0 || name == "female_sportsuit01", "{name}, {known}");
+            // By the mesh alone its person is the average woman, on whom the suit starts too far off its lengths.
+            assert!(moving > 0 || name == "female_sportsuit01" || known == "mesh", "{name}, {known}");
+            let simulated = worn.report.pieces.iter().filter(|p| p.moving > 0);
+            assert!(simulated.map(|p| p.start_strain).fold(0.0, f32::max) < 0.45, "{name}, {known}");
             assert_eq!(own.sex, (known != "mesh").then_some(sex));
         }
     }

@@ -252,7 +252,7 @@ fn pack(args: &PackArgs) -> Result<(), AppError> {
     let (bytes, manifest) = package::pack(&args.folder).map_err(AppError::input)?;
     let shown = args.folder.display().to_string();
     let package = GarmentPackage::of_bytes(&shown, bytes.clone()).map_err(AppError::input)?;
-    let sizes = sizes(&Choice::of_package(package, shown)?)?;
+    let sizes = sizes(&Choice::of_package(package, &shown)?)?;
     let files = out.write(&bytes).map_err(AppError::input)?;
     let name = args.out.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let report = CatalogueReport {

@@ -92,14 +92,14 @@ impl Choice {
     /// A package that cannot be read, a pattern, mesh or fabric in it that cannot be used.
     pub fn open(path: &Path) -> Result<Self, FittingError> {
         let package = GarmentPackage::open(path).map_err(FittingError::input)?;
-        Self::of_package(package, path.display().to_string())
+        Self::of_package(package, &path.display().to_string())
     }
 
     /// The garment of a package that is open; `shown` is what it is called.
     ///
     /// # Errors
     /// As [`Self::open`].
-    pub fn of_package(mut package: GarmentPackage, shown: String) -> Result<Self, FittingError> {
+    pub fn of_package(mut package: GarmentPackage, shown: &str) -> Result<Self, FittingError> {
         let manifest = package.manifest().map_err(FittingError::input)?;
         let inside = |e: &dyn Display| FittingError::Input(format!("{shown}: {e}"));
         let source = if manifest.is_built_in() {
@@ -130,7 +130,7 @@ impl Choice {
             false => Fabric::built_in(fabric).map_err(|e| inside(&e)),
         });
         let own = ShopChoice { fabric: fabric.transpose()?, layer: manifest.layer };
-        Ok(Self { name: shown.clone(), source, own })
+        Ok(Self { name: shown.to_owned(), source, own })
     }
 
     /// Whose bodies it is made for; what does not say is made for everybody.
