@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use super::drape::{DrapedPattern, drape};
 use super::error::DrapeError;
-use super::graded::{AS_DRAFTED, PatternSizes, TO_MEASURE};
+use super::pattern_sizes::{AS_DRAFTED, PatternSizes, TO_MEASURE};
 use super::skin_field::SkinField;
 use crate::bake::bake;
 use crate::body::{Body, Measures, Sex};

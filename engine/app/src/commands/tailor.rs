@@ -131,7 +131,17 @@ pub fn run(args: &TailorArgs) -> Result<(), AppError> {
     package.spacing_mm = args.spacing.unwrap_or(package.spacing_mm);
     package.fabric = args.fabric.clone().unwrap_or(package.fabric);
     let fabric = Fabric::built_in(&package.fabric).map_err(AppError::input)?;
-    drafts::add(args, &mut package)?;
+    if let Some(size) = &args.drafted_for {
+        let choice = drafts::DraftChoice {
+            size,
+            table: args.table.as_deref().unwrap_or_else(|| wearer::usual_table(args.body)),
+            drafts: &args.draft,
+            seams: args.seams.as_deref(),
+            kind: args.kind,
+            sex: args.body,
+        };
+        drafts::add(&choice, &mut package)?;
+    }
     let choice = wearer::WearerChoice {
         sex: args.body,
         size: args.size.as_deref(),

@@ -1,4 +1,8 @@
 //! `toile try-on`: one whole try-on, from a session to pictures and a report.
+//!
+//! Reads: a session, garments, measures. Writes: pictures, a film, a report. Budget: 20 s with pictures. Thread: the main thread.
+
+mod worn;
 
 use clap::{ArgAction, value_parser};
 use std::path::Path;
@@ -13,12 +17,9 @@ use toile_assets::export::{self, DressedBody, glb};
 use toile_assets::garment::Garment;
 use toile_assets::limits::{STEP_HZ, STEP_SECONDS};
 use toile_assets::rig::Rig;
-use toile_assets::sizes::Girth;
 use toile_assets::skeleton::{BONES, Joint};
-use toile_assets::wardrobe::own;
 use toile_engine::body::palette;
-use toile_engine::cloth::layers::tuck_in;
-use toile_engine::cloth::{Cloth, Settings, measure};
+use toile_engine::cloth::Settings;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::frame_loop::governor::LADDER;
 use toile_engine::lines::{CAPACITY, Kind, Lines};
@@ -31,7 +32,6 @@ use toile_fitting::dress::{body, session};
 use toile_fitting::scene::StepTimes;
 use toile_fitting::scene::contact::ContactReport;
 use toile_sensors::frame::Joints;
-use toile_view::fit_map;
 
 use crate::arguments::{Printing, TapeArgs, one_of, quality};
 use crate::commands::crossings::CrossingCount;
@@ -173,10 +173,10 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     let track = session::standing(&session)?;
     let (body, note) = worn_body(args, &mut measured, &choices, has_joints)?;
     let notes: Vec<String> = note.into_iter().chain(measured.best.notes.iter().cloned()).collect();
-    let PutOn { mut garments, recommendations, meshes, judged } =
-        put_on(&choices, args.size.as_deref(), &measured, &body)?;
+    let worn::PutOn { mut garments, recommendations, meshes, judged } =
+        worn::put_on(&choices, args.size.as_deref(), &measured, &body)?;
     meshes.iter().flat_map(MeshReport::lines).for_each(|line| words.print_line(&line));
-    args.tuck.iter().try_for_each(|name| tuck(&mut garments, name))?;
+    args.tuck.iter().try_for_each(|name| worn::tuck(&mut garments, name))?;
 
     let rig = Rig::fit(&body);
     let settings = LADDER[usize::from(args.rung)].of(&Settings { quality: args.quality, ..Settings::default() });
@@ -245,56 +245,6 @@ fn worn_body(
     }
 }
 
-/// The garments that are worn, and what there is to say of them.
-struct PutOn {
-    garments: Vec<Garment>,
-    recommendations: Vec<Recommendation>,
-    /// Of the meshes of the user's own.
-    meshes: Vec<MeshReport>,
-    /// How tight each garment was judged at each zone.
-    judged: Vec<JudgedTightness>,
-}
-
-/// How tight a garment was judged, -1 (loose) .. 1 (tight), at the zones where it is known.
-type JudgedTightness = Vec<(Girth, f32)>;
-
-/// Sizes and bakes every garment.
-fn put_on(choices: &[Choice], size: Option<&str>, measured: &Measured, body: &Body) -> Result<PutOn, AppError> {
-    let mut put_on =
-        PutOn { garments: Vec::new(), recommendations: Vec::new(), meshes: Vec::new(), judged: Vec::new() };
-    let mut beneath = Vec::new();
-    for choice in choices {
-        let worn = choice.put_on(size, &measured.best, body, &beneath)?;
-        beneath.extend(choice.offer(body)?);
-        let zones = worn.fit.iter().flat_map(|fit| &fit.zones);
-        let judged: JudgedTightness = zones.filter_map(|z| Some((z.zone, z.tightness?))).collect();
-        put_on.judged.extend(worn.garments.iter().map(|_| judged.clone()));
-        put_on.recommendations.push(match worn.fit {
-            Some(fit) => fit.into(),
-            None => Recommendation {
-                garment: worn.mesh.as_ref().map(|mesh| mesh.file.clone()).unwrap_or_default(),
-                size: own::UNKNOWN.to_owned(),
-                ..Recommendation::default()
-            },
-        });
-        put_on.garments.extend(worn.garments);
-        put_on.meshes.extend(worn.mesh);
-    }
-    Ok(put_on)
-}
-
-/// Tucks in a garment that is worn, by its name.
-fn tuck(garments: &mut [Garment], name: &str) -> Result<(), AppError> {
-    let Some(place) = garments.iter().rposition(|g| g.name == name) else {
-        let worn: Vec<&str> = garments.iter().map(|g| g.name.as_str()).collect();
-        let worn = worn.join(", ");
-        return Err(AppError::input(format!(
-            "--tuck: {name} is not worn; name one of {worn}, or add --garment {name}"
-        )));
-    };
-    tuck_in(garments, place).map_err(|why| AppError::input(format!("--tuck: {why}")))
-}
-
 /// What playing a session left behind.
 struct Played {
     /// Who drew; nobody where no picture was asked for.
@@ -305,27 +255,9 @@ struct Played {
     hidden_mm: Option<f64>,
 }
 
-/// The fit map of each garment: how tight it sits from place to place, in the mean as tight as it was judged.
-fn fit_colours(frame: &Frame, judged: &[JudgedTightness]) -> Vec<Vec<f32>> {
-    let levels = &frame.body().levels;
-    let level = |zone: Girth| match zone {
-        Girth::Chest => levels.chest,
-        Girth::Waist => levels.waist,
-        Girth::Hip => levels.hip,
-    };
-    let map = |((cloth, garment), judged): ((&Cloth, &Garment), &JudgedTightness)| {
-        let local = measure::tightness(cloth, garment, frame.colliders());
-        let heights: Vec<f32> = garment.start.iter().map(|p| p.y).collect();
-        let mut known: Vec<(f32, f32)> = judged.iter().map(|(zone, tight)| (level(*zone), *tight)).collect();
-        known.sort_by(|a, b| b.0.total_cmp(&a.0));
-        fit_map::agreed(&local, &heights, &known)
-    };
-    frame.cloths().iter().zip(frame.garments()).zip(judged).map(map).collect()
-}
-
 /// Plays the session through the frame, 120 steps a second, and draws it.
 fn play(
-    (args, words, title, judged): (&TryOnArgs, &Words, &str, &[JudgedTightness]),
+    (args, words, title, judged): (&TryOnArgs, &Words, &str, &[worn::JudgedTightness]),
     out: &mut OutputFolder,
     renderer: &mut PictureRenderer,
     frame: &mut Frame,
@@ -366,7 +298,7 @@ fn play(
     let drew = pictures.is_some() || video.is_some();
     let mut hidden_m = 0.0f32;
     if let Some(pictures) = pictures {
-        let tightness = fit_colours(frame, judged);
+        let tightness = worn::fit_colours(frame, judged);
         draw_lines(&mut lines, &args.lines, frame);
         let (facing, worst) = (facing(frame), worst.as_ref());
         let ending = FinalState { tightness: &tightness, facing, title, lines: lines.as_slice(), worst };

@@ -2,36 +2,48 @@
 
 use std::path::Path;
 
-use toile_assets::body::{Body, Measures};
+use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::draping::{self, PatternPackage, PatternSizes, SizedDraft};
-use toile_assets::sizes::SizeTable;
+use toile_assets::sizes::{GarmentKind, SizeTable};
 
 use toile_fitting::dress::offer;
 
-use super::TailorArgs;
-use super::wearer::usual_table;
 use crate::exit::AppError;
+
+/// For whom the drafts are that are named.
+pub struct DraftChoice<'a> {
+    /// Size that the package's own draft is for.
+    pub size: &'a str,
+    /// Table of sizes.
+    pub table: &'a str,
+    /// Drafts for other sizes, SIZE=FILE.
+    pub drafts: &'a [String],
+    /// Seam file of all of them.
+    pub seams: Option<&'a Path>,
+    /// What the garment is; without it what its panels show on a body of this sex.
+    pub kind: Option<GarmentKind>,
+    pub sex: Sex,
+}
 
 /// Adds the drafts that are named to a package.
 ///
 /// # Errors
 /// A draft without a size, a file that cannot be read, a size or kind that the table does not have.
-pub fn add(args: &TailorArgs, package: &mut PatternPackage) -> Result<(), AppError> {
-    let Some(size) = &args.drafted_for else { return Ok(()) };
-    let table = args.table.as_deref().unwrap_or_else(|| usual_table(args.body));
-    let drafts = args.draft.iter().map(|text| draft(text, args.seams.as_deref())).collect::<Result<_, _>>()?;
-    let kind = match args.kind {
+pub fn add(choice: &DraftChoice<'_>, package: &mut PatternPackage) -> Result<(), AppError> {
+    let DraftChoice { size, table, seams, sex, .. } = *choice;
+    let drafts = choice.drafts.iter().map(|text| draft(text, seams)).collect::<Result<_, _>>()?;
+    let kind = match choice.kind {
         Some(kind) => kind,
         None => {
             let sized = SizeTable::embedded(table).and_then(|t| t.size_body(size)).map_err(AppError::input)?;
-            let body = Body::build(args.body, &Measures::from(sized)).map_err(AppError::input)?;
+            let body = Body::build(sex, &Measures::from(sized)).map_err(AppError::input)?;
             let pattern = package.parse().map_err(AppError::input)?;
             let found = draping::ease(&pattern, &body);
-            found.map_err(|e| AppError::input(format!("{}: {e}", args.pattern.display())))?.kind
+            found.map_err(|e| AppError::input(format!("{}: {e}", package.name)))?.kind
         }
     };
     let girths = Vec::new();
-    package.sizes = Some(PatternSizes { table: table.into(), kind, size: size.clone(), drafts, girths });
+    package.sizes = Some(PatternSizes { table: table.into(), kind, size: size.into(), drafts, girths });
     let girths = offer::girths(package)?;
     package.sizes.iter_mut().for_each(|sizes| sizes.girths.clone_from(&girths));
     Ok(())
