@@ -30,6 +30,7 @@ use crate::terminal::{self, Paint, Tone, Words};
 /// in one.
 // The help of a command is the doc of its arguments, which a doc of the variant would replace.
 #[derive(Debug, Clone, PartialEq, clap::Subcommand)]
+#[command(after_help = "Example: before the shop opens\n  toile catalogue check /etc/toile/catalogue")]
 pub(crate) enum CatalogueCommand {
     Check(CheckArgs),
     Sheet(SheetArgs),
