@@ -174,9 +174,9 @@ fn a_catalogue_leaves_out_what_cannot_be_used_and_names_it() {
     package("c.toile", "A-1");
     scratch.file("d.toile", b"nothing");
     scratch.file("notes.txt", b"not a package");
-    scratch.file("catalogue.toml", "shop = \"Atelier\"\n");
+    scratch.file("catalogue.toml", "shop = \"Corner shop\"\n");
     let read = Catalogue::read(&scratch.0).unwrap();
-    assert_eq!(read.shop, "Atelier");
+    assert_eq!(read.shop, "Corner shop");
     let names: Vec<_> = read.items.iter().map(|item| item.path.file_name().unwrap().to_str().unwrap()).collect();
     assert_eq!(names, ["a.toile", "b.toile"]);
     let why: Vec<&str> = read.refused.iter().map(|r| r.why.as_str()).collect();
@@ -187,7 +187,7 @@ fn a_catalogue_leaves_out_what_cannot_be_used_and_names_it() {
     // The shop's own order; a package that has gone since is left out, and so is a path out of the folder.
     scratch.file(
         "catalogue.toml",
-        "shop = \"Atelier\"\ngarments = [\"b.toile\", \"gone.toile\", \"../a.toile\", \"a.toile\"]\n",
+        "shop = \"Corner shop\"\ngarments = [\"b.toile\", \"gone.toile\", \"../a.toile\", \"a.toile\"]\n",
     );
     let read = Catalogue::read(&scratch.0).unwrap();
     assert_eq!(read.items.iter().map(|i| i.manifest.article.as_str()).collect::<Vec<_>>(), ["B-1", "A-1"]);

@@ -7,6 +7,7 @@ use serde::Deserialize;
 use super::limits::{MAX_ARTICLE, MAX_COLOURS, MAX_NAME};
 use super::price::Price;
 use crate::draping;
+use crate::toml_keys::place;
 use crate::wardrobe;
 
 /// Words by the tag of their language, `en` or `de`.
@@ -29,7 +30,7 @@ pub struct GarmentManifest {
     pub fabric: Option<String>,
     /// Layer in which it is worn, 1 (underwear) to 5 (coats).
     pub layer: Option<u8>,
-    /// Colours that it comes in besides its fabric's own.
+    /// Colours that it comes in, in place of its fabric's own; none is the fabric's.
     pub colours: Vec<ManifestColour>,
     /// The package's photographs of it.
     pub photographs: Vec<String>,
@@ -71,7 +72,7 @@ impl GarmentManifest {
     /// What is wrong, and the cure.
     pub fn parse(text: &str) -> Result<Self, String> {
         let raw: RawManifest = toml::from_str(text).map_err(|e| {
-            let line = e.span().map_or(1, |s| text[..s.start.min(text.len())].matches('\n').count() + 1);
+            let line = place(text, e.span().map_or(0, |s| s.start)).0;
             format!("line {line}: {}; see docs/catalogue.md", e.message().lines().next().unwrap_or("it is not TOML"))
         })?;
         let manifest = Self {

@@ -121,8 +121,11 @@ impl GarmentPackage {
     /// A file that is garbled, a folder that cannot be written.
     pub fn unpack(&mut self) -> Result<UnpackedFolder, CatalogueError> {
         let folder = UnpackedFolder::new().map_err(|e| self.content("a folder for temporary files", e))?;
+        // What is said of sizes may be a lie: all files together have so much room.
+        let mut room = MAX_UNPACKED_BYTES;
         for name in self.names()? {
-            let bytes = self.bytes(&name, MAX_UNPACKED_BYTES)?;
+            let bytes = self.bytes(&name, room)?;
+            room -= bytes.len() as u64;
             let written = fs::write(folder.path.join(&name), bytes);
             written.map_err(|e| self.content(&name, format!("it cannot be unpacked ({e}); make room")))?;
         }

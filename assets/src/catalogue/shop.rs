@@ -10,6 +10,7 @@ use super::limits::{MAX_GARMENTS, MAX_TOML_BYTES};
 use super::manifest::GarmentManifest;
 use super::package::{ENDING, GarmentPackage};
 use crate::file::{self, FileKind};
+use crate::toml_keys::place;
 
 /// What is read as a catalogue.
 const CATALOGUE: FileKind = FileKind { name: "a catalogue", max_bytes: MAX_TOML_BYTES, cure: "name each package once" };
@@ -68,7 +69,7 @@ impl Catalogue {
         }
         let text = file::read_text(&folder.join(FILE), &CATALOGUE)?;
         let shop: ShopFile = toml::from_str(&text).map_err(|e| {
-            let line = e.span().map_or(1, |s| text[..s.start.min(text.len())].matches('\n').count() + 1);
+            let line = place(&text, e.span().map_or(0, |s| s.start)).0;
             wrong(format!("{FILE}: line {line}: {}", e.message().lines().next().unwrap_or("it is not TOML")))
         })?;
         let names = match shop.garments {

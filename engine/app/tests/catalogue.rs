@@ -40,7 +40,7 @@ fn shop(scratch: &Scratch) {
     for (folder, out) in [(skirt, "shop/skirt.toile"), (dress, "shop/dress.toile")] {
         json(scratch, &["catalogue", "pack", &folder, "--out", out, "--json"]);
     }
-    fs::write(scratch.path().join("shop/catalogue.toml"), "shop = \"Atelier\"\n").unwrap();
+    fs::write(scratch.path().join("shop/catalogue.toml"), "shop = \"Corner shop\"\n").unwrap();
 }
 
 #[test]
@@ -49,7 +49,7 @@ fn a_shop_packs_checks_shows_and_tries_on_its_garments() {
     shop(&scratch);
     fs::write(scratch.path().join("shop/broken.toile"), "nothing").unwrap();
     let checked = json(&scratch, &["catalogue", "check", "shop", "--json"]);
-    assert_eq!((&checked["schema"], &checked["shop"]), (&"toile.catalogue/1".into(), &"Atelier".into()));
+    assert_eq!((&checked["schema"], &checked["shop"]), (&"toile.catalogue/1".into(), &"Corner shop".into()));
     let [dress, skirt] = checked["garments"].as_array().unwrap().as_slice() else { panic!("{checked}") };
     assert_eq!((&dress["article"], &skirt["article"]), (&"SD-2".into(), &"SK-1".into()));
     assert_eq!(skirt["sizes"], serde_json::json!(["34", "36", "38", "40", "42"]));

@@ -465,7 +465,7 @@ mod tests {
             std::fs::write(folder.join(format!("{article}.toile")), bytes).unwrap();
         }
         std::fs::write(folder.join("broken.toile"), "nothing").unwrap();
-        std::fs::write(folder.join("catalogue.toml"), "shop = \"Atelier\"\n").unwrap();
+        std::fs::write(folder.join("catalogue.toml"), "shop = \"Corner shop\"\n").unwrap();
         folder
     }
 
