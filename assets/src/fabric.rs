@@ -1,7 +1,15 @@
 //! Fabrics in physical units, from TOML.
 
+pub mod print;
+
+use std::sync::Arc;
+
 use serde::Deserialize;
 use thiserror::Error;
+use toml::{Table, Value};
+
+use crate::texture::Texture;
+use print::Print;
 
 /// One fabric, as its file states it. Stiffnesses are per unit width of cloth, so that they do not depend on any mesh.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -48,6 +56,14 @@ pub struct Fabric {
     /// Strength of the sheen at the most grazing angle, as pictures show it (0..1).
     #[serde(default = "usual_sheen")]
     pub sheen: f32,
+    /// Share of light that the threads hold back where cloth is seen against the light (0..1): a voile has gaps.
+    #[serde(default = "opaque")]
+    pub opacity: f32,
+    /// What is printed on it or woven into it.
+    pub print: Option<Print>,
+    /// One repeat of the print, drawn or read.
+    #[serde(skip)]
+    pub tile: Option<Arc<Texture>>,
 }
 
 /// How threads run.
@@ -84,6 +100,10 @@ fn usual_sheen() -> f32 {
     USUAL_SHEEN
 }
 
+fn opaque() -> f32 {
+    1.0
+}
+
 /// What can be wrong with a fabric file.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum FabricError {
@@ -117,30 +137,94 @@ pub enum FabricError {
         /// The names there are.
         known: String,
     },
+    /// A print that cannot be drawn.
+    #[error("fabric {name}: {reason}; see docs/catalogue.md")]
+    Print {
+        /// Name of the fabric.
+        name: String,
+        /// Key and reason.
+        reason: String,
+    },
 }
 
 /// The fabrics that are built in.
-const BUILT_IN: [&str; 4] = [
+const BUILT_IN: [&str; 14] = [
     include_str!("../data/fabrics/cotton-lawn.toml"),
     include_str!("../data/fabrics/cotton-jersey.toml"),
     include_str!("../data/fabrics/linen-twill.toml"),
     include_str!("../data/fabrics/wool-suiting.toml"),
+    include_str!("../data/fabrics/cotton-voile.toml"),
+    include_str!("../data/fabrics/lawn-gingham.toml"),
+    include_str!("../data/fabrics/lawn-flowers.toml"),
+    include_str!("../data/fabrics/shirting-stripe.toml"),
+    include_str!("../data/fabrics/jersey-breton.toml"),
+    include_str!("../data/fabrics/jersey-dots.toml"),
+    include_str!("../data/fabrics/linen-stripe.toml"),
+    include_str!("../data/fabrics/wool-houndstooth.toml"),
+    include_str!("../data/fabrics/wool-herringbone.toml"),
+    include_str!("../data/fabrics/wool-windowpane.toml"),
 ];
 
+/// The name in the text of a built-in fabric, whose file has it in a line of its own.
+fn name_in(text: &'static str) -> Option<&'static str> {
+    text.lines().find_map(|line| line.strip_prefix("name = "))?.strip_prefix('"')?.strip_suffix('"')
+}
+
+/// A fabric's text with what it leaves out as the built-in fabric `base` has it.
+fn whole(name: &str, base: &str, text: &str) -> Result<Table, FabricError> {
+    let table = |text: &str| toml::from_str::<Table>(text);
+    let all = BUILT_IN.iter().filter_map(|text| table(text).ok());
+    let known = all.filter(|t| !t.contains_key("base"));
+    let names = known.clone().filter_map(|t| t.get("name")?.as_str().map(str::to_owned));
+    let mut whole = known.clone().find(|t| t.get("name").and_then(Value::as_str) == Some(base)).ok_or_else(|| {
+        let reason = format!("its base is {base}, which is none of {}", names.collect::<Vec<_>>().join(", "));
+        FabricError::Syntax { name: name.into(), reason }
+    })?;
+    let own = table(text).unwrap_or_default();
+    whole.extend(own.into_iter().filter(|(key, _)| key != "base"));
+    Ok(whole)
+}
+
 impl Fabric {
-    /// Reads one fabric from TOML; `name` says in errors where the text came from.
+    /// Reads one fabric from TOML; `name` says in errors where the text came from. A picture that it names is not read.
+    ///
+    /// # Errors
+    /// A text that is no fabric, a figure that no cloth has.
     pub fn parse(name: &str, text: &str) -> Result<Self, FabricError> {
-        let fabric: Self = toml::from_str(text)
-            .map_err(|e| FabricError::Syntax { name: name.into(), reason: e.message().replace('\n', " ") })?;
+        let wrong =
+            |e: toml::de::Error| FabricError::Syntax { name: name.into(), reason: e.message().replace('\n', " ") };
+        let mut fabric: Self = match toml::from_str::<Table>(text).map_err(wrong)?.get("base").and_then(Value::as_str) {
+            Some(base) => whole(name, base, text)?.try_into().map_err(wrong)?,
+            None => toml::from_str(text).map_err(wrong)?,
+        };
         fabric.check()?;
+        fabric.tile = fabric.print.as_ref().and_then(Print::draw);
         Ok(fabric)
+    }
+
+    /// Reads the picture that its print names, if it names one; `read` gives the bytes of a file beside the fabric's.
+    ///
+    /// # Errors
+    /// A picture that is not there, or is none.
+    pub fn read_picture(&mut self, read: impl FnOnce(&str) -> Result<Vec<u8>, String>) -> Result<(), FabricError> {
+        let Some(picture) = self.print.as_ref().and_then(|print| print.picture.as_deref()) else { return Ok(()) };
+        let tile = read(picture).and_then(|bytes| Texture::decode(&bytes));
+        let wrong = |reason| FabricError::Print { name: self.name.clone(), reason: format!("{picture}: {reason}") };
+        self.tile = Some(Arc::new(tile.map_err(wrong)?));
+        Ok(())
     }
 
     /// The built-in fabric of that name.
     pub fn built_in(name: &str) -> Result<Self, FabricError> {
-        let all = Self::all()?;
-        let known = all.iter().map(|f| f.name.as_str()).collect::<Vec<_>>().join(", ");
-        all.into_iter().find(|f| f.name == name).ok_or(FabricError::Unknown { name: name.into(), known })
+        match BUILT_IN.iter().find(|text| name_in(text) == Some(name)) {
+            Some(text) => Self::parse("built in", text),
+            None => Err(FabricError::Unknown { name: name.into(), known: Self::names().join(", ") }),
+        }
+    }
+
+    /// Names of all built-in fabrics.
+    pub fn names() -> Vec<&'static str> {
+        BUILT_IN.iter().filter_map(|text| name_in(text)).collect()
     }
 
     /// Every built-in fabric.
@@ -212,7 +296,12 @@ impl Fabric {
         checked("comfortable_stretch", self.comfortable_stretch, 0.001, 1.0)?;
         self.colour.iter().try_for_each(|&part| checked("colour", part, 0.0, 1.0))?;
         self.threads_per_cm.iter().try_for_each(|&count| checked("threads_per_cm", count, 1.0, 200.0))?;
-        checked("sheen", self.sheen, 0.0, 1.0)
+        checked("sheen", self.sheen, 0.0, 1.0)?;
+        checked("opacity", self.opacity, 0.05, 1.0)?;
+        match self.print.as_ref().and_then(Print::flaw) {
+            Some(reason) => Err(FabricError::Print { name: self.name.clone(), reason: reason.into() }),
+            None => Ok(()),
+        }
     }
 }
 
@@ -240,6 +329,29 @@ mod tests {
         let gauze = text.replace("[18.0, 16.0]", "[18.0, 0.0]");
         assert!(Fabric::parse("gauze", &gauze).unwrap_err().to_string().contains("threads_per_cm"));
         assert!(Fabric::parse("felt", &text.replace("\"twill\"", "\"felt\"")).is_err());
+    }
+
+    #[test]
+    fn a_fabric_may_have_a_built_in_one_as_its_base() {
+        let text = "name = \"mine\"\ntitle = \"Mine\"\nbase = \"cotton-lawn\"\ncolour = [0.1, 0.2, 0.3]\n";
+        let mine = Fabric::parse("mine", text).unwrap();
+        let lawn = Fabric::built_in("cotton-lawn").unwrap();
+        assert_eq!((mine.density_kg_m2, mine.colour, &*mine.name), (lawn.density_kg_m2, [0.1, 0.2, 0.3], "mine"));
+        let error = Fabric::parse("mine", &text.replace("cotton-lawn", "tin")).unwrap_err().to_string();
+        assert!(error.contains("tin") && error.contains("linen-twill") && !error.contains("gingham"), "{error}");
+        assert!(Fabric::built_in("lawn-gingham").unwrap().tile.is_some());
+    }
+
+    #[test]
+    fn a_picture_is_read_where_a_print_names_one() {
+        let text = "name = \"mine\"\ntitle = \"Mine\"\nbase = \"cotton-lawn\"\n\
+            [print]\npattern = \"picture\"\npicture = \"tile.png\"\nrepeat_mm = [40.0, 40.0]\n";
+        let mut mine = Fabric::parse("mine", text).unwrap();
+        assert_eq!(mine.tile, None);
+        let error = mine.read_picture(|_| Ok(b"no picture".to_vec())).unwrap_err().to_string();
+        assert!(error.contains("tile.png") && error.contains("PNG"), "{error}");
+        let unknown = text.replace("picture = ", "image = ");
+        assert!(Fabric::parse("mine", &unknown).is_err());
     }
 
     #[test]

@@ -10,13 +10,14 @@ mod named;
 mod put_line;
 
 pub mod cone;
-pub mod fabric;
 pub mod file;
 pub mod limits;
 pub mod numeric;
 pub mod skeleton;
+pub mod texture;
 pub mod toml_keys;
 
+pub mod fabric;
 pub mod mesh;
 pub mod pattern;
 

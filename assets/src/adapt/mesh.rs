@@ -1,11 +1,23 @@
 //! A mesh by somebody else, while it becomes a garment: every vertex and face remembers what it was in the file.
 
+use std::sync::Arc;
+
 use glam::{Vec2, Vec3};
 
 use crate::garment::check::corners;
 use crate::garment::shape::{Face, NO_VERTEX};
 use crate::import::obj::FREE;
 use crate::import::plain::PlainMesh;
+use crate::texture::Texture;
+
+/// What the material of a face says.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct FaceMaterial {
+    /// Whether it moves, by the material's name; never where no name ends in `Free`.
+    pub free: bool,
+    /// The picture that it shows, counted from 1; 0 is none.
+    pub picture: u8,
+}
 
 /// A mesh on its way from a file to a garment. Faces, texture coordinates and materials have the same length.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -18,16 +30,19 @@ pub struct ForeignMesh {
     pub faces: Vec<Face>,
     /// Texture coordinates of the corners of each face `[faces]`; zeros where the file has none.
     pub uvs: Vec<[Vec2; 4]>,
-    /// Whether each face moves by the name of its material `[faces]`; all false where no name ends in `Free`.
-    pub free: Vec<bool>,
+    /// The material of each face `[faces]`.
+    pub materials: Vec<FaceMaterial>,
+    /// The pictures that materials show.
+    pub pictures: Vec<Arc<Texture>>,
     /// Whether any material's name ends in `Free`, so that the file itself says what moves.
     pub says_what_moves: bool,
 }
 
 impl ForeignMesh {
-    /// The mesh as its file has it.
+    /// The mesh as its file has it, without the pictures of its materials.
     pub fn of(mesh: &PlainMesh) -> Self {
         let moves: Vec<bool> = mesh.materials.iter().map(|name| name.ends_with(FREE)).collect();
+        let material = |m: usize| FaceMaterial { free: moves[m], picture: 0 };
         let mut uvs = mesh.uvs.clone();
         uvs.resize(mesh.faces.len(), [Vec2::ZERO; 4]);
         Self {
@@ -35,9 +50,23 @@ impl ForeignMesh {
             source: (1..=mesh.positions.len() as u32).collect(),
             faces: mesh.faces.clone(),
             uvs,
-            free: mesh.face_materials.iter().map(|m| m.is_some_and(|m| moves[m])).collect(),
+            materials: mesh
+                .face_materials
+                .iter()
+                .map(|m| m.map_or_else(FaceMaterial::default, |m| material(m)))
+                .collect(),
+            pictures: Vec::new(),
             says_what_moves: moves.contains(&true),
         }
+    }
+
+    /// Shows pictures: `materials` are those of the file's faces, and `shown` says which picture each material has, counted from
+    /// 1. To be called before faces are dropped.
+    pub fn paint(&mut self, pictures: Vec<Arc<Texture>>, materials: &[Option<usize>], shown: &[u8]) {
+        for (face, material) in self.materials.iter_mut().zip(materials) {
+            face.picture = material.and_then(|m| shown.get(m)).copied().unwrap_or(0);
+        }
+        self.pictures = pictures;
     }
 
     /// Lowest and highest corner of the box around all vertices that faces use.
@@ -55,7 +84,7 @@ impl ForeignMesh {
         let mut of = kept.iter();
         self.uvs.retain(|_| of.next() == Some(&true));
         let mut of = kept.iter();
-        self.free.retain(|_| of.next() == Some(&true));
+        self.materials.retain(|_| of.next() == Some(&true));
         self.drop_loose();
     }
 
@@ -137,6 +166,10 @@ mod tests {
     use super::*;
     use crate::import::plain::parse_obj;
 
+    fn free(mesh: &ForeignMesh) -> Vec<bool> {
+        mesh.materials.iter().map(|m| m.free).collect()
+    }
+
     #[test]
     fn vertices_remember_their_number_in_the_file() {
         let text = "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 2 0\nusemtl AFree\nf 2 3 4 5\nusemtl B\nf 5 4 6\n";
@@ -144,9 +177,9 @@ mod tests {
         assert_eq!(mesh.bounds(), [Vec3::ZERO, Vec3::new(1.0, 2.0, 0.0)]);
         assert_eq!(mesh.drop_loose(), [1]);
         assert_eq!((mesh.source.as_slice(), mesh.faces[1]), (&[2, 3, 4, 5, 6][..], [3, 2, 4, NO_VERTEX]));
-        assert_eq!((mesh.free.as_slice(), mesh.says_what_moves), (&[true, false][..], true));
+        assert_eq!((free(&mesh), mesh.says_what_moves), (vec![true, false], true));
         mesh.keep(|face| face == 1);
-        assert_eq!((mesh.source.as_slice(), mesh.free.as_slice()), (&[4, 5, 6][..], &[false][..]));
+        assert_eq!((mesh.source.as_slice(), free(&mesh)), (&[4, 5, 6][..], vec![false]));
     }
 
     #[test]

@@ -20,6 +20,7 @@ pub mod made_for;
 pub mod measures;
 pub mod mesh;
 pub mod own_mesh;
+pub mod paint;
 pub mod place;
 pub mod repair;
 pub mod report;

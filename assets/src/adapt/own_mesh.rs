@@ -63,7 +63,7 @@ impl OwnMesh {
     pub fn read(path: &Path) -> Result<Self, AdaptError> {
         let files = source::read(path)?;
         let sizes = files.measures.sizes()?;
-        let mut notes = Vec::new();
+        let mut notes = files.notes.clone();
         let Standing { mut made_for, axes, known_pose } = stand(path, &files, sizes.as_ref(), &mut notes)?;
         let mut mesh = files.mesh;
         mesh.positions.iter_mut().for_each(|p| *p = axes.place(*p));

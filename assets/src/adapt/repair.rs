@@ -55,9 +55,9 @@ fn weld(mesh: &mut ForeignMesh) -> Repair {
 /// Cuts quads with a corner on a line into triangles, and drops what has no area.
 fn clean(mesh: &mut ForeignMesh) -> Repair {
     let faces = std::mem::take(&mut mesh.faces);
-    let (uvs, free) = (std::mem::take(&mut mesh.uvs), std::mem::take(&mut mesh.free));
+    let (uvs, materials) = (std::mem::take(&mut mesh.uvs), std::mem::take(&mut mesh.materials));
     let (mut count, mut at) = (0, Vec::new());
-    for ((face, uv), free) in faces.into_iter().zip(uvs).zip(free) {
+    for ((face, uv), material) in faces.into_iter().zip(uvs).zip(materials) {
         let pieces = whole(&face, |v| mesh.positions[v as usize]);
         if pieces.len() != 1 || pieces[0].iter().map(|k| face[*k]).ne(corners(&face).iter().copied()) {
             count += 1;
@@ -71,7 +71,7 @@ fn clean(mesh: &mut ForeignMesh) -> Repair {
             }
             mesh.faces.push(ring);
             mesh.uvs.push(corner_uvs);
-            mesh.free.push(free);
+            mesh.materials.push(material);
         }
     }
     Repair::new("faces without area cut or dropped", count, at)

@@ -175,7 +175,7 @@ mod tests {
         }
         mesh.source = (1..=mesh.positions.len() as u32).collect();
         mesh.uvs = vec![Default::default(); mesh.faces.len()];
-        mesh.free = vec![false; mesh.faces.len()];
+        mesh.materials = vec![Default::default(); mesh.faces.len()];
         _ = super::super::surface::settle(&mut mesh);
         assert!(mesh.faces.iter().all(|f| f[3] != NO_VERTEX));
         mesh
@@ -201,7 +201,7 @@ mod tests {
         apart.positions.extend(&inner.positions);
         apart.source.extend(&inner.source);
         apart.uvs.extend(&inner.uvs);
-        apart.free.extend(&inner.free);
+        apart.materials.extend(&inner.materials);
         apart.faces.extend(inner.faces.iter().map(|f| f.map(|v| v + first)));
         assert_eq!(drop_inner(&mut apart).count, 0);
     }

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::error::AdaptError;
 use super::measures::GarmentMeasures;
 use super::mesh::ForeignMesh;
+use super::paint::MeshPaint;
 use crate::file::{self, FileKind};
 use crate::garment::check::{MAX_VERTICES, MeshError};
 use crate::import::gltf::parse_gltf;
@@ -34,6 +35,16 @@ pub struct MeshFiles {
     pub measures: GarmentMeasures,
     /// How MakeHuman binds it, where there is such a file.
     pub clothes: Option<Clothes>,
+    /// What of its pictures could not be read, a sentence each.
+    pub notes: Vec<String>,
+}
+
+/// The files of its folder that a mesh needs to show its materials; none of a mesh that cannot be read.
+pub fn material_files(path: &Path) -> Vec<String> {
+    let Ok(plain) = read_plain(path) else { return Vec::new() };
+    let clothes = Clothes::read(&path.with_extension("mhclo")).ok();
+    let paint = MeshPaint::read(&plain, clothes.as_ref(), path.parent().unwrap_or(Path::new("")));
+    paint.files().map(str::to_owned).collect()
 }
 
 /// Whether a name may be that of a mesh.
@@ -63,7 +74,10 @@ pub fn read(path: &Path) -> Result<MeshFiles, AdaptError> {
         );
         return Err(AdaptError::Mesh { path: shown, flaw });
     }
-    Ok(MeshFiles { path: shown, mesh: ForeignMesh::of(&plain), measures, clothes })
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut mesh = ForeignMesh::of(&plain);
+    let notes = MeshPaint::read(&plain, clothes.as_ref(), folder).show(&mut mesh, folder);
+    Ok(MeshFiles { path: shown, mesh, measures, clothes, notes })
 }
 
 fn read_plain(path: &Path) -> Result<PlainMesh, AdaptError> {

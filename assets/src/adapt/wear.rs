@@ -12,6 +12,7 @@ use super::report::{Behaviour, MeshReport, PieceReport};
 use super::surface::{loops, pieces};
 use crate::body::Body;
 use crate::garment::Shape;
+use crate::garment::look::Painted;
 use crate::garment::shape::NO_VERTEX;
 use crate::import::obj::warp_upright;
 
@@ -121,7 +122,7 @@ impl OwnMesh {
 /// What touches a face whose material does not move.
 fn sticks(cut: &ForeignMesh) -> Vec<bool> {
     let mut held = vec![false; cut.positions.len()];
-    let fixed = (0..cut.faces.len()).filter(|f| !cut.free[*f]);
+    let fixed = (0..cut.faces.len()).filter(|f| !cut.materials[*f].free);
     fixed.flat_map(|f| crate::garment::check::corners(&cut.faces[f])).for_each(|v| held[*v as usize] = true);
     held
 }
@@ -212,9 +213,13 @@ fn part_of(shape: &Shape, layer: &[u32]) -> Shape {
     }
     let place = |v: u32| layer.binary_search(&v).map_or(NO_VERTEX, |k| k as u32);
     let mut part = Shape { solver: shape.solver, ..Shape::default() };
-    for (face, uvs) in shape.faces.iter().zip(&shape.uvs).filter(|(face, _)| place(face[0]) != NO_VERTEX) {
+    part.painted = shape.painted.as_ref().map(|all| Painted { pictures: all.pictures.clone(), of_face: Vec::new() });
+    for (i, face) in shape.faces.iter().enumerate().filter(|(_, face)| place(face[0]) != NO_VERTEX) {
         part.faces.push(face.map(|v| if v == NO_VERTEX { v } else { place(v) }));
-        part.uvs.push(*uvs);
+        part.uvs.push(shape.uvs[i]);
+        if let (Some(to), Some(all)) = (&mut part.painted, &shape.painted) {
+            to.of_face.push(all.of_face[i]);
+        }
     }
     for v in layer.iter().map(|v| *v as usize) {
         part.push(shape.cut[v], shape.worn[v], shape.fixed[v], shape.parts[v]);
@@ -250,7 +255,12 @@ fn no_cloth(pieces: &[PieceReport]) -> Option<String> {
 fn shape(cut: &ForeignMesh, laid: LaidMesh, fixed: Vec<bool>) -> Shape {
     let upright = cut.faces.iter().zip(&cut.uvs).map(|(f, uv)| warp_upright(&cut.positions, *f, *uv));
     let (faces, uvs) = upright.unzip();
+    let painted = (!cut.pictures.is_empty()).then(|| Painted {
+        pictures: cut.pictures.clone(),
+        of_face: cut.materials.iter().map(|m| m.picture).collect(),
+    });
     Shape {
+        painted,
         cut: cut.positions.clone(),
         worn: laid.worn,
         faces,

@@ -23,7 +23,7 @@ mod zigzags;
 pub(crate) mod meshes;
 
 use crate::fabric::Fabric;
-use crate::garment::{Garment, Layout, MeshError, Shape, check};
+use crate::garment::{Garment, Layout, Look, MeshError, Shape, check};
 use fibers::{Direction, Fiber};
 
 /// Links between a particle and where it hangs that one substep can settle at the quality `shop`: one linearised solve of
@@ -78,6 +78,7 @@ pub fn bake(name: &str, size: &str, shape: &Shape, fabric: &Fabric) -> Result<Ga
         inverse_mass: (0..n).map(|i| masses[old(i)]).collect(),
         parts: (0..n).map(|i| shape.parts[old(i)]).collect(),
         triangles: shape.triangles().into_iter().map(|t| t.map(new)).collect(),
+        look: Look::of(shape),
         fixed_weights: fixed.iter().map(|&i| shape.weights[old(i)]).collect(),
         fixed: fixed.iter().map(|&i| i as u32).collect(),
         strain_edges: warp_weft.map(|e| ([new(e.a), new(e.b)], e.rest)).collect(),

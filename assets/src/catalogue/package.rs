@@ -13,6 +13,8 @@ use zip::{CompressionMethod, ZipArchive, ZipWriter};
 use super::error::CatalogueError;
 use super::limits::{MAX_FILES, MAX_PACKAGE_BYTES, MAX_PIXELS, MAX_TOML_BYTES, MAX_UNPACKED_BYTES};
 use super::manifest::GarmentManifest;
+use crate::adapt::source;
+use crate::fabric::Fabric;
 use crate::file::{self, FileKind};
 
 /// How packages are recognised.
@@ -176,7 +178,11 @@ pub fn pack(folder: &Path) -> Result<(Vec<u8>, GarmentManifest), CatalogueError>
     };
     add(MANIFEST, text.as_bytes())?;
     // A mesh comes with its materials, measures and the body of a MakeHuman garment under the same name.
-    let beside = manifest.is_mesh().then(|| siblings(folder, &manifest.garment)).into_iter().flatten();
+    let pictures = || source::material_files(&folder.join(&manifest.garment));
+    let there = |name: &String| folder.join(name).is_file();
+    let beside = manifest.is_mesh().then(|| siblings(folder, &manifest.garment).into_iter().chain(pictures()));
+    let beside = beside.into_iter().flatten().filter(there);
+    let beside = beside.chain(printed(folder, &manifest));
     let mut packed = vec![MANIFEST.to_owned()];
     for name in manifest.files().map(str::to_owned).chain(beside) {
         if packed.contains(&name) {
@@ -193,6 +199,13 @@ pub fn pack(folder: &Path) -> Result<(Vec<u8>, GarmentManifest), CatalogueError>
     let bytes = zip.finish().map_err(|e| garbled(&shown, &e))?.into_inner();
     GarmentPackage::of_bytes(&shown, bytes.clone())?.manifest()?;
     Ok((bytes, manifest))
+}
+
+/// The picture that the fabric of a garment is printed with, if it names one.
+fn printed(folder: &Path, manifest: &GarmentManifest) -> Option<String> {
+    let file = manifest.fabric.as_deref().filter(|name| name.ends_with(".toml"))?;
+    let text = file::read_text(&folder.join(file), &MANIFEST_FILE).ok()?;
+    Fabric::parse(file, &text).ok()?.print?.picture
 }
 
 /// The files of a folder that go by a mesh's name with another ending.

@@ -51,9 +51,9 @@ pub struct DrapedPattern {
 }
 
 impl DrapedPattern {
-    /// The triangles of the final mesh, for pictures.
-    pub fn triangles(&self) -> Vec<[u32; 3]> {
-        shape(&self.sewn, self.at.clone()).triangles()
+    /// The final mesh as it hangs, nothing held, for pictures.
+    pub fn hanging(&self) -> Shape {
+        shape(&self.sewn, self.at.clone())
     }
 }
 

@@ -48,6 +48,7 @@ pub fn shape(sewn: &SewnMesh, at: Vec<Vec3>) -> Shape {
         split: sewn.split.clone(),
         uvs: sewn.flat.clone(),
         flat: sewn.flat.clone(),
+        panels: sewn.face_panels.clone(),
         ..Shape::default()
     }
 }

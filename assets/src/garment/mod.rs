@@ -8,6 +8,7 @@ pub mod check;
 pub mod direction;
 mod gather;
 pub mod layout;
+pub mod look;
 pub mod shape;
 pub mod solver;
 pub mod tuck;
@@ -17,6 +18,7 @@ use glam::Vec3;
 pub use check::MeshError;
 pub use direction::Direction;
 pub use layout::Layout;
+pub use look::Look;
 pub use shape::{Face, Part, Shape};
 pub use solver::{Overrides, Solver};
 pub use tuck::Tuck;
@@ -47,6 +49,8 @@ pub struct Garment {
     pub parts: Box<[Part]>,
     /// Triangles for pictures and normals.
     pub triangles: Box<[[u32; 3]]>,
+    /// How they show their cloth.
+    pub look: Look,
     /// The particles that are skinned.
     pub fixed: Box<[u32]>,
     /// Their weights, in the order of `fixed`.
@@ -105,6 +109,7 @@ impl Garment {
             + size_of_val(&*self.parts)
             + self.tuck.as_ref().map_or(0, |tuck| size_of_val(&*tuck.particles))
             + size_of_val(&*self.triangles)
+            + self.look.bytes()
             + size_of_val(&*self.fixed)
             + size_of_val(&*self.fixed_weights)
             + size_of_val(&*self.strain_edges)

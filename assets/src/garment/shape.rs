@@ -3,6 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use super::Overrides;
+use super::look::Painted;
 use crate::mesh::{Influences, SkinWeights};
 
 /// In the fourth place of a [`Face`]: the face is a triangle.
@@ -60,6 +61,10 @@ pub struct Shape {
     /// given, rest lengths, areas and angles come from them and not from `cut`: a vertex of a seam lies in several panels,
     /// and has another place in each.
     pub flat: Vec<[Vec2; 4]>,
+    /// The panel that each face is cut from `[faces]`, or empty: faces of different panels meet at seams.
+    pub panels: Vec<u32>,
+    /// The pictures that the faces of a mesh show, at `uvs`.
+    pub painted: Option<Painted>,
     /// Solvers that its garment file has chosen.
     pub solver: Overrides,
 }
@@ -112,6 +117,15 @@ impl Shape {
             out.extend(self.split_face(i, [a, b, c, d]).into_iter().flatten());
         }
         out
+    }
+
+    /// What belongs to the corners of the faces, for the corners of the triangles, in the order of [`Self::triangles`].
+    pub fn corners<T: Copy>(&self, of_faces: &[[T; 4]]) -> Vec<[T; 3]> {
+        of_faces
+            .iter()
+            .enumerate()
+            .flat_map(|(i, corners)| self.split_face(i, *corners).into_iter().flatten())
+            .collect()
     }
 
     /// One triangle of a face, or the two that a quad is split into.

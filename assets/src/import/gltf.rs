@@ -1,6 +1,6 @@
 //! glTF 2.0 and GLB: the triangles of the default scene, in the order in which its nodes name them.
 //!
-//! Read are positions, indices, the first texture coordinates, node transforms and material names; buffers inside the file, in a data address, or
+//! Read are positions, indices, the first texture coordinates, node transforms, names, colours and pictures of materials; buffers inside the file, in a data address, or
 //! beside it. Compressed data are refused with the cure. (Khronos glTF 2.0 specification, sections 3.5 to 3.8 and 4.4.)
 //!
 //! Reads: a file of bounded size and the buffers beside it. Writes: a triangle mesh. Budget: at load.
@@ -11,6 +11,7 @@ pub(crate) mod file;
 use glam::{Mat4, Vec2, Vec3};
 use serde_json::Value;
 
+use super::paint;
 use super::plain::PlainMesh;
 use crate::garment::shape::NO_VERTEX;
 pub use file::ReadBeside;
@@ -78,8 +79,12 @@ fn add_triangles(file: &GltfFile, mesh: &mut PlainMesh, primitive: &Value, place
         Some(accessor) => file.floats::<2>(accessor)?.iter().map(|[u, v]| Vec2::new(*u, 1.0 - v)).collect(),
         None => Vec::new(),
     };
-    let name = index(&primitive["material"]).and_then(|m| file.json["materials"][m]["name"].as_str());
-    let material = name.map(|n| mesh.material(n));
+    let material = index(&primitive["material"]).map(|m| {
+        let name = file.json["materials"][m]["name"].as_str().map_or_else(|| format!("material {m}"), str::to_owned);
+        let number = mesh.material(&name);
+        mesh.paints[number] = paint::of_gltf(file, m);
+        number
+    });
     for t in corners.chunks_exact(3) {
         if let Some(v) = t.iter().find(|v| **v as usize >= count) {
             return Err(format!("a triangle names vertex {v} of {count}; export it again"));

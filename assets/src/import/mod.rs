@@ -8,5 +8,6 @@ pub mod avatar;
 pub mod gltf;
 pub mod makehuman;
 pub mod obj;
+pub mod paint;
 pub mod pattern;
 pub mod plain;

@@ -4,6 +4,7 @@
 
 use glam::{Vec2, Vec3};
 
+use super::paint::Paint;
 use crate::garment::check::MeshError;
 use crate::garment::shape::{Face, NO_VERTEX};
 
@@ -22,6 +23,10 @@ pub struct PlainMesh {
     pub face_materials: Vec<Option<usize>>,
     /// Names of the materials in the order of their first use.
     pub materials: Vec<String>,
+    /// What each of them shows `[materials]`.
+    pub paints: Vec<Paint>,
+    /// Files that say what materials show, as OBJ names them.
+    pub libraries: Vec<String>,
     /// Line of the file, from 1, of each vertex `[vertices]`; empty where the format has no lines.
     pub vertex_lines: Vec<u32>,
     /// The same of each face `[faces]`.
@@ -33,6 +38,7 @@ impl PlainMesh {
     pub(crate) fn material(&mut self, name: &str) -> usize {
         self.materials.iter().position(|m| m == name).unwrap_or_else(|| {
             self.materials.push(name.to_owned());
+            self.paints.push(Paint::None);
             self.materials.len() - 1
         })
     }
@@ -60,7 +66,7 @@ impl PlainMesh {
     }
 }
 
-/// Reads Wavefront OBJ text: `v`, `vt`, `f` and `usemtl`; everything else that OBJ may hold is passed over. An error says the
+/// Reads Wavefront OBJ text: `v`, `vt`, `f`, `usemtl` and `mtllib`; everything else that OBJ may hold is passed over. An error says the
 /// line and the cure, to stand behind the file's name.
 pub fn parse_obj(text: &str) -> Result<PlainMesh, String> {
     let mut mesh = PlainMesh::default();
@@ -90,6 +96,10 @@ pub fn parse_obj(text: &str) -> Result<PlainMesh, String> {
                 corners.push(texture_corners(words.clone(), textures.len()));
                 mesh.face_lines.push(i as u32 + 1);
                 face(&mut mesh, words, material)
+            }
+            Some("mtllib") => {
+                mesh.libraries.push(words.collect::<Vec<_>>().join(" "));
+                Ok(())
             }
             Some("usemtl") => {
                 material = Some(mesh.material(&words.collect::<Vec<_>>().join(" ")));
@@ -177,6 +187,7 @@ mod tests {
         assert_eq!(mesh.positions, [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y]);
         assert_eq!(mesh.faces, [[2, 1, 0, NO_VERTEX], [3, 0, 2, 1]]);
         assert_eq!((mesh.materials, mesh.face_materials), (vec!["A Free".to_owned()], vec![None, Some(0)]));
+        assert_eq!((mesh.libraries, mesh.paints), (vec!["a.mtl".to_owned()], vec![Paint::None]));
     }
 
     #[test]

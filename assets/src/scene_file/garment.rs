@@ -162,8 +162,8 @@ fn check_shape(table: &SceneTable<'_>, plain: &PlainMesh, mesh: &UserMesh, shape
 fn fabric(table: &SceneTable<'_>, source: SceneSource<'_>) -> Result<Fabric, SceneError> {
     let built_in = |table: &SceneTable<'_>, key: &str, name: &str| {
         let unknown = |e: &dyn std::fmt::Display| {
-            let all = Fabric::all().unwrap_or_default();
-            let meant = toml_keys::nearest(name, all.iter().map(|f| f.name.as_str()));
+            let all = Fabric::names();
+            let meant = toml_keys::nearest(name, all.into_iter());
             let cure = meant.map_or_else(|| "choose one of them".into(), |m| format!("did you mean \"{m}\"?"));
             table.wrong(key, format!("is unknown: {e}; {cure}"))
         };

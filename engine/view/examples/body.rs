@@ -73,6 +73,7 @@ fn picture(drawn: &Drawn, &(_, target, tall, turns, tilt, fov_y): &View, checks:
         triangles: &triangles,
         colours: Colours::PerVertex(&colours),
         material: Material::Skin,
+        look: None,
     };
     let surfaces = [surface];
     let stage = TracedScene::build(Scene { surfaces: &surfaces, floor: tilt >= 0.0 });

@@ -98,6 +98,7 @@ fn picture(body: &Body, turn: f32, size: Size) -> Image {
         triangles: &body.mesh.triangles,
         colours: Colours::PerVertex(&colours),
         material: Material::Skin,
+        look: None,
     }];
     let stage = TracedScene::build(Scene { surfaces: &surfaces, floor: true });
     // The same camera for all, so that sizes can be compared.

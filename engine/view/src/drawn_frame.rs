@@ -1,12 +1,13 @@
 //! A frame as it is drawn: body and garments, each beneath what is worn over it.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use toile_assets::body::Body;
 use toile_assets::garment::{Garment, Tuck};
 use toile_assets::mesh::vertex_normals;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::skin::Posed;
 
+use crate::cloth_look::{ClothLook, GarmentLook};
 use crate::hidden_skin::{CoveringCloth, DrawnSkin};
 use crate::image::{Image, Size};
 use crate::scene::{Bounds, Camera, Colours, MANNEQUIN, Material, Scene, Surface};
@@ -53,6 +54,9 @@ struct DrawnGarment {
     drawn: Vec<[u32; 3]>,
     normals: Vec<Vec3>,
     colour: Vec3,
+    look: GarmentLook,
+    /// Texture points and edges of the triangles that are drawn.
+    drawn_look: [Vec<[Vec2; 3]>; 2],
 }
 
 impl DrawnFrame {
@@ -71,6 +75,7 @@ impl DrawnFrame {
         let cloth = |(i, g): (usize, &Garment)| {
             let mut normals = vec![Vec3::ZERO; g.particles()];
             vertex_normals(&g.start, &g.triangles, &mut normals);
+            let look = GarmentLook::of(g);
             DrawnGarment {
                 points: g.start.to_vec(),
                 dressed: over(i + 1).dressed(&g.start, &normals),
@@ -79,6 +84,8 @@ impl DrawnFrame {
                 triangles: g.triangles.to_vec(),
                 normals,
                 colour: Vec3::from_array(g.fabric.colour.map(crate::image::linear)),
+                drawn_look: [look.corners.clone(), look.edges.clone()],
+                look,
             }
         };
         Self {
@@ -117,17 +124,22 @@ impl DrawnFrame {
         for i in (0..self.cloths.len()).rev() {
             let into = self.cloths[i].tuck.as_ref().map(|tuck| tuck.into);
             let into = into.map(|g| cover(&self.cloths[g].triangles, garments[g].as_ref()));
-            let DrawnGarment { points: at, dressed, tuck, triangles, drawn, normals, .. } = &mut self.cloths[i];
+            let DrawnGarment { points: at, dressed, tuck, triangles, drawn, normals, look, drawn_look, .. } =
+                &mut self.cloths[i];
             at.copy_from_slice(garments[i].as_ref());
             vertex_normals(at, triangles, normals);
             let worn_over = over.iter().filter(|(_, beneath)| *beneath != Some(i)).map(|(face, _)| *face);
             let mut under = CoveringCloth::new(worn_over).hide_skin(at, normals, dressed, triangles);
             if let (Some(cover), Some(tuck)) = (into, tuck.as_ref()) {
-                let tucked = cover.hide_skin(at, normals, &tuck.particles, &under.triangles);
-                under = DrawnSkin { hidden_m: under.hidden_m.max(tucked.hidden_m), ..tucked };
+                let tucked = cover.hide_skin(at, normals, &tuck.particles, &picked(triangles, &under.drawn));
+                under = DrawnSkin {
+                    drawn: tucked.drawn.iter().map(|i| under.drawn[*i as usize]).collect(),
+                    hidden_m: under.hidden_m.max(tucked.hidden_m),
+                };
             }
             self.hidden_m = self.hidden_m.max(under.hidden_m);
-            *drawn = under.triangles;
+            *drawn = picked(triangles, &under.drawn);
+            *drawn_look = look.of_triangles(&under.drawn);
             let beneath = |t: &[u32; 3]| tuck.as_ref().filter(|tuck| tuck.holds(*t)).map(|tuck| tuck.into);
             over.extend(triangles.iter().map(|t| (t.map(|v| at[v as usize]), beneath(t))));
         }
@@ -136,7 +148,7 @@ impl DrawnFrame {
         let cover = CoveringCloth::new(over.into_iter().map(|(face, _)| face));
         let under = cover.hide_skin(&mut self.body, &self.normals, &self.dressed, &self.body_triangles);
         self.hidden_m = self.hidden_m.max(under.hidden_m);
-        self.drawn = under.triangles;
+        self.drawn = picked(&self.body_triangles, &under.drawn);
     }
 
     /// How far skin, or cloth worn beneath other cloth, stood out of what covers it at most, in all pictures so far (m):
@@ -153,14 +165,18 @@ impl DrawnFrame {
             triangles: &self.drawn,
             colours: Colours::One(MANNEQUIN),
             material: Material::Skin,
+            look: None,
         }];
         for (i, cloth) in self.cloths.iter().enumerate() {
-            let (colours, material) = match map {
-                Some(map) => (Colours::Tightness(&map[i]), Material::Diffuse),
-                None => (Colours::One(cloth.colour), Material::Cloth),
+            let DrawnGarment { points, normals, drawn: triangles, look, drawn_look: [corners, edges], .. } = cloth;
+            let (colours, material, look) = match map {
+                Some(map) => (Colours::Tightness(&map[i]), Material::Diffuse, None),
+                None => {
+                    let look = ClothLook { corners, edges, ..look.shown() };
+                    (Colours::One(cloth.colour), Material::Cloth, Some(look))
+                }
             };
-            let DrawnGarment { points, normals, drawn: triangles, .. } = cloth;
-            surfaces.push(Surface { positions: points, normals, triangles, colours, material });
+            surfaces.push(Surface { positions: points, normals, triangles, colours, material, look });
         }
         surfaces
     }
@@ -175,6 +191,11 @@ impl DrawnFrame {
         let shown = Bounds { min: at - reach, max: at + reach + Vec3::Y * self.stature * HEADROOM };
         Camera::front(&shown, size.width as f32 / size.height as f32)
     }
+}
+
+/// Some of a list of triangles, by their places.
+fn picked(triangles: &[[u32; 3]], places: &[u32]) -> Vec<[u32; 3]> {
+    places.iter().map(|i| triangles[*i as usize]).collect()
 }
 
 /// A garment as what is beneath it sees it.

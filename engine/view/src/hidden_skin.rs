@@ -95,7 +95,7 @@ impl CoveringCloth {
         };
         let stands_out = |f: &ClothOver| if let ClothOver::Under(push) = f { push - BENEATH_M } else { 0.0 };
         DrawnSkin {
-            triangles: triangles.iter().filter(|t| !hidden(t)).copied().collect(),
+            drawn: (0..).zip(triangles).filter(|(_, t)| !hidden(t)).map(|(i, _)| i).collect(),
             hidden_m: found.iter().map(stands_out).fold(0.0, f32::max),
         }
     }
@@ -120,8 +120,8 @@ impl CoveringCloth {
 /// Skin as it is drawn beneath cloth.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DrawnSkin {
-    /// The triangles to draw.
-    pub triangles: Vec<[u32; 3]>,
+    /// The triangles to draw, by their place among all.
+    pub drawn: Vec<u32>,
     /// How far skin stood out of the cloth over it, where it did most (m): what the picture hides.
     pub hidden_m: f32,
 }
@@ -174,11 +174,8 @@ mod tests {
         // Skin whose normals point down, beneath a sheet that faces up: no way out from under it.
         let mut p = [Vec3::ZERO, Vec3::X * 0.01, Vec3::Z * 0.01];
         let before = p;
-        assert!(sheet(0.02).hide_skin(&mut p, &[Vec3::NEG_Y; 3], &[true; 3], &[[0, 1, 2]]).triangles.is_empty());
+        assert!(sheet(0.02).hide_skin(&mut p, &[Vec3::NEG_Y; 3], &[true; 3], &[[0, 1, 2]]).drawn.is_empty());
         assert_eq!(p, before);
-        assert_eq!(
-            sheet(0.02).hide_skin(&mut p, &[Vec3::NEG_Y; 3], &[true, false, true], &[[0, 1, 2]]).triangles.len(),
-            1
-        );
+        assert_eq!(sheet(0.02).hide_skin(&mut p, &[Vec3::NEG_Y; 3], &[true, false, true], &[[0, 1, 2]]).drawn.len(), 1);
     }
 }

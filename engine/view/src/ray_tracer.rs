@@ -72,6 +72,12 @@ pub struct PixelLight {
     pub rays: u32,
 }
 
+/// Layers of sheer cloth that a ray goes through at most.
+const MOST_LAYERS: usize = 8;
+
+/// Fraction of the golden section.
+const GOLDEN: f32 = 0.618_034;
+
 /// What all pixels of one picture share.
 pub struct RayTracer<'a> {
     scene: &'a TracedScene<'a>,
@@ -167,7 +173,8 @@ impl<'a> RayTracer<'a> {
     fn add_ray(&self, ray: &Ray, sample: PixelSample, light_here: &mut PixelLight) {
         if !light_here.clear {
             light_here.rays += 1;
-            if let Some(hit) = self.scene.bvh.closest(ray, f32::INFINITY) {
+            if let Some((ray, hit)) = self.closest(ray, sample) {
+                let ray = &ray;
                 return self.add_light(&self.point(ray, hit).1, Vec3::ONE, sample, light_here);
             }
         }
@@ -187,8 +194,8 @@ impl<'a> RayTracer<'a> {
             if brightness <= 0.0 {
                 continue;
             }
-            let arrives =
-                !painted || self.is_unblocked(point, lamp.direction(sample.pair(dimension)), f32::INFINITY, light_here);
+            let toward = lamp.direction(sample.pair(dimension));
+            let arrives = !painted || self.is_unblocked(point, toward, f32::INFINITY, sample, light_here);
             light_here.lamps[i] += light;
             light_here.arrived[i][0] += if arrives { brightness } else { 0.0 };
             light_here.arrived[i][1] += brightness;
@@ -201,9 +208,44 @@ impl<'a> RayTracer<'a> {
     }
 
     /// True if nothing lies in this direction nearer than `limit` (m).
-    fn is_unblocked(&self, point: &SurfacePoint, toward: Vec3, limit: f32, light_here: &mut PixelLight) -> bool {
+    fn is_unblocked(
+        &self,
+        point: &SurfacePoint,
+        toward: Vec3,
+        limit: f32,
+        sample: PixelSample,
+        light_here: &mut PixelLight,
+    ) -> bool {
         light_here.rays += 1;
-        !self.scene.bvh.blocked(&Ray::new(point.position + point.flat * self.ray_offset, toward), limit)
+        let ray = Ray::new(point.position + point.flat * self.ray_offset, toward);
+        if !self.scene.sheer {
+            return !self.scene.bvh.blocked(&ray, limit);
+        }
+        match self.closest(&ray, sample) {
+            Some((from, hit)) => (from.origin - ray.origin).length() + hit.distance > limit,
+            None => true,
+        }
+    }
+
+    /// The nearest thing that holds a ray back, and the last part of the ray: between the threads of sheer cloth some go on.
+    fn closest(&self, ray: &Ray, sample: PixelSample) -> Option<(Ray, Hit)> {
+        let hit = self.scene.bvh.closest(ray, f32::INFINITY)?;
+        if !self.scene.sheer {
+            return Some((*ray, hit));
+        }
+        let (mut ray, mut hit) = (*ray, hit);
+        let mut draw = sample.pair(SampleDimension::Gap).x;
+        for _ in 0..MOST_LAYERS {
+            let look = self.scene.scene.surfaces[self.scene.owner(hit.triangle)].look;
+            if draw < look.map_or(1.0, |look| look.opacity) {
+                break;
+            }
+            // Each layer draws anew: steps of the golden section fill the interval evenly.
+            draw = (draw + GOLDEN).fract();
+            ray = Ray::new(ray.origin + ray.direction * (hit.distance + self.ray_offset), ray.direction);
+            hit = self.scene.bvh.closest(&ray, f32::INFINITY)?;
+        }
+        Some((ray, hit))
     }
 
     /// True if ambient light reaches a point along one cosine-weighted ray. The ray's reach is drawn too, so that an
@@ -215,7 +257,13 @@ impl<'a> RayTracer<'a> {
         let toward = a * at.x + b * at.y + point.normal * up;
         // Interpolated normals send some rays below their own triangle: those are mirrored out of it.
         let toward = toward - point.flat * (2.0 * toward.dot(point.flat).min(0.0));
-        self.is_unblocked(point, toward, self.lighting.reach() * sample.pair(SampleDimension::Reach).x, light_here)
+        self.is_unblocked(
+            point,
+            toward,
+            self.lighting.reach() * sample.pair(SampleDimension::Reach).x,
+            sample,
+            light_here,
+        )
     }
 
     /// The point on the backdrop that a ray meets; one straight ahead where it meets none.
@@ -226,13 +274,14 @@ impl<'a> RayTracer<'a> {
 
     /// The point on the subject that a ray met, and which surface it is on.
     fn point(&self, ray: &Ray, hit: Hit) -> (u32, SurfacePoint) {
-        let starts = &self.scene.starts;
-        let owner = starts.partition_point(|&s| s <= hit.triangle) - 1;
+        let owner = self.scene.owner(hit.triangle);
         let surface = &self.scene.scene.surfaces[owner];
-        let corners = surface.triangles[(hit.triangle - starts[owner]) as usize];
+        let triangle = (hit.triangle - self.scene.starts[owner]) as usize;
+        let corners = surface.triangles[triangle];
         let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
         let points = corners.map(|i| surface.positions[i as usize]);
-        let flat = (points[1] - points[0]).cross(points[2] - points[0]).normalize_or(Vec3::Y);
+        let twice_area = (points[1] - points[0]).cross(points[2] - points[0]);
+        let flat = twice_area.normalize_or(Vec3::Y);
         // Both sides of every surface are lit: the normals turn to the eye.
         let side = if flat.dot(ray.direction) > 0.0 { -1.0 } else { 1.0 };
         let flat = flat * side;
@@ -241,11 +290,19 @@ impl<'a> RayTracer<'a> {
             if normal.is_finite() && normal.dot(flat) > 0.0 { normal } else { flat }
         });
         let eye = -ray.direction;
+        let ground = surface.colours.blend(corners, weights);
+        let colour = match &surface.look {
+            Some(look) => {
+                let (size, pixel) = (twice_area.length().sqrt(), self.grain(blend(points, weights)));
+                look.colour(triangle, weights, ground, size, pixel)
+            }
+            None => ground,
+        };
         let point = SurfacePoint {
             position: rounded(blend(points, weights), points, normals, weights),
             normal: facing(blend(normals, weights).normalize_or(flat), eye),
             flat,
-            colour: surface.colours.blend(corners, weights),
+            colour,
             material: surface.material,
             eye,
             on_subject: true,

@@ -28,6 +28,8 @@ pub enum SampleDimension {
     Ambient,
     /// The reach of the occlusion ray.
     Reach,
+    /// Whether a ray finds a gap between threads.
+    Gap,
 }
 
 impl PixelSample {

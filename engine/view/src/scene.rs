@@ -4,6 +4,7 @@ use std::f32::consts::{FRAC_PI_2, PI};
 
 use glam::{Vec2, Vec3};
 
+use crate::cloth_look::ClothLook;
 use crate::fit_map;
 
 /// Linear RGB of the mannequin: a light grey-beige, neutral beside any garment.
@@ -40,6 +41,8 @@ pub struct Surface<'a> {
     pub colours: Colours<'a>,
     /// How the surface reflects light.
     pub material: Material,
+    /// What cloth shows beside its colour.
+    pub look: Option<ClothLook<'a>>,
 }
 
 /// Base colours of a surface, linear RGB, each 0..1.

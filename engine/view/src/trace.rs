@@ -134,6 +134,7 @@ mod tests {
                 triangles: &triangles,
                 colours: Colours::One(Vec3::ONE),
                 material,
+                look: None,
             };
             let surfaces = [surface];
             let stage = TracedScene::build(Scene { surfaces: &surfaces, floor: false });

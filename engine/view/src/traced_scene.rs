@@ -14,6 +14,8 @@ pub struct TracedScene<'a> {
     pub(crate) bvh: Bvh,
     /// First triangle of each surface in the bvh's numbering.
     pub(crate) starts: Vec<u32>,
+    /// Whether anything can be seen through.
+    pub(crate) sheer: bool,
 }
 
 impl<'a> TracedScene<'a> {
@@ -27,7 +29,13 @@ impl<'a> TracedScene<'a> {
         }
         let corner = |s: &Surface<'_>, i: u32| s.positions.get(i as usize).copied().unwrap_or(Vec3::NAN);
         let faces = scene.surfaces.iter().flat_map(|s| s.triangles.iter().map(move |t| t.map(|i| corner(s, i))));
-        Self { scene, bvh: Bvh::build(faces), starts }
+        let sheer = scene.surfaces.iter().any(|s| s.look.is_some_and(|look| look.opacity < 1.0));
+        Self { scene, bvh: Bvh::build(faces), starts, sheer }
+    }
+
+    /// The surface that a triangle of the bvh belongs to.
+    pub(crate) fn owner(&self, triangle: u32) -> usize {
+        self.starts.partition_point(|&s| s <= triangle) - 1
     }
 
     /// The box around all triangles.

@@ -125,6 +125,7 @@ impl Still {
             triangles: &self.triangles,
             colours: Colours::PerVertex(&self.colours),
             material,
+            look: None,
         }
     }
 }
@@ -202,6 +203,7 @@ fn presets_look_from_their_side_and_frame_the_box() {
         triangles: &triangles,
         colours: Colours::One(colour),
         material: Material::Diffuse,
+        look: None,
     };
     let surfaces = [paint(&left, Vec3::X), paint(&front, Vec3::Y)];
     let stage = TracedScene::build(Scene { surfaces: &surfaces, floor: true });

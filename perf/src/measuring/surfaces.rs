@@ -60,6 +60,7 @@ impl StandingSurface {
             triangles: &self.triangles,
             colours,
             material: Material::Skin,
+            look: None,
         };
         let camera = Camera::framing(bounds, yaw, PANEL.width as f32 / PANEL.height as f32);
         trace::render(&Scene { surfaces: &[surface], floor: true }, &camera, PANEL, TraceQuality::Motion)

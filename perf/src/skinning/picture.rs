@@ -65,6 +65,7 @@ fn panel(body: &Body, weights: &[SkinWeights], degrees: f32, blend: Blend) -> Re
         triangles: &body.mesh.triangles,
         colours: Colours::One(MANNEQUIN),
         material: Material::Skin,
+        look: None,
     }];
     let middle = skeleton.at(Joint::LeftElbow).lerp(skeleton.at(Joint::LeftWrist), 0.85);
     let camera = Camera { target: middle, yaw: 0.5, height: 0.25, distance: 1.15, fov_y: 0.42 };

@@ -273,6 +273,9 @@ impl CaseFabric {
             weave: Weave::Plain,
             threads_per_cm: USUAL_THREADS,
             sheen: USUAL_SHEEN,
+            opacity: 1.0,
+            print: None,
+            tile: None,
         }
     }
 }

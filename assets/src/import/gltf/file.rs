@@ -80,6 +80,14 @@ impl GltfFile {
         self.elements(accessor, little_endian)
     }
 
+    /// The bytes of a view of a buffer.
+    pub fn view(&self, view: usize) -> Option<&[u8]> {
+        let view = &self.json["bufferViews"][view];
+        let buffer = index(&view["buffer"]).and_then(|b| self.buffers.get(b))?;
+        let start = index(&view["byteOffset"]).unwrap_or(0);
+        buffer.get(start..start.checked_add(index(&view["byteLength"])?)?)
+    }
+
     fn component(&self, accessor: usize) -> u64 {
         self.json["accessors"][accessor]["componentType"].as_u64().unwrap_or(0)
     }
@@ -189,12 +197,16 @@ fn buffers(json: &Value, bin: Option<&[u8]>, beside: ReadBeside<'_>) -> Result<V
     let read = |buffer: &Value| match buffer["uri"].as_str() {
         None => bin.map(Vec::from).ok_or_else(|| "it has a buffer without data; export it again".into()),
         Some(uri) if uri.starts_with("data:") => {
-            let text = uri.split_once(";base64,").map(|(_, text)| text);
-            text.and_then(base64).ok_or_else(|| "it holds a data address that is not base64; export it again".into())
+            data_address(uri).ok_or_else(|| "it holds a data address that is not base64; export it again".into())
         }
         Some(uri) => beside(uri),
     };
     list(&json["buffers"]).iter().map(read).collect()
+}
+
+/// The bytes of a data address in base64.
+pub(crate) fn data_address(uri: &str) -> Option<Vec<u8>> {
+    uri.split_once(";base64,").and_then(|(_, text)| base64(text))
 }
 
 /// A node's transform: a matrix, or scale, then rotation, then translation.

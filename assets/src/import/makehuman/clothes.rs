@@ -64,6 +64,8 @@ pub struct Clothes {
     pub hidden: Vec<[u32; 2]>,
     /// Who wears them, where the file says it.
     pub sex: Option<Sex>,
+    /// The file of its material, where it names one.
+    pub material: Option<String>,
 }
 
 /// The body that clothes are made on.
@@ -131,6 +133,7 @@ impl Clothes {
             ("x_scale" | "y_scale" | "z_scale", _) => return Err("no scale between two vertices of hm08"),
             ("basemesh", [name]) if *name != "hm08" => return Err("clothes for another base mesh than hm08"),
             ("tag", ["Female" | "female"]) => self.sex = Some(Sex::Female),
+            ("material", [name]) => self.material = Some((*name).to_owned()),
             ("tag", ["Male" | "male"]) => self.sex = Some(Sex::Male),
             _ => {}
         }
@@ -237,6 +240,7 @@ mod tests {
     fn rows_scales_and_hidden_vertices_are_read() {
         let clothes = Clothes::parse(TEXT).unwrap();
         assert_eq!((clothes.vertices(), clothes.sex), (2, Some(Sex::Female)));
+        assert_eq!(clothes.material.as_deref(), Some("a.mhmat"));
         assert_eq!(clothes.hidden, [[3, 3], [5, 9], [12, 12]]);
         let base = [Vec3::ZERO, Vec3::new(4.0, 3.0, 0.0), Vec3::new(0.0, 0.0, 4.0)];
         // Offsets grow by 4/2 along x and by 3/1 along y.

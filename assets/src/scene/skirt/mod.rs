@@ -100,6 +100,9 @@ pub fn fabric(shape: &Shape, stretch: Stretch) -> Fabric {
         weave: Weave::Plain,
         threads_per_cm: USUAL_THREADS,
         sheen: USUAL_SHEEN,
+        opacity: 1.0,
+        print: None,
+        tile: None,
     }
 }
 

@@ -216,6 +216,7 @@ fn draw(out: &mut OutputFolder, name: &str, body: &Body, title: &str, mut done: 
         triangles: &body.mesh.triangles,
         colours: Colours::One(MANNEQUIN),
         material: Material::Skin,
+        look: None,
     }];
     let stage = TracedScene::build(Scene { surfaces: &surfaces, floor: true });
     let aspect = STILL.width as f32 / STILL.height as f32;

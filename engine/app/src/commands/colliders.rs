@@ -244,6 +244,7 @@ fn drawn(body: &Body) -> toile_view::image::Image {
             triangles: &body.mesh.triangles,
             colours: Colours::PerVertex(&skin),
             material: Material::Skin,
+            look: None,
         },
         Surface {
             positions: &shell.positions,
@@ -251,6 +252,7 @@ fn drawn(body: &Body) -> toile_view::image::Image {
             triangles: &shell.triangles,
             colours: Colours::PerVertex(&painted),
             material: Material::Skin,
+            look: None,
         },
     ];
     let stages = [0, 1].map(|i| TracedScene::build(Scene { surfaces: &surfaces[i..=i], floor: true }));

@@ -125,7 +125,10 @@ impl Choice {
         let fabric = manifest.fabric.as_deref().map(|fabric| match fabric.ends_with(".toml") {
             true => {
                 let text = package.text(fabric, MAX_TOML_BYTES).map_err(FittingError::input)?;
-                Fabric::parse(fabric, &text).map_err(|e| inside(&e))
+                let mut fabric = Fabric::parse(fabric, &text).map_err(|e| inside(&e))?;
+                let picture = |name: &str| package.bytes(name, MAX_PACKAGE_BYTES).map_err(|e| e.to_string());
+                fabric.read_picture(picture).map_err(|e| inside(&e))?;
+                Ok(fabric)
             }
             false => Fabric::built_in(fabric).map_err(|e| inside(&e)),
         });

@@ -67,6 +67,7 @@ impl Dressed {
             triangles: &self.body_triangles,
             colours: Colours::One(MANNEQUIN),
             material: Material::Skin,
+            look: None,
         };
         let cloth = Surface {
             positions: &self.garment.start,
@@ -74,6 +75,7 @@ impl Dressed {
             triangles: &self.garment.triangles,
             colours,
             material,
+            look: None,
         };
         [skin, cloth]
     }

@@ -8,7 +8,9 @@ use toile_assets::body::Body;
 use toile_assets::draping::DrapedPattern;
 use toile_assets::fabric::Fabric;
 use toile_assets::garment::check::corners;
+use toile_assets::garment::{Look, Shape};
 use toile_assets::mesh::vertex_normals;
+use toile_view::cloth_look::GarmentLook;
 use toile_view::contact_sheet;
 use toile_view::image::{Image, Size, linear};
 use toile_view::scene::{Camera, Colours, MANNEQUIN, Material, Scene, Surface};
@@ -29,14 +31,27 @@ const ROW_M: f64 = 2.0;
 /// Draws all of them.
 pub fn draw(out: &mut OutputFolder, draped: &DrapedPattern, body: &Body, fabric: &Fabric) -> Result<(), AppError> {
     out.write("flat.svg", flat(draped).as_bytes())?;
-    let colour = Vec3::from_array(fabric.colour.map(linear));
     let placed = &draped.placed;
-    write_png(out, "placed.png", &sides(body, &placed.worn, &placed.triangles(), colour, "Around the body"))?;
-    write_png(out, "draped.png", &sides(body, &draped.at, &draped.triangles(), colour, "Draped"))
+    let look = |shape: &Shape| GarmentLook::new(&Look::of(shape), fabric);
+    let colour = Vec3::from_array(fabric.colour.map(linear));
+    let before = Cloth { at: &placed.worn, triangles: &placed.triangles(), colour, look: look(placed) };
+    write_png(out, "placed.png", &sides(body, &before, "Around the body"))?;
+    let hanging = draped.hanging();
+    let after = Cloth { at: &hanging.worn, triangles: &hanging.triangles(), colour, look: look(&hanging) };
+    write_png(out, "draped.png", &sides(body, &after, "Draped"))
+}
+
+/// Cloth as it lies.
+struct Cloth<'a> {
+    at: &'a [Vec3],
+    triangles: &'a [[u32; 3]],
+    colour: Vec3,
+    look: GarmentLook,
 }
 
 /// Front and back of a body in cloth.
-fn sides(body: &Body, at: &[Vec3], triangles: &[[u32; 3]], colour: Vec3, title: &str) -> Image {
+fn sides(body: &Body, cloth: &Cloth<'_>, title: &str) -> Image {
+    let Cloth { at, triangles, colour, ref look } = *cloth;
     let mut normals = vec![Vec3::ZERO; at.len()];
     vertex_normals(at, triangles, &mut normals);
     let skin = Surface {
@@ -45,6 +60,7 @@ fn sides(body: &Body, at: &[Vec3], triangles: &[[u32; 3]], colour: Vec3, title: 
         triangles: &body.mesh.triangles,
         colours: Colours::One(MANNEQUIN),
         material: Material::Skin,
+        look: None,
     };
     let cloth = Surface {
         positions: at,
@@ -52,6 +68,7 @@ fn sides(body: &Body, at: &[Vec3], triangles: &[[u32; 3]], colour: Vec3, title: 
         triangles,
         colours: Colours::One(colour),
         material: Material::Cloth,
+        look: Some(look.shown()),
     };
     let surfaces = [skin, cloth];
     let scene = TracedScene::build(Scene { surfaces: &surfaces, floor: true });
