@@ -37,6 +37,16 @@ impl VertexSource {
         self.vertices as usize
     }
 
+    /// The buffers of positions and normals that it is a part of.
+    pub fn buffers(&self) -> [&Buffer; 2] {
+        self.buffers.each_ref()
+    }
+
+    /// The first of its vertices in them.
+    pub fn first(&self) -> u32 {
+        self.first
+    }
+
     /// Its own part of the positions and of the normals, [`STRIDE`] bytes a vertex; a normal is zero where there is no area.
     pub fn parts(&self) -> [BufferSlice<'_>; 2] {
         let [from, to] = [u64::from(self.first), u64::from(self.first) + u64::from(self.vertices)].map(|k| STRIDE * k);

@@ -8,19 +8,19 @@ use toile_assets::texture::Texture;
 use crate::image::linear;
 
 /// Half the width of the groove at a seam (m).
-const SEAM_HALF_M: f32 = 0.001;
+pub(crate) const SEAM_HALF_M: f32 = 0.001;
 
 /// How much darker the groove is (0..1).
-const SEAM_DARK: f32 = 0.42;
+pub(crate) const SEAM_DARK: f32 = 0.42;
 
 /// How far from the edge a hem is stitched (m).
-pub const HEM_M: f32 = 0.018;
+pub(crate) const HEM_M: f32 = 0.018;
 
 /// Half the width of a line of stitches (m).
-const STITCH_HALF_M: f32 = 0.0006;
+pub(crate) const STITCH_HALF_M: f32 = 0.0006;
 
 /// How much darker a line of stitches is (0..1).
-const STITCH_DARK: f32 = 0.3;
+pub(crate) const STITCH_DARK: f32 = 0.3;
 
 /// A picture with its coarser levels, each half as wide and as high, down to one texel: what is seen from afar is the mean of
 /// what is seen close by.
@@ -71,17 +71,22 @@ fn coarser(fine: &Texture) -> Option<Texture> {
         return None;
     }
     let (width, height) = ((fine.width / 2).max(1), (fine.height / 2).max(1));
-    let at = |x: u32, y: u32| {
-        premultiplied(fine.texels[(y.min(fine.height - 1) * fine.width + x.min(fine.width - 1)) as usize])
+    let texel = |x: u32, y: u32| fine.texels[(y.min(fine.height - 1) * fine.width + x.min(fine.width - 1)) as usize];
+    let at = |x: u32, y: u32| premultiplied(texel(x, y));
+    let straight = |x: u32, y: u32| {
+        let [r, g, b, _] = texel(x, y).map(channel);
+        Vec3::new(r, g, b)
     };
-    let texel = |i: u32| {
+    let mean_texel = |i: u32| {
         let (x, y) = (2 * (i % width), 2 * (i / width));
         let mean = (at(x, y) + at(x + 1, y) + at(x, y + 1) + at(x + 1, y + 1)) * 0.25;
-        let colour = if mean.w > 0.0 { mean.truncate() / mean.w } else { Vec3::ZERO };
+        // What covers nothing keeps its colour: filters mix it into its neighbours.
+        let bare = || (straight(x, y) + straight(x + 1, y) + straight(x, y + 1) + straight(x + 1, y + 1)) * 0.25;
+        let colour = if mean.w > 0.0 { mean.truncate() / mean.w } else { bare() };
         let [r, g, b] = colour.to_array().map(encoded);
         [r, g, b, (mean.w * 255.0).round() as u8]
     };
-    Some(Texture { width, height, texels: (0..width * height).map(texel).collect() })
+    Some(Texture { width, height, texels: (0..width * height).map(mean_texel).collect() })
 }
 
 /// A linear value as an sRGB byte.
@@ -112,6 +117,8 @@ pub struct GarmentLook {
     pub tile: Option<TileLevels>,
     /// Texture points of the corners of each triangle `[triangles]`, or empty.
     pub corners: Vec<[Vec2; 3]>,
+    /// Where they lie on the cloth (m): weft along x, warp along y `[triangles]`, or empty.
+    pub cloth: Vec<[Vec2; 3]>,
     /// Distance of each corner from the nearest hem and seam (m) `[triangles]`, or empty.
     pub edges: Vec<[Vec2; 3]>,
     /// Share of light that the cloth holds back (0..1).
@@ -135,7 +142,7 @@ impl GarmentLook {
             }
             _ => (None, Vec::new()),
         };
-        Self { tile, corners, edges, opacity: fabric.opacity }
+        Self { tile, corners, cloth: look.cloth.to_vec(), edges, opacity: fabric.opacity }
     }
 
     /// As rays meet it, with all of its triangles.

@@ -13,6 +13,7 @@ mod presenter;
 mod render_quality;
 mod renderer;
 mod shaders;
+mod split_vertices;
 mod surface_buffers;
 mod textures;
 mod view_uniforms;

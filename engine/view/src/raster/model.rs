@@ -6,6 +6,7 @@ use toile_assets::body::Body;
 use toile_assets::fabric::{Fabric, Weave};
 use toile_assets::garment::Garment;
 
+use crate::cloth_look::GarmentLook;
 use crate::image::linear;
 use crate::scene::MANNEQUIN;
 
@@ -31,9 +32,9 @@ pub struct RenderSurface {
     /// Where the vertices are at rest (m) `[vertices]`: what the weave lies along, and what is drawn until the first
     /// update.
     pub rest: Vec<Vec3>,
-    /// Coordinates on the cloth, weft and warp (m) `[vertices]`; without them the weave is laid on from three sides of
-    /// the rest shape.
-    pub uv: Option<Vec<Vec2>>,
+    /// What cloth shows beside its colour; where it does not say how the surface lies on the cloth, the weave is laid on from
+    /// three sides of the rest shape.
+    pub look: Option<GarmentLook>,
     /// Vertex indices, counter-clockwise seen from outside `[triangles]`.
     pub triangles: Vec<[u32; 3]>,
     /// Base colour, linear RGB, each 0..1.
@@ -94,6 +95,18 @@ pub enum ModelError {
         /// Number of entries needed.
         want: usize,
     },
+    /// A list of what belongs to triangles' corners has not as many entries as there are triangles.
+    #[error("surface {surface} has {want} triangles but {got} {what} were given; give one for each triangle, or none")]
+    Corners {
+        /// Index of the surface.
+        surface: usize,
+        /// Name of the list.
+        what: &'static str,
+        /// Number of entries given.
+        got: usize,
+        /// Number of entries needed.
+        want: usize,
+    },
     /// A triangle names a vertex that is not there.
     #[error("triangle {triangle} of surface {surface} names a vertex beyond its {want}; leave it out")]
     Triangle {
@@ -103,6 +116,14 @@ pub enum ModelError {
         triangle: usize,
         /// How many vertices there are.
         want: usize,
+    },
+    /// A triangle is none of those that a surface with a texture was made with.
+    #[error("triangle {triangle} of surface {surface} is none that it was made with; choose among those")]
+    Unknown {
+        /// Index of the surface.
+        surface: usize,
+        /// Index of the triangle.
+        triangle: usize,
     },
     /// A vertex position is not finite.
     #[error("vertex {vertex} of surface {surface} is not finite; the picture keeps the last places that were")]
@@ -125,7 +146,7 @@ impl RenderSurface {
     pub fn of_body(body: &Body) -> Self {
         Self {
             rest: body.mesh.positions.clone(),
-            uv: None,
+            look: None,
             triangles: body.mesh.triangles.clone(),
             colour: MANNEQUIN,
             material: RenderMaterial::Skin,
@@ -136,7 +157,7 @@ impl RenderSurface {
     pub fn of_garment(garment: &Garment) -> Self {
         Self {
             rest: garment.start.to_vec(),
-            uv: None,
+            look: Some(GarmentLook::of(garment)),
             triangles: garment.triangles.to_vec(),
             colour: Vec3::from_array(garment.fabric.colour.map(linear)),
             material: RenderMaterial::Cloth((&garment.fabric).into()),
@@ -152,8 +173,13 @@ impl RenderSurface {
         if let Some(vertex) = self.rest.iter().position(|p| !p.is_finite()) {
             return Err(ModelError::NotFinite { surface, vertex });
         }
-        if let Some(uv) = self.uv.as_ref().filter(|uv| uv.len() != want) {
-            return Err(ModelError::Length { surface, what: "coordinates on the cloth", got: uv.len(), want });
+        if let Some(look) = &self.look {
+            let want = self.triangles.len();
+            let lists =
+                [("texture points", &look.corners), ("places on the cloth", &look.cloth), ("edges", &look.edges)];
+            for (what, list) in lists.into_iter().filter(|(_, list)| !list.is_empty() && list.len() != want) {
+                return Err(ModelError::Corners { surface, what, got: list.len(), want });
+            }
         }
         check_triangles(surface, &self.triangles, want)
     }
@@ -173,7 +199,7 @@ mod tests {
     fn shapes_that_do_not_fit_together_are_refused_with_their_place() {
         let good = RenderSurface {
             rest: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
-            uv: None,
+            look: None,
             triangles: vec![[0, 1, 2]],
             colour: Vec3::ONE,
             material: RenderMaterial::Skin,
@@ -183,7 +209,8 @@ mod tests {
         assert_eq!(triangle.check(2), Err(ModelError::Triangle { surface: 2, triangle: 1, want: 3 }));
         let nowhere = RenderSurface { rest: vec![Vec3::ZERO, Vec3::NAN, Vec3::Y], ..good.clone() };
         assert_eq!(nowhere.check(1), Err(ModelError::NotFinite { surface: 1, vertex: 1 }));
-        let short = RenderSurface { uv: Some(vec![Vec2::ZERO]), ..good };
-        assert!(short.check(0).unwrap_err().to_string().contains("3 vertices but 1"));
+        let look = GarmentLook { cloth: vec![[Vec2::ZERO; 3]; 2], ..GarmentLook::default() };
+        let long = RenderSurface { look: Some(look), ..good };
+        assert!(long.check(0).unwrap_err().to_string().contains("1 triangles but 2"));
     }
 }

@@ -10,6 +10,7 @@ use wgpu::{
 
 use super::render_quality::RenderQuality;
 use super::shaders::{self, ShaderOptions};
+use super::surface_buffers::POINT_BYTES;
 
 /// Format of depth in a picture.
 pub const DEPTH: TextureFormat = TextureFormat::Depth32Float;
@@ -27,8 +28,10 @@ pub struct Layouts {
     pub frame: BindGroupLayout,
     /// Group 1: the depth maps.
     pub depths: BindGroupLayout,
-    /// Group 2 of surfaces: their uniform block, their weave.
+    /// Group 2 of surfaces: their uniform block, their weave, their print.
     pub surface: BindGroupLayout,
+    /// Group 3 of surfaces: positions and normals.
+    pub places: BindGroupLayout,
     /// Group 2 of the backdrop: the picture behind.
     pub behind: BindGroupLayout,
     /// Group 0 of the copy onto the target: the finished picture.
@@ -67,7 +70,11 @@ impl Layouts {
                     ..e
                 }),
             ),
-            surface: make("surface", &[block(0, ShaderStages::FRAGMENT), texture(1, FILTERED), sampler(2, true)]),
+            surface: make(
+                "surface",
+                &[block(0, ShaderStages::FRAGMENT), texture(1, FILTERED), sampler(2, true), texture(3, FILTERED)],
+            ),
+            places: make("places", &[storage(0), storage(1)]),
             behind: make("behind", &[texture(0, FILTERED), sampler(1, true)]),
             finished: make("finished", &[texture(0, FILTERED)]),
         }
@@ -83,6 +90,13 @@ fn entry(binding: u32, visibility: ShaderStages, ty: BindingType) -> BindGroupLa
 fn block(binding: u32, visibility: ShaderStages) -> BindGroupLayoutEntry {
     let ty = BindingType::Buffer { ty: BufferBindingType::Uniform, has_dynamic_offset: false, min_binding_size: None };
     entry(binding, visibility, ty)
+}
+
+/// A list that the vertex shader reads.
+fn storage(binding: u32) -> BindGroupLayoutEntry {
+    let ty = BufferBindingType::Storage { read_only: true };
+    let ty = BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+    entry(binding, ShaderStages::VERTEX, ty)
 }
 
 fn texture(binding: u32, sample_type: TextureSampleType) -> BindGroupLayoutEntry {
@@ -173,6 +187,7 @@ impl Pipelines {
             samples: quality.samples,
             strip: false,
         };
+        let source = VertexAttribute { format: VertexFormat::Uint32, offset: 0, shader_location: 0 };
         let line_buffers = [Some(VertexBufferLayout {
             array_stride: 3 * VEC3,
             step_mode: VertexStepMode::Instance,
@@ -198,12 +213,11 @@ impl Pipelines {
             }
             .build(device),
             surface: PipelineDescription {
-                groups: &[frame, depths, Some(&layouts.surface)],
+                groups: &[frame, depths, Some(&layouts.surface), Some(&layouts.places)],
                 buffers: &[
-                    per_vertex(STRIDE, &[attribute(0, 0, true)]),
-                    per_vertex(STRIDE, &[attribute(1, 0, true)]),
-                    per_vertex(VEC2, &[attribute(2, 0, false)]),
-                    per_vertex(2 * VEC3, &[attribute(3, 0, true), attribute(4, VEC3, true)]),
+                    per_vertex(POINT_BYTES as u64, &[source, attribute(1, 4, false), attribute(2, 4 + VEC2, false)]),
+                    per_vertex(VEC2, &[attribute(3, 0, false)]),
+                    per_vertex(2 * VEC3, &[attribute(4, 0, true), attribute(5, VEC3, true)]),
                 ],
                 ..lit("surface", &surface, "vertex_main", "fragment_main")
             }

@@ -176,7 +176,9 @@ impl Renderer {
         if !source.device().is(&self.gpu) {
             return Err(ModelError::Device { surface });
         }
-        self.with(surface, |it, _, _| it.follow(surface, source, within))
+        let count = self.surfaces.len();
+        let it = self.surfaces.get_mut(surface).ok_or(ModelError::Surface { surface, count })?;
+        it.follow((&self.device, &self.layouts), surface, source, within)
     }
 
     /// Which triangles of a surface are drawn: at most as many as it has.
@@ -312,8 +314,8 @@ impl Renderer {
         pass.set_pipeline(&self.pipelines.depth);
         pass.set_bind_group(0, &slot.bind, &[]);
         for surface in self.surfaces.iter().filter(|s| s.visible && s.count > 0) {
-            pass.set_vertex_buffer(0, surface.places()[0]);
-            pass.set_index_buffer(surface.indices.slice(..), wgpu::IndexFormat::Uint32);
+            pass.set_vertex_buffer(0, surface.positions());
+            pass.set_index_buffer(surface.own_indices().slice(..), wgpu::IndexFormat::Uint32);
             pass.draw_indexed(0..surface.count, 0, 0..self.quality.beams());
         }
     }
@@ -325,12 +327,14 @@ impl Renderer {
         pass.set_pipeline(&self.pipelines.surface);
         for surface in self.surfaces.iter().rev().filter(|s| s.visible && s.count > 0) {
             pass.set_bind_group(2, &surface.bind, &[]);
-            let [positions, normals] = surface.places();
-            for (at, part) in (0..).zip([positions, normals, surface.marks.slice(..), surface.rest.slice(..)]) {
-                pass.set_vertex_buffer(at, part);
+            let (places, first) = surface.places();
+            pass.set_bind_group(3, places, &[]);
+            for (at, part) in (0..).zip([&surface.points, &surface.marks, &surface.rest]) {
+                pass.set_vertex_buffer(at, part.slice(..));
             }
             pass.set_index_buffer(surface.indices.slice(..), wgpu::IndexFormat::Uint32);
-            pass.draw_indexed(0..surface.count, 0, 0..1);
+            // The number of the instance says where the surface's places begin.
+            pass.draw_indexed(0..surface.count, 0, first..first + 1);
         }
         pass.set_pipeline(&self.pipelines.backdrop);
         pass.set_bind_group(2, &self.behind_bind, &[]);

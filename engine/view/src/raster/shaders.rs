@@ -3,7 +3,7 @@
 use super::render_quality::MOST_BEAMS;
 use super::weave_relief::STEEPEST;
 use crate::fit_map;
-use crate::{shading, tone_mapping};
+use crate::{cloth_look, shading, tone_mapping};
 
 const FRAME: &str = include_str!("shaders/frame.wgsl");
 const SHADING: &str = include_str!("shaders/shading.wgsl");
@@ -65,6 +65,11 @@ fn numbers(made: ShaderOptions) -> String {
         ("STEEPEST", STEEPEST),
         ("LINE_HALF_WIDTH", LINE_HALF_WIDTH),
         ("SOFTNESS", SOFTNESS),
+        ("SEAM_HALF", cloth_look::SEAM_HALF_M),
+        ("SEAM_DARK", cloth_look::SEAM_DARK),
+        ("HEM", cloth_look::HEM_M),
+        ("STITCH_HALF", cloth_look::STITCH_HALF_M),
+        ("STITCH_DARK", cloth_look::STITCH_DARK),
     ];
     let ShaderOptions { weave, by_vertex, encode } = made;
     let figures: String = figures.iter().map(|(name, value)| format!("const {name} = {value:?};\n")).collect();

@@ -1,5 +1,7 @@
 //! The buffers of each surface on the device: made once, overwritten from picture to picture.
 
+use std::collections::HashMap;
+
 use glam::{Vec2, Vec3};
 use toile_assets::fabric::Weave;
 use toile_assets::mesh::vertex_normals;
@@ -8,9 +10,17 @@ use wgpu::{BindGroup, Buffer, BufferSlice, BufferUsages, Device, Queue, TextureV
 
 use super::model::{ModelError, RenderMaterial, RenderSurface, check_triangles};
 use super::pipelines::Layouts;
+use super::split_vertices::SplitVertices;
+use super::textures;
 use super::weave_relief::repeat;
 use super::weave_textures::WeaveTextures;
 use crate::scene::Bounds;
+
+/// Bytes of a surface's uniform block: three vectors of four numbers.
+const BLOCK_BYTES: usize = 48;
+
+/// Bytes of the points of a vertex that is drawn: its source, texture point, distances.
+pub const POINT_BYTES: usize = 20;
 
 /// Sent in place of a fit that is NaN.
 const NO_FIT: f32 = -9.0;
@@ -20,22 +30,36 @@ const NO_FIT: f32 = -9.0;
 pub struct SurfaceBuffers {
     positions: Buffer,
     normals: Buffer,
-    /// Buffers on the device that are drawn instead, until the next update.
-    source: Option<VertexSource>,
-    /// Fit and recess of each vertex.
+    /// Whether buffers on the device are drawn instead, until the next update.
+    follows: bool,
+    /// The vertices as they are drawn.
+    split: SplitVertices,
+    /// Which of the split triangles each triangle is; of a surface that is drawn as it is, nothing.
+    split_triangles: HashMap<[u32; 3], u32>,
+    /// Of each vertex that is drawn: the surface's vertex; texture point and distance from hem and seam.
+    pub points: Buffer,
+    /// Fit and recess of each vertex that is drawn.
     pub marks: Buffer,
-    /// Place and normal at rest.
+    /// Place and normal at rest, or place on the cloth, of each vertex that is drawn.
     pub rest: Buffer,
+    /// Corners by the vertices that are drawn.
     pub indices: Buffer,
+    /// Corners by the surface's own vertices, for what needs no texture; none where they are the same.
+    own_indices: Option<Buffer>,
     /// Indices that are drawn.
     pub count: u32,
     pub bind: BindGroup,
+    /// Positions and normals as the shader reads them.
+    own_places: BindGroup,
+    /// The same of what is followed.
+    source_places: Option<(VertexSource, BindGroup)>,
     /// The box around it as it is drawn.
     pub bounds: Bounds,
     pub visible: bool,
     block: Buffer,
     vertices: usize,
     room: usize,
+    look: [f32; 4],
     colour: Vec3,
     material: RenderMaterial,
     fit: Vec<f32>,
@@ -96,6 +120,9 @@ impl SurfaceUploader<'_> {
     ) -> Result<SurfaceBuffers, ModelError> {
         shape.check(surface)?;
         let vertices = shape.rest.len();
+        let split = SplitVertices::of(shape);
+        let drawn_vertices = split.source.len();
+        let is_split = split.triangles != shape.triangles;
         let buffer = |label, bytes: usize, usage| {
             let size = bytes.max(4) as u64;
             let usage = usage | BufferUsages::COPY_DST;
@@ -106,17 +133,37 @@ impl SurfaceUploader<'_> {
                 mapped_at_creation: false,
             })
         };
-        let block = buffer("surface", 32, BufferUsages::UNIFORM);
+        let block = buffer("surface", BLOCK_BYTES, BufferUsages::UNIFORM);
         let weave = if let RenderMaterial::Cloth(cloth) = shape.material { cloth.weave } else { Weave::Plain };
+        let places = BufferUsages::VERTEX | BufferUsages::STORAGE;
+        let positions = buffer("positions", vertices.max(1) * STRIDE as usize, places);
+        let normals_buffer = buffer("normals", vertices.max(1) * STRIDE as usize, places);
+        let indices = |label| buffer(label, shape.triangles.len() * 12, BufferUsages::INDEX);
+        let tile = shape.look.as_ref().and_then(|look| look.tile.as_ref());
+        let tile_view = tile.map(|tile| textures::levels(self.device, self.queue, tile));
+        let flag = |on: bool| if on { 1.0 } else { 0.0 };
+        let sewn = shape.look.as_ref().is_some_and(|look| !look.edges.is_empty());
+        let opacity = shape.look.as_ref().map_or(1.0, |look| look.opacity);
         let mut drawn = SurfaceBuffers {
-            positions: buffer("positions", vertices * STRIDE as usize, BufferUsages::VERTEX),
-            normals: buffer("normals", vertices * STRIDE as usize, BufferUsages::VERTEX),
-            source: None,
-            marks: buffer("marks", vertices * 8, BufferUsages::VERTEX),
-            rest: buffer("rest", vertices * 24, BufferUsages::VERTEX),
-            indices: buffer("indices", shape.triangles.len() * 12, BufferUsages::INDEX),
+            own_places: self.places(&positions, &normals_buffer),
+            source_places: None,
+            follows: false,
+            positions,
+            normals: normals_buffer,
+            points: buffer("points", drawn_vertices * POINT_BYTES, BufferUsages::VERTEX),
+            marks: buffer("marks", drawn_vertices * 8, BufferUsages::VERTEX),
+            rest: buffer("rest", drawn_vertices * 24, BufferUsages::VERTEX),
+            indices: indices("indices"),
+            own_indices: is_split.then(|| indices("own indices")),
+            split_triangles: if is_split {
+                (0..).zip(&shape.triangles).map(|(i, t)| (*t, i)).collect()
+            } else {
+                HashMap::new()
+            },
+            split,
             count: 0,
-            bind: self.bind(&block, self.threads.of(weave)),
+            bind: self.bind(&block, self.threads.of(weave), tile_view.as_ref().unwrap_or(&self.threads.blank)),
+            look: [flag(tile.is_some()), flag(sewn), opacity, surface as f32],
             bounds: Bounds::EMPTY,
             visible: true,
             block,
@@ -130,6 +177,7 @@ impl SurfaceUploader<'_> {
         };
         let mut normals = vec![Vec3::ZERO; vertices];
         vertex_normals(&shape.rest, &shape.triangles, &mut normals);
+        drawn.send_points(self.queue);
         drawn.send_rest(self.queue, scratch, shape, &normals);
         drawn.set_triangles(self.queue, surface, &shape.triangles)?;
         drawn.update(self.queue, scratch, surface, &shape.rest, &normals)?;
@@ -138,7 +186,7 @@ impl SurfaceUploader<'_> {
         Ok(drawn)
     }
 
-    fn bind(&self, block: &Buffer, weave: &TextureView) -> BindGroup {
+    fn bind(&self, block: &Buffer, weave: &TextureView, tile: &TextureView) -> BindGroup {
         let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
         self.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("surface"),
@@ -147,9 +195,26 @@ impl SurfaceUploader<'_> {
                 entry(0, block.as_entire_binding()),
                 entry(1, wgpu::BindingResource::TextureView(weave)),
                 entry(2, wgpu::BindingResource::Sampler(&self.threads.sampler)),
+                entry(3, wgpu::BindingResource::TextureView(tile)),
             ],
         })
     }
+
+    fn places(&self, positions: &Buffer, normals: &Buffer) -> BindGroup {
+        bind_places(self.device, self.layouts, [positions, normals])
+    }
+}
+
+/// Positions and normals, as the shader of surfaces reads them.
+fn bind_places(device: &Device, layouts: &Layouts, [positions, normals]: [&Buffer; 2]) -> BindGroup {
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("places"),
+        layout: &layouts.places,
+        entries: &[
+            wgpu::BindGroupEntry { binding: 0, resource: positions.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 1, resource: normals.as_entire_binding() },
+        ],
+    })
 }
 
 impl SurfaceBuffers {
@@ -174,7 +239,7 @@ impl SurfaceBuffers {
         let clean = |n: &Vec3| padded(if n.is_finite() { *n } else { Vec3::ZERO });
         let zeros = std::iter::repeat_n([0.0; 4], if normals.is_empty() { self.vertices } else { 0 });
         scratch.write(queue, &self.normals, normals.iter().map(clean).chain(zeros).flatten());
-        self.source = None;
+        self.follows = false;
         Ok(())
     }
 
@@ -182,19 +247,45 @@ impl SurfaceBuffers {
     ///
     /// # Errors
     /// [`ModelError::Length`]; the last places stay then.
-    pub fn follow(&mut self, surface: usize, source: &VertexSource, within: Bounds) -> Result<(), ModelError> {
+    pub fn follow(
+        &mut self,
+        (device, layouts): (&Device, &Layouts),
+        surface: usize,
+        source: &VertexSource,
+        within: Bounds,
+    ) -> Result<(), ModelError> {
         self.check(surface, "vertices on the device", source.vertices())?;
-        self.source = Some(source.clone());
+        let known = self.source_places.as_ref().filter(|(known, _)| known.buffers() == source.buffers());
+        let bind = known.map_or_else(|| bind_places(device, layouts, source.buffers()), |(_, bind)| bind.clone());
+        self.source_places = Some((source.clone(), bind));
+        self.follows = true;
         self.bounds = within;
         Ok(())
     }
 
-    /// The positions and the normals that are drawn.
-    pub fn places(&self) -> [BufferSlice<'_>; 2] {
-        match &self.source {
-            Some(source) => source.parts(),
-            None => [self.positions.slice(..), self.normals.slice(..)],
+    fn followed(&self) -> Option<&(VertexSource, BindGroup)> {
+        self.source_places.as_ref().filter(|_| self.follows)
+    }
+
+    /// The positions that are drawn, for what needs nothing else.
+    pub fn positions(&self) -> BufferSlice<'_> {
+        match self.followed() {
+            Some((source, _)) => source.parts()[0],
+            None => self.positions.slice(..),
         }
+    }
+
+    /// Positions and normals as the shader reads them, and the first of them.
+    pub fn places(&self) -> (&BindGroup, u32) {
+        match self.followed() {
+            Some((source, bind)) => (bind, source.first()),
+            None => (&self.own_places, 0),
+        }
+    }
+
+    /// Corners by the surface's own vertices.
+    pub fn own_indices(&self) -> &Buffer {
+        self.own_indices.as_ref().unwrap_or(&self.indices)
     }
 
     /// Draws these triangles of it from now on, at most as many as it was made with.
@@ -206,7 +297,17 @@ impl SurfaceBuffers {
         if triangles.len() > self.room {
             return Err(ModelError::Length { surface, what: "triangles", got: triangles.len(), want: self.room });
         }
-        queue.write_buffer(&self.indices, 0, bytemuck::cast_slice(triangles));
+        match &self.own_indices {
+            None => queue.write_buffer(&self.indices, 0, bytemuck::cast_slice(triangles)),
+            Some(own) => {
+                let known = |t: &[u32; 3]| self.split_triangles.get(t).map(|i| self.split.triangles[*i as usize]);
+                let unknown = |triangle| ModelError::Unknown { surface, triangle };
+                let split = triangles.iter().enumerate().map(|(i, t)| known(t).ok_or_else(|| unknown(i)));
+                let split = split.collect::<Result<Vec<_>, _>>()?;
+                queue.write_buffer(own, 0, bytemuck::cast_slice(triangles));
+                queue.write_buffer(&self.indices, 0, bytemuck::cast_slice(&split));
+            }
+        }
         self.count = 3 * triangles.len() as u32;
         Ok(())
     }
@@ -263,18 +364,26 @@ impl SurfaceBuffers {
     }
 
     fn send_rest(&self, queue: &Queue, scratch: &mut UploadScratch, shape: &RenderSurface, normals: &[Vec3]) {
-        let cloth = |uv: &Vec2| [uv.x, uv.y, 0.0, 0.0, 0.0, 1.0];
-        match &shape.uv {
-            Some(uv) => scratch.write(queue, &self.rest, uv.iter().flat_map(cloth)),
-            None => {
-                let both = shape.rest.iter().zip(normals).flat_map(|(p, n)| [p.to_array(), n.to_array()]);
-                scratch.write(queue, &self.rest, both.flatten());
-            }
+        // On the cloth the weave is seen from its one side.
+        let cloth = |point: &[Vec2; 3]| [point[1].x, point[1].y, 0.0, 0.0, 0.0, 1.0];
+        if shape.look.as_ref().is_some_and(|look| !look.cloth.is_empty()) {
+            return scratch.write(queue, &self.rest, self.split.points.iter().flat_map(cloth));
         }
+        let both = |v: &u32| [shape.rest[*v as usize].to_array(), normals[*v as usize].to_array()];
+        scratch.write(queue, &self.rest, self.split.source.iter().flat_map(both).flatten());
+    }
+
+    fn send_points(&self, queue: &Queue) {
+        let point = |(source, [tile, _, edges]): (&u32, &[Vec2; 3])| {
+            [*source, tile.x.to_bits(), tile.y.to_bits(), edges.x.to_bits(), edges.y.to_bits()]
+        };
+        let words: Vec<u32> = self.split.source.iter().zip(&self.split.points).flat_map(point).collect();
+        queue.write_buffer(&self.points, 0, bytemuck::cast_slice(&words));
     }
 
     fn send_marks(&self, queue: &Queue, scratch: &mut UploadScratch) {
-        scratch.write(queue, &self.marks, self.fit.iter().zip(&self.recess).flat_map(|(f, r)| [*f, *r]));
+        let marks = |v: &u32| [self.fit[*v as usize], self.recess[*v as usize]];
+        scratch.write(queue, &self.marks, self.split.source.iter().flat_map(marks));
     }
 
     fn send_block(&self, queue: &Queue) {
@@ -288,7 +397,8 @@ impl SurfaceBuffers {
         };
         let Vec3 { x, y, z } = if self.colour.is_finite() { self.colour } else { Vec3::splat(0.5) };
         let fitted = if self.fitted { 1.0 } else { 0.0 };
-        let block = [x, y, z, kind, sheen, repeats.x, repeats.y, fitted];
+        let [tile, sewn, opacity, number] = self.look;
+        let block = [x, y, z, kind, sheen, repeats.x, repeats.y, fitted, tile, sewn, opacity, number];
         queue.write_buffer(&self.block, 0, bytemuck::cast_slice(&block));
     }
 }

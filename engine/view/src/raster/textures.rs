@@ -5,6 +5,7 @@ use wgpu::{
     TextureView,
 };
 
+use crate::cloth_look::TileLevels;
 use crate::image::Size;
 
 /// A sampler with one way of filtering in all directions.
@@ -47,6 +48,25 @@ pub fn write(queue: &Queue, texture: &Texture, level: u32, width: u32, height: u
         wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * width), rows_per_image: None },
         extent(width, height),
     );
+}
+
+/// A picture with all of its levels of detail.
+pub fn levels(device: &Device, queue: &Queue, tile: &TileLevels) -> TextureView {
+    let finest = &tile.levels()[0];
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("tile"),
+        size: extent(finest.width, finest.height),
+        mip_level_count: tile.levels().len() as u32,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: TextureFormat::Rgba8UnormSrgb,
+        usage: TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    for (number, level) in (0..).zip(tile.levels()) {
+        write(queue, &texture, number, level.width, level.height, bytemuck::cast_slice(&level.texels));
+    }
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
 fn extent(width: u32, height: u32) -> Extent3d {

@@ -12,6 +12,8 @@ pub struct WeaveTextures {
     maps: [TextureView; 3],
     /// How they are read: repeated without end, with levels of detail.
     pub sampler: Sampler,
+    /// What cloth without a print shows: nothing.
+    pub blank: TextureView,
 }
 
 const ALL: [Weave; 3] = [Weave::Plain, Weave::Twill, Weave::Knit];
@@ -25,7 +27,8 @@ impl WeaveTextures {
             upload(device, queue, side, &levels)
         };
         let sampler = textures::sampler(device, wgpu::AddressMode::Repeat, wgpu::FilterMode::Linear);
-        Self { maps: ALL.map(map), sampler }
+        let blank = upload(device, queue, 1, &[vec![[0; 4]]]);
+        Self { maps: ALL.map(map), sampler, blank }
     }
 
     /// The relief of a weave.

@@ -40,7 +40,8 @@ impl Dressed {
         let cover = CoveringCloth::new(garment.triangles.iter().map(|t| t.map(|i| garment.start[i as usize])));
         let mut positions = body.mesh.positions.clone();
         let dressed = cover.dressed(&positions, &body.normals);
-        let body_triangles = cover.hide_skin(&mut positions, &body.normals, &dressed, &body.mesh.triangles).triangles;
+        let under = cover.hide_skin(&mut positions, &body.normals, &dressed, &body.mesh.triangles);
+        let body_triangles = under.drawn.iter().map(|t| body.mesh.triangles[*t as usize]).collect();
         let Bounds { min, max } = Bounds::of(&garment.start);
         let fit =
             garment.start.iter().map(|p| (1.5 - 3.0 * (p.y - min.y) / (max.y - min.y)).clamp(-1.0, 1.0)).collect();
@@ -84,14 +85,14 @@ impl Dressed {
     pub fn model(&self) -> Model {
         let skin = RenderSurface {
             rest: self.body.clone(),
-            uv: None,
+            look: None,
             triangles: self.body_triangles.clone(),
             colour: MANNEQUIN,
             material: raster::RenderMaterial::Skin,
         };
         let cloth = RenderSurface {
             rest: self.garment.start.to_vec(),
-            uv: None,
+            look: None,
             triangles: self.garment.triangles.to_vec(),
             colour: self.colour,
             material: raster::RenderMaterial::Cloth((&self.garment.fabric).into()),

@@ -12,6 +12,7 @@ use toile_view::{fit_map, trace};
 
 mod dressed;
 mod offload;
+mod prints;
 
 use dressed::Dressed;
 

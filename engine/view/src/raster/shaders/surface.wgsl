@@ -5,11 +5,17 @@ struct Surface {
     colour: vec4<f32>,
     // Strength of the sheen; repeats of the weave a metre, along weft and warp; 1 where the fit map is shown.
     cloth: vec4<f32>,
+    // 1 where there is a print; 1 where seams and hems are known; share of light that is held back; number of the surface.
+    look: vec4<f32>,
 }
 
 @group(2) @binding(0) var<uniform> surface: Surface;
 @group(2) @binding(1) var weave: texture_2d<f32>;
 @group(2) @binding(2) var repeated: sampler;
+@group(2) @binding(3) var tile: texture_2d<f32>;
+// Of the surface's own vertices: a vertex that lies in several places of the print is drawn once for each.
+@group(3) @binding(0) var<storage, read> positions: array<vec4<f32>>;
+@group(3) @binding(1) var<storage, read> normals: array<vec4<f32>>;
 
 struct Varying {
     @builtin(position) clip: vec4<f32>,
@@ -19,18 +25,27 @@ struct Varying {
     @location(3) rest_normal: vec3<f32>,
     @location(4) fit: f32,
     @location(5) opening: f32,
+    // The point of the print, v upwards; how far from the nearest hem and seam (m).
+    @location(6) point: vec2<f32>,
+    @location(7) edges: vec2<f32>,
 }
 
 @vertex
 fn vertex_main(
-    @location(0) position: vec3<f32>,
-    @location(1) normal: vec3<f32>,
+    @builtin(instance_index) first: u32,
+    @location(0) source: u32,
+    @location(1) point: vec2<f32>,
+    @location(2) edges: vec2<f32>,
     // The fit, -1 loose .. 1 tight; how much farther off it counts as than it is (m).
-    @location(2) marks: vec2<f32>,
-    @location(3) rest: vec3<f32>,
-    @location(4) rest_normal: vec3<f32>,
+    @location(3) marks: vec2<f32>,
+    @location(4) rest: vec3<f32>,
+    @location(5) rest_normal: vec3<f32>,
 ) -> Varying {
+    let position = positions[first + source].xyz;
+    let normal = normals[first + source].xyz;
     var out: Varying;
+    out.point = point;
+    out.edges = edges;
     out.clip = frame.clip * vec4(position, 1.0);
     // Farther along the line of sight: the same point in the picture, another depth.
     let sight = normalize(position - frame.eye.xyz);
@@ -43,10 +58,10 @@ fn vertex_main(
     out.fit = marks.x;
     out.opening = 1.0;
     if BY_VERTEX {
-        var point: SurfacePoint;
-        point.position = position;
-        point.normal = normal * select(1.0, -1.0, dot(normal, sight) > 0.0);
-        out.opening = ambient_visibility(point, true);
+        var lit: SurfacePoint;
+        lit.position = position;
+        lit.normal = normal * select(1.0, -1.0, dot(normal, sight) > 0.0);
+        out.opening = ambient_visibility(lit, true);
     }
     return out;
 }
@@ -97,8 +112,34 @@ fn woven(v: Varying, normal: vec3<f32>) -> vec4<f32> {
     return vec4(whole, front.open + side.open + top.open);
 }
 
+// How much of a line of this half width a pixel so wide sees at a distance (m).
+fn line(distance: f32, half: f32, pixel: f32) -> f32 {
+    let seen = clamp((half + 0.5 * pixel - distance) / pixel, 0.0, 1.0);
+    return seen * min(2.0 * half / pixel, 1.0);
+}
+
+// The colour with the print on it, the grooves of seams and the stitches of hems.
+fn cloth_colour(v: Varying, base: vec3<f32>) -> vec3<f32> {
+    var colour = base;
+    if surface.look.x > 0.5 {
+        // Pictures have their first row at the top.
+        let texel = textureSample(tile, repeated, vec2(v.point.x, 1.0 - v.point.y));
+        colour = mix(colour, texel.xyz, texel.w);
+    }
+    if surface.look.y > 0.5 {
+        let pixel = max(length(dpdx(v.position)), 1e-6);
+        colour *= 1.0 - SEAM_DARK * line(v.edges.y, SEAM_HALF, pixel);
+        colour *= 1.0 - STITCH_DARK * line(abs(v.edges.x - HEM), STITCH_HALF, pixel);
+    }
+    return colour;
+}
+
 @fragment
 fn fragment_main(v: Varying, @builtin(front_facing) outside: bool) -> @location(0) vec4<f32> {
+    // Between the threads of sheer cloth what lies behind is seen; each layer has gaps of its own.
+    if surface.look.z < 1.0 && noise(v.clip.xy + 37.0 * surface.look.w) > surface.look.z && surface.cloth.w < 0.5 {
+        discard;
+    }
     let eye = normalize(frame.eye.xyz - v.position);
     let flat = cross(dpdx(v.position), dpdy(v.position));
     // The normal of the triangle towards the eye, for vertices without one.
@@ -107,7 +148,7 @@ fn fragment_main(v: Varying, @builtin(front_facing) outside: bool) -> @location(
     normal = normalize(select(facet, normal, dot(normal, normal) > 1e-6));
     var point: SurfacePoint;
     point.position = v.position;
-    point.colour = surface.colour.xyz;
+    point.colour = cloth_colour(v, surface.colour.xyz);
     point.kind = surface.colour.w;
     point.sheen = surface.cloth.x;
     point.eye = eye;
