@@ -50,11 +50,7 @@ impl ForeignMesh {
             source: (1..=mesh.positions.len() as u32).collect(),
             faces: mesh.faces.clone(),
             uvs,
-            materials: mesh
-                .face_materials
-                .iter()
-                .map(|m| m.map_or_else(FaceMaterial::default, |m| material(m)))
-                .collect(),
+            materials: mesh.face_materials.iter().map(|m| m.map_or_else(FaceMaterial::default, &material)).collect(),
             pictures: Vec::new(),
             says_what_moves: moves.contains(&true),
         }

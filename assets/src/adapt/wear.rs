@@ -12,8 +12,7 @@ use super::report::{Behaviour, MeshReport, PieceReport};
 use super::surface::{loops, pieces};
 use crate::body::Body;
 use crate::garment::Shape;
-use crate::garment::look::Painted;
-use crate::garment::shape::NO_VERTEX;
+use crate::garment::shape::{NO_VERTEX, Painted};
 use crate::import::obj::warp_upright;
 
 /// Borders below the crotch that lie this far beside the middle (m) are those of trouser legs.

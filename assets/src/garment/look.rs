@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::Vec2;
 
-use super::shape::Shape;
+use super::shape::{Painted, Shape};
 use crate::texture::{Atlas, Texture};
 
 /// Farther from a hem or a seam nothing of either is seen (m).
@@ -31,15 +31,6 @@ pub struct MeshPicture {
     pub texture: Arc<Texture>,
     /// Where the corners of each triangle lie in it: 0 to 1 across, v upwards `[triangles]`.
     pub corners: Box<[[Vec2; 3]]>,
-}
-
-/// What each face of a mesh shows.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Painted {
-    /// The pictures of all materials.
-    pub pictures: Vec<Arc<Texture>>,
-    /// Which of them each face shows, counted from 1; 0 is none `[faces]`.
-    pub of_face: Vec<u8>,
 }
 
 impl Look {

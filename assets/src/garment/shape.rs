@@ -1,10 +1,12 @@
 //! The shape of one garment in one size: its faces, its measure as cut, and where it starts on a shopper.
 
+use std::sync::Arc;
+
 use glam::{Vec2, Vec3};
 
 use super::Overrides;
-use super::look::Painted;
 use crate::mesh::{Influences, SkinWeights};
+use crate::texture::Texture;
 
 /// In the fourth place of a [`Face`]: the face is a triangle.
 pub const NO_VERTEX: u32 = u32::MAX;
@@ -32,6 +34,15 @@ pub enum Part {
     LeftLeg,
     /// The right leg and the trunk.
     RightLeg,
+}
+
+/// What each face of a mesh shows.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Painted {
+    /// The pictures of all materials.
+    pub pictures: Vec<Arc<Texture>>,
+    /// Which of them each face shows, counted from 1; 0 is none `[faces]`.
+    pub of_face: Vec<u8>,
 }
 
 /// A garment as drafted or imported, before it is baked. All vertex arrays have the same length.

@@ -10,7 +10,7 @@ use wgpu::{
 
 use super::render_quality::RenderQuality;
 use super::shaders::{self, ShaderOptions};
-use super::surface_buffers::POINT_BYTES;
+use super::split_vertices::POINT_BYTES;
 
 /// Format of depth in a picture.
 pub const DEPTH: TextureFormat = TextureFormat::Depth32Float;

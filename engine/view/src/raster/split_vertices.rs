@@ -6,6 +6,9 @@ use glam::Vec2;
 
 use super::model::RenderSurface;
 
+/// Bytes of the points of a vertex that is drawn: its source, texture point, distances.
+pub const POINT_BYTES: usize = 20;
+
 /// The vertices of a surface as they are drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SplitVertices {

@@ -10,7 +10,7 @@ use wgpu::{BindGroup, Buffer, BufferSlice, BufferUsages, Device, Queue, TextureV
 
 use super::model::{ModelError, RenderMaterial, RenderSurface, check_triangles};
 use super::pipelines::Layouts;
-use super::split_vertices::SplitVertices;
+use super::split_vertices::{POINT_BYTES, SplitVertices};
 use super::textures;
 use super::weave_relief::repeat;
 use super::weave_textures::WeaveTextures;
@@ -18,9 +18,6 @@ use crate::scene::Bounds;
 
 /// Bytes of a surface's uniform block: three vectors of four numbers.
 const BLOCK_BYTES: usize = 48;
-
-/// Bytes of the points of a vertex that is drawn: its source, texture point, distances.
-pub const POINT_BYTES: usize = 20;
 
 /// Sent in place of a fit that is NaN.
 const NO_FIT: f32 = -9.0;
