@@ -206,7 +206,7 @@ mod tests {
     use super::*;
 
     fn checks(side: u32) -> Texture {
-        let texel = |i: u32| if (i % side + i / side) % 2 == 0 { [255, 0, 0, 255] } else { [0, 0, 0, 0] };
+        let texel = |i: u32| if (i % side + i / side).is_multiple_of(2) { [255, 0, 0, 255] } else { [0, 0, 0, 0] };
         Texture { width: side, height: side, texels: (0..side * side).map(texel).collect() }
     }
 
