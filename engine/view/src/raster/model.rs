@@ -177,7 +177,8 @@ impl RenderSurface {
             let want = self.triangles.len();
             let lists =
                 [("texture points", &look.corners), ("places on the cloth", &look.cloth), ("edges", &look.edges)];
-            for (what, list) in lists.into_iter().filter(|(_, list)| !list.is_empty() && list.len() != want) {
+            let mut lists = lists.into_iter();
+            if let Some((what, list)) = lists.find(|(_, list)| !list.is_empty() && list.len() != want) {
                 return Err(ModelError::Corners { surface, what, got: list.len(), want });
             }
         }
