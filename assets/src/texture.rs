@@ -103,7 +103,7 @@ impl Atlas {
         let cells = (pictures.len() as f32).sqrt().ceil() as u32;
         let largest = pictures.iter().map(|p| p.width.max(p.height)).max()?;
         let cells = cells.next_power_of_two();
-        let side = largest.max(2 * MARGIN).min((2 * MOST_SIDE / cells).max(2 * MARGIN));
+        let side = (largest + 2 * MARGIN).next_power_of_two().min((2 * MOST_SIDE / cells).max(4 * MARGIN));
         let mut whole = RgbaImage::new(side * cells, side * cells);
         for (i, picture) in (0..).zip(pictures) {
             let inner =

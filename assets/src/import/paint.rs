@@ -40,16 +40,30 @@ impl Paint {
     }
 }
 
-/// The materials of an MTL file: their names, and what they show. What cannot be read is passed over.
+/// The materials of an MTL file: their names, and what they show (`newmtl`, `Kd`, `map_Kd`). What cannot be read is passed
+/// over: a picture that is not shown is no reason to refuse a garment.
 pub fn parse_mtl(text: &str) -> Vec<(String, Paint)> {
-    let Ok((materials, _)) = tobj::load_mtl_buf(&mut text.as_bytes()) else { return Vec::new() };
-    let paint = |m: &tobj::Material| match (&m.diffuse_texture, m.diffuse) {
-        // Options stand before the name: -s 1 1 1 cloth.png.
-        (Some(file), _) => Paint::named(if file.starts_with('-') { last_word(file) } else { file }),
-        (None, Some(colour)) => Paint::coloured(colour.map(encoded)),
-        (None, None) => Paint::None,
-    };
-    materials.iter().map(|m| (m.name.clone(), paint(m))).collect()
+    let mut materials: Vec<(String, Paint)> = Vec::new();
+    for line in text.lines() {
+        let line = line.split('#').next().unwrap_or_default().trim();
+        let (key, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+        let rest = rest.trim();
+        match (key, materials.last_mut()) {
+            ("newmtl", _) => materials.push((rest.to_owned(), Paint::None)),
+            // Options stand before the name: -s 1 1 1 cloth.png.
+            ("map_Kd", Some((_, paint))) if !rest.is_empty() => {
+                *paint = Paint::named(if rest.starts_with('-') { last_word(rest) } else { rest });
+            }
+            ("Kd", Some((_, paint))) if !matches!(paint, Paint::File(_)) => {
+                let numbers: Vec<f32> = rest.split_whitespace().filter_map(|w| w.parse().ok()).collect();
+                if let [r, g, b] = numbers[..] {
+                    *paint = Paint::coloured([r, g, b].map(encoded));
+                }
+            }
+            _ => {}
+        }
+    }
+    materials
 }
 
 fn last_word(text: &str) -> &str {
