@@ -1,0 +1,100 @@
+//! Lengths of a body by its girths and stature, after the usual block drafts.
+//!
+//! A block draft takes few measures and finds the rest in proportion: heights go with stature, widths and depths with girths.
+//! The proportions here are linear rules of that kind, with their constants fitted to the bodies of the size tables, largest and
+//! smallest; the armhole's depth is an eighth of the chest and a constant, the crotch's width goes by the hip, and so on.
+
+use crate::body::Sex;
+use crate::sizes::SizeBody;
+
+/// The lengths that drafts are drawn by, all in metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DraftBlock {
+    /// Whose body it is.
+    pub sex: Sex,
+    /// Girth of the chest.
+    pub chest: f64,
+    /// Girth of the waist.
+    pub waist: f64,
+    /// Girth of the hip.
+    pub hip: f64,
+    /// Stature.
+    pub stature: f64,
+    /// From the middle to the shoulder's tip.
+    pub shoulder: f64,
+    /// From the middle to where the neck meets the shoulder.
+    pub neck: f64,
+    /// From there down to the armhole's lowest point.
+    pub armhole: f64,
+    /// From there down to the waist.
+    pub to_waist: f64,
+    /// From the waist down to the hip.
+    pub to_hip: f64,
+    /// From the waist down to the crotch.
+    pub to_crotch: f64,
+    /// From the waist down to the knee.
+    pub to_knee: f64,
+    /// From the waist down to the floor.
+    pub to_floor: f64,
+    /// From the shoulder's tip to the wrist.
+    pub arm: f64,
+    /// Girth of the trunk a waistband below the waist.
+    pub below_waist: f64,
+}
+
+/// How far below the waist [`DraftBlock::below_waist`] is taken (m): a waistband's breadth.
+pub const BAND_M: f64 = 0.035;
+
+/// What differs between women's and men's proportions.
+struct BlockRules {
+    /// Height of the waist: part of stature, less part of the waist's girth.
+    waist: [f64; 2],
+    /// Height of the hip: part of stature, less part of the hip's girth.
+    hip: [f64; 2],
+    /// Height of the crotch, as the hip's.
+    crotch: [f64; 2],
+    /// Height of the neck's point at the shoulder (part of stature).
+    neck: f64,
+    /// Girth below the waist (part of the waist's).
+    below: f64,
+}
+
+const WOMEN: BlockRules =
+    BlockRules { waist: [0.673, 0.085], hip: [0.5756, 0.1], crotch: [0.5446, 0.1], neck: 0.852, below: 1.062 };
+
+const MEN: BlockRules =
+    BlockRules { waist: [0.661, 0.0754], hip: [0.578, 0.1257], crotch: [0.5545, 0.1257], neck: 0.855, below: 1.0 };
+
+/// Height of the knee (part of stature).
+const KNEE: f64 = 0.279;
+
+/// Length of an arm from the shoulder's tip to the wrist (part of stature).
+const ARM: f64 = 0.337;
+
+impl DraftBlock {
+    /// The block of a body.
+    pub fn new(sex: Sex, body: &SizeBody) -> Self {
+        let [stature, chest, waist, hip] =
+            [body.stature, body.chest_girth, body.waist_girth, body.hip_girth].map(f64::from);
+        let own = if sex == Sex::Male { &MEN } else { &WOMEN };
+        let height = |[a, b]: [f64; 2], girth: f64| a * stature - b * girth;
+        let at_waist = height(own.waist, waist);
+        Self {
+            sex,
+            chest,
+            waist,
+            hip,
+            stature,
+            shoulder: 0.5 * f64::from(body.shoulder_breadth) + 0.008,
+            neck: chest / 32.0 + 0.047,
+            armhole: chest / 8.0 + 0.1,
+            to_waist: own.neck * stature - at_waist,
+            to_hip: at_waist - height(own.hip, hip),
+            to_crotch: at_waist - height(own.crotch, hip),
+            to_knee: at_waist - KNEE * stature,
+            to_floor: at_waist,
+            arm: ARM * stature,
+            below_waist: own.below * waist,
+        }
+    }
+}
