@@ -28,13 +28,15 @@ pub struct DraftBlock {
     pub armhole: f64,
     /// From there down to the waist.
     pub to_waist: f64,
-    /// From the waist down to the hip.
+    /// From there down to the hip.
+    pub neck_to_hip: f64,
+    /// From where skirts and trousers sit, a woman's waist and below a man's, down to the hip.
     pub to_hip: f64,
-    /// From the waist down to the crotch.
+    /// From there down to the crotch.
     pub to_crotch: f64,
-    /// From the waist down to the knee.
+    /// From there down to the knee.
     pub to_knee: f64,
-    /// From the waist down to the floor.
+    /// From there down to the floor.
     pub to_floor: f64,
     /// From the shoulder's tip to the wrist.
     pub arm: f64,
@@ -57,13 +59,31 @@ struct BlockRules {
     neck: f64,
     /// Girth below the waist (part of the waist's).
     below: f64,
+    /// Depth of the armhole: part of the chest's girth, and a constant (m).
+    armhole: [f64; 2],
+    /// How far below the waist skirts and trousers sit (m).
+    sits: f64,
 }
 
-const WOMEN: BlockRules =
-    BlockRules { waist: [0.673, 0.085], hip: [0.5756, 0.1], crotch: [0.5446, 0.1], neck: 0.852, below: 1.062 };
+const WOMEN: BlockRules = BlockRules {
+    waist: [0.673, 0.085],
+    hip: [0.5756, 0.1],
+    crotch: [0.5446, 0.1],
+    neck: 0.852,
+    below: 1.062,
+    armhole: [0.125, 0.1],
+    sits: 0.0,
+};
 
-const MEN: BlockRules =
-    BlockRules { waist: [0.661, 0.0754], hip: [0.578, 0.1257], crotch: [0.5545, 0.1257], neck: 0.855, below: 1.0 };
+const MEN: BlockRules = BlockRules {
+    waist: [0.661, 0.0754],
+    hip: [0.578, 0.1257],
+    crotch: [0.5545, 0.1257],
+    neck: 0.855,
+    below: 1.0,
+    armhole: [0.1, 0.134],
+    sits: 0.04,
+};
 
 /// Height of the knee (part of stature).
 const KNEE: f64 = 0.279;
@@ -79,6 +99,7 @@ impl DraftBlock {
         let own = if sex == Sex::Male { &MEN } else { &WOMEN };
         let height = |[a, b]: [f64; 2], girth: f64| a * stature - b * girth;
         let at_waist = height(own.waist, waist);
+        let band = at_waist - own.sits;
         Self {
             sex,
             chest,
@@ -87,12 +108,13 @@ impl DraftBlock {
             stature,
             shoulder: 0.5 * f64::from(body.shoulder_breadth) + 0.008,
             neck: chest / 32.0 + 0.047,
-            armhole: chest / 8.0 + 0.1,
+            armhole: own.armhole[0] * chest + own.armhole[1],
             to_waist: own.neck * stature - at_waist,
-            to_hip: at_waist - height(own.hip, hip),
-            to_crotch: at_waist - height(own.crotch, hip),
-            to_knee: at_waist - KNEE * stature,
-            to_floor: at_waist,
+            neck_to_hip: own.neck * stature - height(own.hip, hip),
+            to_hip: band - height(own.hip, hip),
+            to_crotch: band - height(own.crotch, hip),
+            to_knee: band - KNEE * stature,
+            to_floor: band,
             arm: ARM * stature,
             below_waist: own.below * waist,
         }

@@ -6,6 +6,7 @@ use glam::DVec2;
 
 use super::block::DraftBlock;
 use super::panel::{DraftPanel, DraftSide, Outline, at};
+use crate::body::Sex;
 
 /// How a bodice is cut.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,6 +40,12 @@ pub struct BodiceStyle {
 /// Slope of the shoulders (tangent): drawn flatter than the body's 21 degrees, so that cloth lies on at the neck.
 pub const SLOPE: f64 = 0.36;
 
+/// How much lower the hem is in the middle of the front, women's and men's (m): the bust and the belly take that up.
+const DIP_M: [f64; 2] = [0.03, 0.012];
+
+/// How far an open front swings back from the middle at the hem (m).
+const SWING_M: f64 = 0.035;
+
 /// How much more of the width is in front than behind, each side (m): the bust is there.
 const FORWARD_M: f64 = 0.004;
 
@@ -50,7 +57,7 @@ impl BodiceStyle {
 
     /// Finished girths at chest, waist and hip (m).
     pub fn girths(&self, block: &DraftBlock) -> [Option<f64>; 3] {
-        let hip = block.to_waist + block.to_hip;
+        let hip = block.neck_to_hip;
         let reaches = self.length(block) > hip;
         let around = |depth: f64| 2.0 * (self.half_width(block, depth, 0) + self.half_width(block, depth, 1));
         [Some(block.chest + self.chest_ease), Some(around(block.to_waist)), reaches.then(|| around(hip))]
@@ -64,7 +71,7 @@ impl BodiceStyle {
     /// Half of the front's width (`side` 0) or the back's (1) at a depth below the armhole (m).
     fn half_width(&self, block: &DraftBlock, depth: f64, side: usize) -> f64 {
         let [chest, hip] = [block.chest + self.chest_ease, block.hip + self.hip_ease].map(|girth| 0.25 * girth);
-        let (top, bottom) = (self.underarm(block), block.to_waist + block.to_hip);
+        let (top, bottom) = (self.underarm(block), block.neck_to_hip);
         let part = (depth - top) / (bottom - top);
         let flare = self.flare * ((depth - top) / (self.length(block) - top)).max(0.0);
         let straight = chest + (hip - chest) * part.min(1.0) + flare;
@@ -72,7 +79,7 @@ impl BodiceStyle {
         let taken = if depth < block.to_waist {
             (depth - top) / (block.to_waist - top)
         } else {
-            1.0 - (depth - block.to_waist) / block.to_hip
+            1.0 - (depth - block.to_waist) / (block.neck_to_hip - block.to_waist)
         };
         straight - self.waist_in * taken.clamp(0.0, 1.0) + if side == 0 { FORWARD_M } else { -FORWARD_M }
     }
@@ -85,11 +92,19 @@ impl BodiceStyle {
             .on_the_fold("front", DraftSide::Front)
     }
 
-    /// The left front alone, with an edge down the middle.
-    pub fn left_front(&self, block: &DraftBlock) -> DraftPanel {
+    /// The left front alone, with an edge down the middle; below a depth (m), where there is one, it has another and swings back
+    /// from the middle.
+    pub fn left_front(&self, block: &DraftBlock, open: Option<f64>) -> DraftPanel {
         let [low, high] = self.middle(block, 0);
-        let open = self.half(block, 0, low).bow("left neck", self.neck_corner(block, high), high);
-        open.line("middle", low).panel("left front", DraftSide::Front)
+        let low = if open.is_some() { low + at(SWING_M, 0.0) } else { low };
+        let outline = self.half(block, 0, low).bow("left neck", self.neck_corner(block, high), high);
+        let outline = match open {
+            Some(depth) => {
+                outline.line("middle", at(0.0, -depth)).bow("front edge", at(0.0, 0.6 * low.y - 0.4 * depth), low)
+            }
+            None => outline.line("middle", low),
+        };
+        outline.panel("left front", DraftSide::Front)
     }
 
     /// The back, cut on the fold.
@@ -102,7 +117,8 @@ impl BodiceStyle {
 
     /// The lower and the upper end of the middle.
     fn middle(&self, block: &DraftBlock, side: usize) -> [DVec2; 2] {
-        [at(0.0, -self.length(block)), at(0.0, -[self.front_neck, self.back_neck][side])]
+        let dip = if side == 0 { DIP_M[usize::from(block.sex == Sex::Male)] } else { 0.0 };
+        [at(0.0, -self.length(block) - dip), at(0.0, -[self.front_neck, self.back_neck][side])]
     }
 
     /// The neck's point at the shoulder, and the shoulder's tip.
@@ -121,9 +137,10 @@ impl BodiceStyle {
     fn half(&self, block: &DraftBlock, side: usize, low: DVec2) -> Outline {
         let name = |what: &str| format!("{} {what}", ["left", "right"][side]);
         let wide = |depth: f64| at(self.half_width(block, depth, side), -depth);
-        let (underarm, hip) = (wide(self.underarm(block)), block.to_waist + block.to_hip);
+        let (underarm, hip) = (wide(self.underarm(block)), block.neck_to_hip);
         let [inner, tip] = self.shoulder(block);
-        let mut outline = Outline::from(low).line(&name("hem"), wide(self.length(block)));
+        let hem = wide(self.length(block));
+        let mut outline = Outline::from(low).bow(&name("hem"), at(0.5 * hem.x, low.y), hem);
         if self.waist_in != 0.0 {
             if self.length(block) > hip + 0.05 {
                 outline = outline.line(&name("side below"), wide(hip));

@@ -15,6 +15,9 @@ const LENGTH: f64 = 0.36;
 /// How far it reaches over an arm beyond the shoulder's tip (part of the arm).
 const OVER_ARM: f64 = 0.5;
 
+/// How far its side falls from there before the hem begins (m): a sharp corner would hang on the elbow.
+const CUFF_M: f64 = 0.12;
+
 /// A poncho.
 pub fn poncho(block: &DraftBlock) -> DraftGarment {
     let mut garment = DraftGarment::of([panel(block, 1), panel(block, 0)]);
@@ -34,7 +37,8 @@ fn panel(block: &DraftBlock, side: usize) -> DraftPanel {
     let end = tip + at(0.83, -0.56) * out;
     let (low, high) = (at(0.0, -LENGTH * block.stature), at(0.0, -NECK_M[side]));
     Outline::from(low)
-        .curve(&label("hem"), [at(0.6 * end.x, low.y), at(end.x - 0.02, 0.5 * (low.y + end.y) - 0.05)], end)
+        .curve(&label("hem"), [at(0.6 * end.x, low.y), at(end.x, 0.5 * (low.y + end.y) - 0.1)], end - at(0.0, CUFF_M))
+        .line(&label("cuff"), end)
         .line(&label("arm"), tip)
         .line(&label("shoulder"), inner)
         .bow(&label("neck"), at(0.85 * inner.x, high.y), high)

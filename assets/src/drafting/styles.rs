@@ -96,15 +96,15 @@ fn to_the_knee(style: BodiceStyle, block: &DraftBlock, part: f64) -> BodiceStyle
 const STRAIGHT_SKIRT: SkirtStyle = SkirtStyle { hip_ease: 0.05, length: 0.95, flare: 0.012 };
 const PENCIL_SKIRT: SkirtStyle = SkirtStyle { hip_ease: 0.035, length: 1.0, flare: -0.02 };
 
-const SLIM: TrouserStyle = TrouserStyle { hip_ease: 0.04, rise_ease: 0.012, knee: 0.43, hem: 0.36, length: 0.93 };
-const STRAIGHT: TrouserStyle = TrouserStyle { hip_ease: 0.07, rise_ease: 0.02, knee: 0.47, hem: 0.45, length: 0.94 };
-const SHORTS: TrouserStyle = TrouserStyle { hip_ease: 0.07, rise_ease: 0.02, knee: 0.6, hem: 0.64, length: 0.42 };
+const SLIM: TrouserStyle = TrouserStyle { hip_ease: 0.045, rise_ease: 0.025, knee: 0.47, hem: 0.4, length: 0.92 };
+const STRAIGHT: TrouserStyle = TrouserStyle { hip_ease: 0.07, rise_ease: 0.028, knee: 0.47, hem: 0.45, length: 0.94 };
+const SHORTS: TrouserStyle = TrouserStyle { hip_ease: 0.07, rise_ease: 0.028, knee: 0.6, hem: 0.64, length: 0.42 };
 
 const TEE: BodiceStyle = BodiceStyle {
     chest_ease: 0.09,
     hip_ease: 0.06,
     waist_in: 0.0,
-    below_waist: 0.2,
+    below_waist: 0.21,
     flare: 0.0,
     neck_wider: 0.02,
     front_neck: 0.095,
@@ -126,7 +126,7 @@ const SHIRT: BodiceStyle = BodiceStyle {
     ..TEE
 };
 const JUMPER: BodiceStyle =
-    BodiceStyle { chest_ease: 0.17, hip_ease: 0.07, armhole_drop: 0.03, below_waist: 0.18, shoulder_out: 0.015, ..TEE };
+    BodiceStyle { chest_ease: 0.17, hip_ease: 0.07, armhole_drop: 0.03, below_waist: 0.21, shoulder_out: 0.012, ..TEE };
 const SHIFT: BodiceStyle = BodiceStyle {
     chest_ease: 0.07,
     waist_in: 0.02,
@@ -139,13 +139,13 @@ const SHIFT: BodiceStyle = BodiceStyle {
 const STRAPS: BodiceStyle = BodiceStyle {
     chest_ease: 0.05,
     waist_in: 0.018,
-    flare: 0.09,
-    neck_wider: 0.035,
+    flare: 0.07,
+    neck_wider: 0.03,
     front_neck: 0.17,
     back_neck: 0.14,
-    shoulder_out: -0.045,
+    shoulder_out: -0.03,
     armhole_drop: 0.0,
-    hollow: [0.004, 0.004],
+    hollow: [0.006, 0.006],
     ..TEE
 };
 const BLAZER: BodiceStyle = BodiceStyle {

@@ -16,8 +16,8 @@ fn closed(block: &DraftBlock, style: &BodiceStyle) -> DraftGarment {
 }
 
 /// The same with a front in two panels; down the middle they are not sewn yet.
-fn in_halves(block: &DraftBlock, style: &BodiceStyle) -> DraftGarment {
-    let left = style.left_front(block);
+fn in_halves(block: &DraftBlock, style: &BodiceStyle, open: Option<f64>) -> DraftGarment {
+    let left = style.left_front(block, open);
     let right = left.mirrored("right front", DraftSide::Front);
     let mut garment = DraftGarment::of([style.back(block), left, right]);
     sides(&mut garment, FRONTS);
@@ -55,16 +55,19 @@ pub fn sleeveless(block: &DraftBlock, style: &BodiceStyle) -> DraftGarment {
 
 /// A shirt: closed down the front by a seam, with a stand around the neck.
 pub fn shirt(block: &DraftBlock, style: &BodiceStyle, sleeve: &SleeveStyle) -> DraftGarment {
-    let mut garment = in_halves(block, style);
+    let mut garment = in_halves(block, style, None);
     sleeve::set_in(&mut garment, sleeve, FRONTS, "back");
     garment.sew((FRONTS[0], "middle"), (FRONTS[1], "middle"));
     collar::stand(&mut garment, FRONTS, "back");
     garment
 }
 
-/// A jacket or coat, its front in two panels, closed by a seam in place of buttons.
+/// How far below the waist the lowest button of a jacket is (m).
+const BUTTON_M: f64 = 0.03;
+
+/// A jacket or coat, its front in two panels, closed down to the lowest button by a seam in place of buttons.
 pub fn jacket(block: &DraftBlock, style: &BodiceStyle, sleeve: &SleeveStyle) -> DraftGarment {
-    let mut garment = in_halves(block, style);
+    let mut garment = in_halves(block, style, Some(block.to_waist + BUTTON_M));
     sleeve::set_in(&mut garment, sleeve, FRONTS, "back");
     garment.sew((FRONTS[0], "middle"), (FRONTS[1], "middle"));
     garment

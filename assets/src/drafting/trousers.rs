@@ -24,7 +24,7 @@ pub struct TrouserStyle {
 }
 
 /// How far the crotch reaches beyond the middle in front and behind (part of the hip's girth).
-const CROTCH: [f64; 2] = [0.05, 0.105];
+const CROTCH: [f64; 2] = [0.055, 0.12];
 
 /// How much wider the back is than the front at hip, knee and hem (m).
 const BACK_M: f64 = 0.01;
