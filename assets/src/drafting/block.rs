@@ -57,8 +57,8 @@ struct BlockRules {
     crotch: [f64; 2],
     /// Height of the neck's point at the shoulder (part of stature).
     neck: f64,
-    /// Girth below the waist (part of the waist's).
-    below: f64,
+    /// Girth below the waist: part of the waist's, and of what the hip is wider.
+    below: [f64; 2],
     /// Depth of the armhole: part of the chest's girth, and a constant (m).
     armhole: [f64; 2],
     /// How far below the waist skirts and trousers sit (m).
@@ -70,7 +70,7 @@ const WOMEN: BlockRules = BlockRules {
     hip: [0.5756, 0.1],
     crotch: [0.5446, 0.1],
     neck: 0.852,
-    below: 1.062,
+    below: [1.07, 0.0],
     armhole: [0.125, 0.1],
     sits: 0.0,
 };
@@ -80,7 +80,7 @@ const MEN: BlockRules = BlockRules {
     hip: [0.578, 0.1257],
     crotch: [0.5545, 0.1257],
     neck: 0.855,
-    below: 1.0,
+    below: [1.0, 0.17],
     armhole: [0.1, 0.134],
     sits: 0.04,
 };
@@ -116,7 +116,7 @@ impl DraftBlock {
             to_knee: band - KNEE * stature,
             to_floor: band,
             arm: ARM * stature,
-            below_waist: own.below * waist,
+            below_waist: own.below[0] * waist + own.below[1] * (hip - waist).max(0.0),
         }
     }
 }

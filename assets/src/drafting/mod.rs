@@ -39,6 +39,13 @@ pub fn style(name: &str) -> Option<&'static DraftStyle> {
 }
 
 impl DraftStyle {
+    /// Its name as words: `Men's tee` for `mens-tee`.
+    pub fn title(&self) -> String {
+        let words = self.name.replace("mens-", "men's ").replace('-', " ");
+        let mut letters = words.chars();
+        letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+    }
+
     /// The draft for a size of a table.
     ///
     /// # Errors
@@ -68,13 +75,17 @@ impl DraftStyle {
         Ok(package)
     }
 
-    /// Finished girths of every size, by the draft's own rules.
+    /// Finished girths of every size that is made, by the draft's own rules.
     fn girths(&self, table: &SizeTable) -> Result<Vec<SizeGirths>, SizeError> {
         let one = |code: &str| {
             let [chest_mm, waist_mm, hip_mm] =
                 self.draft(table, code)?.girths.map(|girth| girth.map(|m| (m * 1e4).round() * 0.1));
             Ok(SizeGirths { size: code.into(), chest_mm, waist_mm, hip_mm })
         };
-        table.codes().into_iter().map(one).collect()
+        let [small, _, large] = self.sizes;
+        let codes = table.codes();
+        let place = |size: &str| codes.iter().position(|code| *code == size);
+        let made = place(small).unwrap_or(0)..=place(large).unwrap_or(codes.len() - 1);
+        codes[made].iter().map(|code| one(code)).collect()
     }
 }

@@ -13,7 +13,7 @@ const NECK_M: [f64; 2] = [0.09, 0.02];
 const LENGTH: f64 = 0.36;
 
 /// How far it reaches over an arm beyond the shoulder's tip (part of the arm).
-const OVER_ARM: f64 = 0.5;
+const OVER_ARM: f64 = 0.42;
 
 /// How far its side falls from there before the hem begins (m): a sharp corner would hang on the elbow.
 const CUFF_M: f64 = 0.12;
@@ -23,7 +23,8 @@ pub fn poncho(block: &DraftBlock) -> DraftGarment {
     let mut garment = DraftGarment::of([panel(block, 1), panel(block, 0)]);
     garment.sew_alike("front", "back", &["left shoulder", "right shoulder"]);
     garment.sew_alike("front", "back", &["left arm", "right arm"]);
-    garment.girths = [Some(2.0 * (block.chest + OVER_ARM * block.arm)), None, None];
+    // It is as wide as the arms are long; what it leaves the chest is the same in all sizes.
+    garment.girths = [Some(block.chest + 2.0 * OVER_ARM * block.arm), None, None];
     garment
 }
 

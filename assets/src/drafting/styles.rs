@@ -57,18 +57,18 @@ pub const STYLES: [DraftStyle; 22] = [
     style("circle-skirt", WOMEN, GarmentKind::Skirt, (LAWN, 20.0, 2), skirt::circle),
     style("slim-trousers", WOMEN, GarmentKind::Trousers, (LINEN, 17.0, 2), |b| trousers(b, &SLIM)),
     style("straight-trousers", WOMEN, GarmentKind::Trousers, (WOOL, 18.0, 2), |b| trousers(b, &STRAIGHT)),
-    style("mens-trousers", MEN_TROUSERS, GarmentKind::Trousers, (WOOL, 19.0, 2), |b| trousers(b, &STRAIGHT)),
+    style("mens-trousers", MEN_TROUSERS, GarmentKind::Trousers, (WOOL, 19.0, 2), |b| trousers(b, &MENS_STRAIGHT)),
     style("shorts", WOMEN, GarmentKind::Trousers, (LINEN, 16.0, 2), |b| trousers(b, &SHORTS)),
     style("mens-shorts", MEN_TROUSERS, GarmentKind::Trousers, (LINEN, 16.0, 2), |b| trousers(b, &SHORTS)),
     style("tee", WOMEN, GarmentKind::Tshirt, (JERSEY, 16.0, 3), |b| tops::pullover(b, &TEE, &SHORT_SLEEVE.of(b))),
-    style("mens-tee", MEN, GarmentKind::Tshirt, (JERSEY, 18.0, 3), |b| tops::pullover(b, &TEE, &SHORT_SLEEVE.of(b))),
+    style("mens-tee", MEN, GarmentKind::Tshirt, (JERSEY, 16.0, 3), |b| tops::pullover(b, &TEE, &SHORT_SLEEVE.of(b))),
     style("blouse", WOMEN, GarmentKind::Tshirt, (LAWN, 16.0, 3), |b| tops::pullover(b, &BLOUSE, &PUFF_SLEEVE.of(b))),
-    style("shirt", WOMEN, GarmentKind::Tshirt, (LAWN, 19.0, 3), |b| tops::shirt(b, &SHIRT, &SHIRT_SLEEVE.of(b))),
-    style("mens-shirt", MEN, GarmentKind::Tshirt, (LAWN, 20.0, 3), |b| tops::shirt(b, &SHIRT, &SHIRT_SLEEVE.of(b))),
-    style("jumper", WOMEN, GarmentKind::Tshirt, (JERSEY, 19.0, 3), |b| {
+    style("shirt", WOMEN, GarmentKind::Tshirt, (LAWN, 18.0, 3), |b| tops::shirt(b, &SHIRT, &SHIRT_SLEEVE.of(b))),
+    style("mens-shirt", MEN, GarmentKind::Tshirt, (LAWN, 18.0, 3), |b| tops::shirt(b, &SHIRT, &SHIRT_SLEEVE.of(b))),
+    style("jumper", WOMEN, GarmentKind::Tshirt, (JERSEY, 17.0, 3), |b| {
         tops::pullover(b, &JUMPER, &JUMPER_SLEEVE.of(b))
     }),
-    style("mens-jumper", MEN, GarmentKind::Tshirt, (JERSEY, 20.0, 3), |b| {
+    style("mens-jumper", MEN, GarmentKind::Tshirt, (JERSEY, 18.0, 3), |b| {
         tops::pullover(b, &JUMPER, &JUMPER_SLEEVE.of(b))
     }),
     style("shift-dress", WOMEN, GarmentKind::Dress, (LINEN, 18.0, 3), |b| {
@@ -77,12 +77,12 @@ pub const STYLES: [DraftStyle; 22] = [
     style("strap-dress", WOMEN, GarmentKind::Dress, (LAWN, 17.0, 3), |b| {
         tops::sleeveless(b, &to_the_knee(STRAPS, b, 0.88))
     }),
-    style("blazer", WOMEN, GarmentKind::Jacket, (WOOL, 20.0, 4), |b| tops::jacket(b, &BLAZER, &BLAZER_SLEEVE.of(b))),
-    style("mens-blazer", MEN, GarmentKind::Jacket, (WOOL, 20.0, 4), |b| tops::jacket(b, &BLAZER, &BLAZER_SLEEVE.of(b))),
-    style("coat", WOMEN, GarmentKind::Jacket, (WOOL, 22.0, 5), |b| {
+    style("blazer", WOMEN, GarmentKind::Jacket, (WOOL, 18.0, 4), |b| tops::jacket(b, &BLAZER, &BLAZER_SLEEVE.of(b))),
+    style("mens-blazer", MEN, GarmentKind::Jacket, (WOOL, 18.0, 4), |b| tops::jacket(b, &BLAZER, &BLAZER_SLEEVE.of(b))),
+    style("coat", WOMEN, GarmentKind::Jacket, (WOOL, 21.0, 5), |b| {
         tops::jacket(b, &to_the_knee(COAT, b, 0.95), &COAT_SLEEVE.of(b))
     }),
-    style("mens-coat", MEN, GarmentKind::Jacket, (WOOL, 23.0, 5), |b| {
+    style("mens-coat", MEN, GarmentKind::Jacket, (WOOL, 21.0, 5), |b| {
         tops::jacket(b, &to_the_knee(COAT, b, 0.95), &COAT_SLEEVE.of(b))
     }),
     style("poncho", WOMEN, GarmentKind::Jacket, (WOOL, 20.0, 5), poncho::poncho),
@@ -96,9 +96,10 @@ fn to_the_knee(style: BodiceStyle, block: &DraftBlock, part: f64) -> BodiceStyle
 const STRAIGHT_SKIRT: SkirtStyle = SkirtStyle { hip_ease: 0.05, length: 0.95, flare: 0.012 };
 const PENCIL_SKIRT: SkirtStyle = SkirtStyle { hip_ease: 0.035, length: 1.0, flare: -0.02 };
 
-const SLIM: TrouserStyle = TrouserStyle { hip_ease: 0.045, rise_ease: 0.025, knee: 0.47, hem: 0.4, length: 0.92 };
-const STRAIGHT: TrouserStyle = TrouserStyle { hip_ease: 0.07, rise_ease: 0.028, knee: 0.47, hem: 0.45, length: 0.94 };
-const SHORTS: TrouserStyle = TrouserStyle { hip_ease: 0.07, rise_ease: 0.028, knee: 0.6, hem: 0.64, length: 0.42 };
+const SLIM: TrouserStyle = TrouserStyle { hip_ease: 0.05, rise_ease: 0.055, knee: 0.47, hem: 0.4, length: 0.92 };
+const STRAIGHT: TrouserStyle = TrouserStyle { hip_ease: 0.07, rise_ease: 0.04, knee: 0.47, hem: 0.45, length: 0.94 };
+const MENS_STRAIGHT: TrouserStyle = TrouserStyle { length: 0.9, ..STRAIGHT };
+const SHORTS: TrouserStyle = TrouserStyle { hip_ease: 0.075, rise_ease: 0.06, knee: 0.6, hem: 0.64, length: 0.42 };
 
 const TEE: BodiceStyle = BodiceStyle {
     chest_ease: 0.09,
@@ -106,8 +107,8 @@ const TEE: BodiceStyle = BodiceStyle {
     waist_in: 0.0,
     below_waist: 0.21,
     flare: 0.0,
-    neck_wider: 0.02,
-    front_neck: 0.095,
+    neck_wider: 0.028,
+    front_neck: 0.1,
     back_neck: 0.025,
     shoulder_out: 0.0,
     armhole_drop: 0.015,
@@ -144,7 +145,7 @@ const STRAPS: BodiceStyle = BodiceStyle {
     front_neck: 0.17,
     back_neck: 0.14,
     shoulder_out: -0.03,
-    armhole_drop: 0.0,
+    armhole_drop: 0.01,
     hollow: [0.006, 0.006],
     ..TEE
 };
@@ -153,7 +154,7 @@ const BLAZER: BodiceStyle = BodiceStyle {
     hip_ease: 0.12,
     waist_in: 0.015,
     below_waist: 0.25,
-    neck_wider: 0.012,
+    neck_wider: 0.02,
     front_neck: 0.3,
     shoulder_out: 0.008,
     armhole_drop: 0.02,
@@ -184,7 +185,7 @@ impl SleeveRule {
 
 const SHORT_SLEEVE: SleeveRule = SleeveRule { cap: 0.22, cap_ease: 0.0, length: 0.4, hem: 0.27 };
 const PUFF_SLEEVE: SleeveRule = SleeveRule { cap: 0.26, cap_ease: 0.15, length: 0.42, hem: 0.26 };
-const SHIRT_SLEEVE: SleeveRule = SleeveRule { cap: 0.22, cap_ease: 0.01, length: 1.03, hem: 0.15 };
-const JUMPER_SLEEVE: SleeveRule = SleeveRule { cap: 0.2, cap_ease: 0.0, length: 1.02, hem: 0.13 };
-const BLAZER_SLEEVE: SleeveRule = SleeveRule { cap: 0.28, cap_ease: 0.02, length: 1.03, hem: 0.2 };
-const COAT_SLEEVE: SleeveRule = SleeveRule { cap: 0.27, cap_ease: 0.02, length: 1.05, hem: 0.23 };
+const SHIRT_SLEEVE: SleeveRule = SleeveRule { cap: 0.22, cap_ease: 0.01, length: 0.99, hem: 0.15 };
+const JUMPER_SLEEVE: SleeveRule = SleeveRule { cap: 0.2, cap_ease: 0.0, length: 0.97, hem: 0.16 };
+const BLAZER_SLEEVE: SleeveRule = SleeveRule { cap: 0.28, cap_ease: 0.02, length: 0.98, hem: 0.2 };
+const COAT_SLEEVE: SleeveRule = SleeveRule { cap: 0.27, cap_ease: 0.02, length: 1.0, hem: 0.23 };
