@@ -43,6 +43,9 @@ pub const SLOPE: f64 = 0.36;
 /// How much lower the hem is in the middle of the front, women's and men's (m): the bust and the belly take that up.
 const DIP_M: [f64; 2] = [0.03, 0.012];
 
+/// What ends lower than this below the waist (m) has a corner in its side at the hip, in all sizes alike.
+const LONG_M: f64 = 0.3;
+
 /// How far an open front swings back from the middle at the hem (m).
 const SWING_M: f64 = 0.035;
 
@@ -142,7 +145,7 @@ impl BodiceStyle {
         let hem = wide(self.length(block));
         let mut outline = Outline::from(low).bow(&name("hem"), at(0.5 * hem.x, low.y), hem);
         if self.waist_in != 0.0 {
-            if self.length(block) > hip + 0.05 {
+            if self.below_waist > LONG_M {
                 outline = outline.line(&name("side below"), wide(hip));
             }
             let start = outline.end();

@@ -79,7 +79,7 @@ impl DraftStyle {
     fn girths(&self, table: &SizeTable) -> Result<Vec<SizeGirths>, SizeError> {
         let one = |code: &str| {
             let [chest_mm, waist_mm, hip_mm] =
-                self.draft(table, code)?.girths.map(|girth| girth.map(|m| (m * 1e4).round() * 0.1));
+                self.draft(table, code)?.girths.map(|girth| girth.map(|m| (m * 1e3).round()));
             Ok(SizeGirths { size: code.into(), chest_mm, waist_mm, hip_mm })
         };
         let [small, _, large] = self.sizes;
@@ -89,3 +89,6 @@ impl DraftStyle {
         codes[made].iter().map(|code| one(code)).collect()
     }
 }
+
+#[cfg(test)]
+mod tests;

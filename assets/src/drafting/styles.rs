@@ -79,7 +79,7 @@ pub const STYLES: [DraftStyle; 22] = [
     }),
     style("blazer", WOMEN, GarmentKind::Jacket, (WOOL, 18.0, 4), |b| tops::jacket(b, &BLAZER, &BLAZER_SLEEVE.of(b))),
     style("mens-blazer", MEN, GarmentKind::Jacket, (WOOL, 18.0, 4), |b| tops::jacket(b, &BLAZER, &BLAZER_SLEEVE.of(b))),
-    style("coat", WOMEN, GarmentKind::Jacket, (WOOL, 21.0, 5), |b| {
+    style("coat", WOMEN, GarmentKind::Jacket, (WOOL, 20.0, 5), |b| {
         tops::jacket(b, &to_the_knee(COAT, b, 0.95), &COAT_SLEEVE.of(b))
     }),
     style("mens-coat", MEN, GarmentKind::Jacket, (WOOL, 21.0, 5), |b| {
