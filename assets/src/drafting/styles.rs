@@ -55,7 +55,7 @@ pub const STYLES: [DraftStyle; 22] = [
     style("straight-skirt", WOMEN, GarmentKind::Skirt, (LINEN, 17.0, 2), |b| skirt::straight(b, &STRAIGHT_SKIRT)),
     style("pencil-skirt", WOMEN, GarmentKind::Skirt, (WOOL, 17.0, 2), |b| skirt::straight(b, &PENCIL_SKIRT)),
     style("circle-skirt", WOMEN, GarmentKind::Skirt, (LAWN, 20.0, 2), skirt::circle),
-    style("slim-trousers", WOMEN, GarmentKind::Trousers, (LINEN, 17.0, 2), |b| trousers(b, &SLIM)),
+    style("slim-trousers", WOMEN, GarmentKind::Trousers, (LINEN, 18.0, 2), |b| trousers(b, &SLIM)),
     style("straight-trousers", WOMEN, GarmentKind::Trousers, (WOOL, 18.0, 2), |b| trousers(b, &STRAIGHT)),
     style("mens-trousers", MEN_TROUSERS, GarmentKind::Trousers, (WOOL, 19.0, 2), |b| trousers(b, &MENS_STRAIGHT)),
     style("shorts", WOMEN, GarmentKind::Trousers, (LINEN, 16.0, 2), |b| trousers(b, &SHORTS)),
