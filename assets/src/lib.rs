@@ -39,6 +39,8 @@ pub mod wardrobe;
 
 pub mod draping;
 
+pub mod drafting;
+
 pub mod catalogue;
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use serde::Deserialize;
 
 use super::limits::{MAX_ARTICLE, MAX_COLOURS, MAX_NAME};
 use super::price::Price;
+use crate::drafting;
 use crate::draping;
 use crate::toml_keys::place;
 use crate::wardrobe;
@@ -115,15 +116,15 @@ impl GarmentManifest {
             return Err(format!(
                 "garment is {:?}; name a file of the package that ends in .json, .dxf, .obj, .gltf or .glb, or one of {}",
                 self.garment,
-                wardrobe::names().join(", ")
+                built_in().collect::<Vec<_>>().join(", ")
             ));
         }
         Ok(())
     }
 
-    /// Whether it is a garment of the wardrobe under a shop's own name.
+    /// Whether it is a garment of the wardrobe, or one that is drafted, under a shop's own name.
     pub fn is_built_in(&self) -> bool {
-        wardrobe::names().contains(&self.garment.as_str())
+        built_in().any(|name| name == self.garment)
     }
 
     /// Whether it is made from a pattern.
@@ -144,6 +145,11 @@ impl GarmentManifest {
         let others = own.into_iter().chain(self.seams.as_deref()).chain(fabric);
         others.chain(self.photographs.iter().map(String::as_str))
     }
+}
+
+/// Names of the garments that need no file.
+fn built_in() -> impl Iterator<Item = &'static str> {
+    wardrobe::names().into_iter().chain(drafting::names())
 }
 
 /// Checks names by language.

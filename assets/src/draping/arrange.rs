@@ -79,7 +79,7 @@ pub fn arrange(pattern: &Pattern, sewn: &SewnMesh, body: &Body) -> Result<Arrang
             legs.as_ref().map_or(hung, |l| hung.min(f64::from(body.levels.crotch) - 0.01 - l.crotch))
         }
     };
-    let underarm = underarm(&runs);
+    let underarm = underarm(&runs, shoulder);
     Ok(Arrangement { panels: all, lift, top, upper_edge, underarm, shoulders: shoulder.is_some(), legs, inside_out })
 }
 
@@ -187,9 +187,11 @@ fn shoulder(runs: &[FrontToBack], sewn: &SewnMesh, all: &[ArrangedPanel]) -> Opt
     (count > 0.0).then(|| sum / count)
 }
 
-/// Where the side seams end above, at the armpits (m): below it the panels go all around.
-fn underarm(runs: &[FrontToBack]) -> Option<f64> {
-    let down = runs.iter().filter(|(_, run)| !goes_across(run)).flat_map(|(_, run)| run.iter().map(|p| p.y));
+/// Where the side seams end above, at the armpits (m): below it the panels go all around. What joins front and back above the
+/// shoulders is a collar.
+fn underarm(runs: &[FrontToBack], shoulder: Option<DVec2>) -> Option<f64> {
+    let side = |run: &[DVec2]| !goes_across(run) && shoulder.is_none_or(|s| run.iter().all(|p| p.y < s.y));
+    let down = runs.iter().filter(|(_, run)| side(run)).flat_map(|(_, run)| run.iter().map(|p| p.y));
     down.reduce(f64::max)
 }
 

@@ -59,6 +59,9 @@ pub struct PatternPackage {
     pub spacing_mm: f64,
     /// A fabric that is built in.
     pub fabric: String,
+    /// The layer that it is worn in, where it says so: 1 underwear, 2 skirts and trousers, 3 tops and dresses, 4 jackets, 5 coats.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub layer: Option<u8>,
     /// For whom its drafts are, where that is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sizes: Option<PatternSizes>,
@@ -148,18 +151,24 @@ pub fn parse_package(shown: &str, text: String, seams: Option<String>) -> Result
         return Ok(package);
     }
     let name = Path::new(&shown).file_stem().map(|stem| stem.to_string_lossy().into_owned());
-    Ok(PatternPackage {
-        schema: SCHEMA.into(),
-        name: name.unwrap_or(shown),
-        pattern: text,
-        seams,
-        spacing_mm: SPACING_MM,
-        fabric: FABRIC.into(),
-        sizes: None,
-    })
+    Ok(PatternPackage { seams, ..PatternPackage::new(name.unwrap_or(shown), text) })
 }
 
 impl PatternPackage {
+    /// A pattern that says how it is sewn, with the usual spacing and fabric, for nobody in particular.
+    pub fn new(name: String, pattern: String) -> Self {
+        Self {
+            schema: SCHEMA.into(),
+            name,
+            pattern,
+            seams: None,
+            spacing_mm: SPACING_MM,
+            fabric: FABRIC.into(),
+            layer: None,
+            sizes: None,
+        }
+    }
+
     /// The checked pattern.
     ///
     /// # Errors
@@ -248,7 +257,7 @@ impl PatternPackage {
         let shape = self.draft(size, body, fabric)?;
         let failed = |source| PackageError::Drape { name: self.name.clone(), source: DrapeError::Mesh(source) };
         let mut garment = bake(&self.name, size, &shape, fabric).map_err(failed)?;
-        garment.layer = LAYER;
+        garment.layer = self.layer.unwrap_or(LAYER);
         Ok(garment)
     }
 }

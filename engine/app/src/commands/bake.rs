@@ -9,7 +9,8 @@ use toile_assets::adapt::{OwnMesh, source};
 use toile_assets::bake;
 use toile_assets::bake::survey::{MeshSurvey, survey};
 use toile_assets::body::{Body, Measures, Sex};
-use toile_assets::draping;
+use toile_assets::drafting;
+use toile_assets::draping::{self, PatternPackage};
 use toile_assets::fabric::Fabric;
 use toile_assets::file::{self, FileKind};
 use toile_assets::garment::{Garment, Shape};
@@ -209,8 +210,14 @@ fn bake(args: &BakeArgs) -> Result<BakeReport, AppError> {
 /// Cuts the garment on the body of its size, or reads the mesh.
 fn draft(args: &BakeArgs) -> Result<DraftedShape, AppError> {
     let name = &args.garment;
+    if let Some(style) = drafting::style(name) {
+        let package = style.package().map_err(AppError::input)?;
+        let size = args.size.clone().unwrap_or_else(|| package.own_size().to_owned());
+        return draft_pattern(package, Some(size));
+    }
     if draping::is_pattern(name) && !wardrobe::names().contains(&name.as_str()) {
-        return draft_pattern(args);
+        let package = draping::read_package(Path::new(name), None).map_err(AppError::input)?;
+        return draft_pattern(package, args.size.clone());
     }
     let is_file = Path::new(name).exists() || source::is_mesh(name);
     if is_file && !wardrobe::names().contains(&name.as_str()) {
@@ -241,12 +248,14 @@ fn draft(args: &BakeArgs) -> Result<DraftedShape, AppError> {
 }
 
 /// Drapes a pattern or a package on the average woman, or in a size on the body that it is for.
-fn draft_pattern(args: &BakeArgs) -> Result<DraftedShape, AppError> {
-    let package = draping::read_package(Path::new(&args.garment), None).map_err(AppError::input)?;
+fn draft_pattern(package: PatternPackage, size: Option<String>) -> Result<DraftedShape, AppError> {
     let average = Body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(AppError::internal)?;
-    let (size, body) = match &args.size {
+    let (size, body) = match size {
         None => (package.own_size().to_owned(), average),
-        Some(size) => (size.clone(), package.body_of(size).map_err(AppError::input)?.unwrap_or(average)),
+        Some(size) => {
+            let body = package.body_of(&size).map_err(AppError::input)?.unwrap_or(average);
+            (size, body)
+        }
     };
     let fabric = Fabric::built_in(&package.fabric).map_err(AppError::input)?;
     let shape = package.draft(&size, &body, &fabric).map_err(AppError::input)?;

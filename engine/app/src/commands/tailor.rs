@@ -13,6 +13,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 use toile_assets::body::Sex;
+use toile_assets::drafting;
 use toile_assets::draping::{self, DrapedPattern, PatternPackage};
 use toile_assets::fabric::Fabric;
 use toile_assets::sizes::GarmentKind;
@@ -35,7 +36,7 @@ use crate::terminal::{self, Paint, Tone};
                         look --out tee.toile.json && toile try-on --garment tee.toile.json"
 )]
 pub struct TailorArgs {
-    /// Pattern: .json, .jsonc or .dxf, or a garment package
+    /// Pattern: .json, .jsonc or .dxf, a garment package, or the name of a garment that is drafted, such as straight-skirt
     #[arg(value_name = "PATTERN")]
     pub pattern: PathBuf,
     /// Seam file of a draft (default: the file beside it that ends in .toml)
@@ -127,7 +128,7 @@ pub fn run(args: &TailorArgs) -> Result<(), AppError> {
         args.out.as_deref().map(|path| OutputFile::prepare(path, inputs())).transpose().map_err(AppError::input)?;
     let folder = args.pictures.as_deref().map(OutputFolder::prepare).transpose().map_err(AppError::input)?;
     let mut folder = folder.map(|folder| folder.sparing(inputs()));
-    let mut package = draping::read_package(&args.pattern, args.seams.as_deref()).map_err(AppError::input)?;
+    let mut package = read(args)?;
     package.spacing_mm = args.spacing.unwrap_or(package.spacing_mm);
     package.fabric = args.fabric.clone().unwrap_or(package.fabric);
     let fabric = Fabric::built_in(&package.fabric).map_err(AppError::input)?;
@@ -185,6 +186,14 @@ pub fn run(args: &TailorArgs) -> Result<(), AppError> {
         return terminal::print_json(&Document::new("tailor", report));
     }
     terminal::print(&summary(&report, Paint::for_stdout()))
+}
+
+/// The package of a garment that is drafted, by its name, or of a file.
+fn read(args: &TailorArgs) -> Result<PatternPackage, AppError> {
+    match args.pattern.to_str().and_then(drafting::style) {
+        Some(style) => style.package().map_err(AppError::input),
+        None => draping::read_package(&args.pattern, args.seams.as_deref()).map_err(AppError::input),
+    }
 }
 
 fn regular(all: &[PanelQuality]) -> f64 {

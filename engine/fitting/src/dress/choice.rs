@@ -8,13 +8,14 @@ use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::catalogue::limits::{MAX_PACKAGE_BYTES, MAX_TOML_BYTES};
 use toile_assets::catalogue::package::ENDING;
 use toile_assets::catalogue::{GarmentPackage, word};
+use toile_assets::drafting;
 use toile_assets::draping::{self, AS_DRAFTED, PatternPackage, TO_MEASURE};
 use toile_assets::fabric::Fabric;
 use toile_assets::garment::Garment;
 use toile_assets::sizes::{Population, SizeTable};
-use toile_assets::wardrobe;
 use toile_assets::wardrobe::own;
 use toile_assets::wardrobe::style::Style;
+use toile_assets::wardrobe::{self, WardrobeError};
 use toile_track::measure::Measurements;
 use toile_track::recommend::Recommendation;
 
@@ -52,6 +53,23 @@ pub enum ChoiceSource {
     Pattern(Box<PatternPackage>),
 }
 
+impl ChoiceSource {
+    /// A garment that is built in, of the wardrobe or drafted; none where no such garment has this name.
+    fn built_in(name: &str) -> Option<Result<Self, FittingError>> {
+        if wardrobe::names().contains(&name) {
+            return Some(wardrobe::style(name).map(|style| Self::Style(Box::new(style))).map_err(FittingError::input));
+        }
+        let package = drafting::style(name)?.package();
+        Some(package.map(|package| Self::Pattern(Box::new(package))).map_err(FittingError::input))
+    }
+}
+
+/// What is said of a name that no garment has.
+fn unknown(name: &str) -> WardrobeError {
+    let known: Vec<&str> = wardrobe::names().into_iter().chain(drafting::names()).collect();
+    WardrobeError::Unknown { name: name.into(), known: known.join(", ") }
+}
+
 /// A garment on the body, and how its size fits; a mesh may have no sizes.
 #[derive(Debug, Clone)]
 pub struct Worn {
@@ -64,7 +82,7 @@ pub struct Worn {
 }
 
 impl Choice {
-    /// The garment of a name: one of the wardrobe, a pattern by its ending, or else a mesh, where a file of that name
+    /// The garment of a name: one of the wardrobe, one that is drafted, a pattern by its ending, or else a mesh, where a file of that name
     /// exists.
     ///
     /// # Errors
@@ -74,14 +92,14 @@ impl Choice {
         if name.ends_with(ENDING) {
             return Self::open(path);
         }
-        let source = if wardrobe::names().contains(&name) {
-            ChoiceSource::Style(Box::new(wardrobe::style(name).map_err(FittingError::input)?))
+        let source = if let Some(found) = ChoiceSource::built_in(name) {
+            found?
         } else if draping::is_pattern(name) {
             ChoiceSource::Pattern(Box::new(draping::read_package(path, None).map_err(FittingError::input)?))
         } else if path.exists() || source::is_mesh(name) {
             ChoiceSource::Mesh(Box::new(OwnMesh::read(path).map_err(FittingError::input)?))
         } else {
-            ChoiceSource::Style(Box::new(wardrobe::style(name).map_err(FittingError::input)?))
+            return Err(FittingError::input(unknown(name)));
         };
         Ok(Self { name: name.to_owned(), source, own: ShopChoice::default() })
     }
@@ -102,8 +120,8 @@ impl Choice {
     pub fn of_package(mut package: GarmentPackage, shown: &str) -> Result<Self, FittingError> {
         let manifest = package.manifest().map_err(FittingError::input)?;
         let inside = |e: &dyn Display| FittingError::Input(format!("{shown}: {e}"));
-        let source = if manifest.is_built_in() {
-            ChoiceSource::Style(Box::new(wardrobe::style(&manifest.garment).map_err(FittingError::input)?))
+        let source = if let Some(found) = ChoiceSource::built_in(&manifest.garment) {
+            found?
         } else if manifest.is_pattern() {
             let text = package.text(&manifest.garment, MAX_PACKAGE_BYTES).map_err(FittingError::input)?;
             let seams = manifest.seams.as_deref().map(|seams| package.text(seams, MAX_TOML_BYTES)).transpose();

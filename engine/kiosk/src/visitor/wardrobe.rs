@@ -6,6 +6,7 @@ use std::path::Path;
 
 use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::catalogue::{Catalogue, CatalogueItem, ManifestColour, Words, word};
+use toile_assets::drafting::{self, DraftStyle};
 use toile_assets::sizes::{GarmentKind, Population};
 use toile_assets::wardrobe;
 use toile_assets::wardrobe::own;
@@ -37,6 +38,18 @@ pub enum Layer {
     Scarf,
     /// Shoes and bags.
     Shoe,
+}
+
+impl Layer {
+    /// By the number that garments have: 1 underwear, 2 skirts and trousers, 3 tops and dresses, 4 jackets, 5 coats.
+    const fn of(number: u8) -> Self {
+        match number {
+            1 => Self::Underwear,
+            2 | 3 => Self::Shirt,
+            4 => Self::Jacket,
+            _ => Self::Coat,
+        }
+    }
 }
 
 toile_assets::named! {
@@ -205,13 +218,7 @@ impl WardrobeItem {
         hung.title = ItemName::Words(manifest.names.clone());
         hung.article = Some(manifest.article.clone());
         hung.price = manifest.price.as_ref().map(ToString::to_string);
-        hung.layer = match manifest.layer {
-            Some(1) => Layer::Underwear,
-            Some(2 | 3) => Layer::Shirt,
-            Some(4) => Layer::Jacket,
-            Some(_) => Layer::Coat,
-            None => hung.layer,
-        };
+        hung.layer = manifest.layer.map_or(hung.layer, Layer::of);
         Ok(hung)
     }
 
@@ -225,6 +232,10 @@ impl WardrobeItem {
         let unsized_code = || vec![own::UNKNOWN.to_owned()];
         let sizes = offer.as_ref().map_or_else(unsized_code, |o| o.sizes.iter().map(|s| s.code.clone()).collect());
         let WornPlace { layer, place, held, covers } = WornPlace::of(kind);
+        let layer = match &choice.source {
+            ChoiceSource::Pattern(package) => package.layer.map_or(layer, Layer::of),
+            ChoiceSource::Style(_) | ChoiceSource::Mesh(_) => layer,
+        };
         let colours = palette(kind.unwrap_or(GarmentKind::Dress), choice.fabric()?.colour);
         Ok(Self {
             name: choice.name.clone(),
@@ -281,7 +292,10 @@ fn title(choice: &Choice) -> ItemName {
     match (key, &choice.source) {
         (Some(key), _) => ItemName::Word(key),
         (None, ChoiceSource::Style(style)) => ItemName::Title(style.title.clone()),
-        (None, ChoiceSource::Pattern(package)) => ItemName::Title(package.name.clone()),
+        (None, ChoiceSource::Pattern(package)) => {
+            let drafted = drafting::style(&package.name).map(DraftStyle::title);
+            ItemName::Title(drafted.unwrap_or_else(|| package.name.clone()))
+        }
         (None, ChoiceSource::Mesh(own)) => {
             let file = Path::new(&choice.name).file_stem().map(|stem| stem.to_string_lossy().into_owned());
             ItemName::Title(own.measures.name.clone().or(file).unwrap_or_else(|| choice.name.clone()))

@@ -1,0 +1,94 @@
+//! Drafting: our own sewn patterns, drawn for a size's body after the usual block drafts.
+//!
+//! Reads: size tables, the constants of [`styles`]. Writes: a [`PatternPackage`] of GarmentCode texts for three sizes; sizes
+//! between are graded.
+//! Budget: 5 ms a garment; at load only.
+//! Thread: the loading thread.
+
+mod block;
+mod bodice;
+mod collar;
+mod dart;
+mod garment;
+mod panel;
+mod poncho;
+mod skirt;
+mod sleeve;
+mod styles;
+mod text;
+mod tops;
+mod trousers;
+mod waistband;
+
+pub use block::DraftBlock;
+pub use garment::DraftGarment;
+pub use styles::{DraftStyle, STYLES};
+
+use crate::body::Sex;
+use crate::draping::{PatternPackage, PatternSizes, SizeGirths, SizedDraft};
+use crate::sizes::{Population, SizeError, SizeTable};
+
+/// Names of the garments that are drafted here.
+pub fn names() -> Vec<&'static str> {
+    STYLES.iter().map(|style| style.name).collect()
+}
+
+/// A garment that is drafted here, by its name.
+pub fn style(name: &str) -> Option<&'static DraftStyle> {
+    STYLES.iter().find(|style| style.name == name)
+}
+
+impl DraftStyle {
+    /// Its name as words: `Men's tee` for `mens-tee`.
+    pub fn title(&self) -> String {
+        let words = self.name.replace("mens-", "men's ").replace('-', " ");
+        let mut letters = words.chars();
+        letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+    }
+
+    /// The draft for a size of a table.
+    ///
+    /// # Errors
+    /// A size that there is not.
+    pub fn draft(&self, table: &SizeTable, size: &str) -> Result<DraftGarment, SizeError> {
+        let sex = if table.population == Population::Men { Sex::Male } else { Sex::Female };
+        Ok((self.draw)(&DraftBlock::new(sex, &table.size_body(size)?)))
+    }
+
+    /// The garment in all of its sizes.
+    ///
+    /// # Errors
+    /// A table or size that there is not.
+    pub fn package(&self) -> Result<PatternPackage, SizeError> {
+        let table = SizeTable::embedded(self.table)?;
+        let [small, middle, large] = self.sizes;
+        let text = |size| Ok::<_, SizeError>(text::garment_code(&self.draft(&table, size)?));
+        let drafts = [small, large].map(|size| Ok(SizedDraft { size: size.into(), pattern: text(size)?, seams: None }));
+        let drafts = drafts.into_iter().collect::<Result<_, SizeError>>()?;
+        let girths = self.girths(&table)?;
+        let sizes = PatternSizes { table: self.table.into(), kind: self.kind, size: middle.into(), drafts, girths };
+        let mut package = PatternPackage::new(self.name.into(), text(middle)?);
+        package.spacing_mm = self.spacing_mm;
+        package.fabric = self.fabric.into();
+        package.layer = Some(self.layer);
+        package.sizes = Some(sizes);
+        Ok(package)
+    }
+
+    /// Finished girths of every size that is made, by the draft's own rules.
+    fn girths(&self, table: &SizeTable) -> Result<Vec<SizeGirths>, SizeError> {
+        let one = |code: &str| {
+            let [chest_mm, waist_mm, hip_mm] =
+                self.draft(table, code)?.girths.map(|girth| girth.map(|m| (m * 1e3).round()));
+            Ok(SizeGirths { size: code.into(), chest_mm, waist_mm, hip_mm })
+        };
+        let [small, _, large] = self.sizes;
+        let codes = table.codes();
+        let place = |size: &str| codes.iter().position(|code| *code == size);
+        let made = place(small).unwrap_or(0)..=place(large).unwrap_or(codes.len() - 1);
+        codes[made].iter().map(|code| one(code)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests;

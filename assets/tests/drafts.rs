@@ -1,0 +1,80 @@
+//! Garments that we draft ourselves, sewn up around the bodies of their sizes: that they hang as what they are.
+
+use glam::Vec3;
+use toile_assets::body::Body;
+use toile_assets::drafting;
+use toile_assets::draping::{DrapedPattern, PatternPackage};
+use toile_assets::fabric::Fabric;
+use toile_assets::skeleton::Joint;
+
+/// Strain of all but one in a hundred edges (1): trousers reach it at the crotch.
+const STRAIN_P99: f32 = 0.11;
+
+/// Widest gap of a seam before its sides are merged (m).
+const OPEN_M: f64 = 0.04;
+
+fn hung(name: &str, size: &str) -> (PatternPackage, Body, DrapedPattern) {
+    let package = drafting::style(name).unwrap().package().unwrap();
+    let body = package.body_of(size).unwrap().unwrap();
+    let pattern = package.sized(size, &body.measures).unwrap();
+    let draped = package.drape(&pattern, &body, &Fabric::built_in(&package.fabric).unwrap()).unwrap();
+    let quality = draped.quality;
+    assert!(quality.strain_p99 < STRAIN_P99.into() && quality.strain_mean < 0.01, "{name} {size}: {quality:?}");
+    assert!(quality.crossings == 0 && quality.penetration == 0.0, "{name} {size}: {quality:?}");
+    assert!(quality.seams_open < OPEN_M, "{name} {size}: {quality:?}");
+    (package, body, draped)
+}
+
+/// The highest and the lowest point.
+fn ends(draped: &DrapedPattern) -> [f32; 2] {
+    let heights = draped.at.iter().map(|p| p.y);
+    [heights.clone().fold(f32::MIN, f32::max), heights.fold(f32::MAX, f32::min)]
+}
+
+/// Where the points of a panel are.
+fn of(package: &PatternPackage, draped: &DrapedPattern, panel: &str) -> Vec<Vec3> {
+    let pattern = package.parse().unwrap();
+    let index = pattern.panels().iter().position(|p| p.name == panel).unwrap();
+    draped.sewn.number[index].iter().map(|v| draped.at[*v as usize]).collect()
+}
+
+#[test]
+fn a_tee_lies_on_the_shoulders_and_its_sleeves_around_the_arms() {
+    for (name, size) in [("tee", "38"), ("shirt", "44"), ("mens-jumper", "M")] {
+        let (package, body, draped) = hung(name, size);
+        let [top, low] = ends(&draped);
+        assert!(top > body.levels.shoulder && top < body.levels.neck + 0.08, "{name}: its neck is at {top}");
+        assert!(low < body.levels.waist - 0.1 && low > body.levels.crotch - 0.1, "{name}: its hem is at {low}");
+        let [shoulder, elbow] = [Joint::LeftShoulder, Joint::LeftElbow].map(|j| body.skeleton.at(j));
+        let along = (elbow - shoulder).normalize();
+        let sleeve = of(&package, &draped, "left sleeve");
+        let upper: Vec<&Vec3> = sleeve.iter().filter(|p| (0.1..0.2).contains(&(**p - shoulder).dot(along))).collect();
+        // All around the bone, at no great distance from it.
+        let off = |p: &Vec3| *p - shoulder - along * (*p - shoulder).dot(along);
+        assert!(upper.len() > 30 && upper.iter().all(|p| off(p).length() < 0.16), "{name}");
+        for side in [Vec3::Z, Vec3::NEG_Z, Vec3::Y, Vec3::NEG_Y] {
+            assert!(upper.iter().any(|p| off(p).dot(side) > 0.02), "{name}: nothing towards {side}");
+        }
+    }
+}
+
+#[test]
+fn a_waistband_sits_at_the_waist() {
+    for (name, size, hem) in
+        [("straight-skirt", "32", 0.08), ("circle-skirt", "44", 0.12), ("straight-trousers", "38", -0.35)]
+    {
+        let (package, body, draped) = hung(name, size);
+        let band = of(&package, &draped, "front band");
+        let top = band.iter().map(|p| p.y).fold(f32::MIN, f32::max);
+        assert!((top - body.levels.waist).abs() < 0.03, "{name}: {top} at a waist of {}", body.levels.waist);
+        let [_, low] = ends(&draped);
+        assert!((low - body.levels.knee - hem).abs() < 0.1, "{name}: its hem is at {low}");
+    }
+}
+
+#[test]
+fn a_jacket_bakes_in_its_layer() {
+    let (package, body, _) = hung("mens-blazer", "L");
+    let garment = package.dress("L", &body).unwrap();
+    assert!(garment.layer == 4 && garment.particles() > 2_000 && garment.fixed.len() > 10);
+}
