@@ -9,6 +9,7 @@
 
 mod actions;
 pub mod body_turn;
+mod colours;
 pub mod controller;
 pub mod dressing_worker;
 pub mod measure_entry;

@@ -1,9 +1,9 @@
 //! The fitted body and the garments to choose from.
 
+use super::super::colours::Colour;
 use super::super::screen::{Block, Page};
 use super::super::size_fit::{OutOfRange, SizeChoice};
 use super::super::texts::{TextKey, TextValue};
-use super::super::wardrobe::Colour;
 use super::PageWriter;
 use toile_assets::catalogue::word;
 
