@@ -49,12 +49,19 @@ const JERSEY: &str = "cotton-jersey";
 const LAWN: &str = "cotton-lawn";
 const LINEN: &str = "linen-twill";
 const WOOL: &str = "wool-suiting";
+const GINGHAM: &str = "lawn-gingham";
+const SHIRTING: &str = "shirting-stripe";
+const BRETON: &str = "jersey-breton";
+const FLOWERS: &str = "lawn-flowers";
+const HOUNDSTOOTH: &str = "wool-houndstooth";
+const HERRINGBONE: &str = "wool-herringbone";
+const WINDOWPANE: &str = "wool-windowpane";
 
 /// All of them, by layer from the inside out.
 pub const STYLES: [DraftStyle; 22] = [
     style("straight-skirt", WOMEN, GarmentKind::Skirt, (LINEN, 17.0, 2), |b| skirt::straight(b, &STRAIGHT_SKIRT)),
     style("pencil-skirt", WOMEN, GarmentKind::Skirt, (WOOL, 17.0, 2), |b| skirt::straight(b, &PENCIL_SKIRT)),
-    style("circle-skirt", WOMEN, GarmentKind::Skirt, (LAWN, 20.0, 2), skirt::circle),
+    style("circle-skirt", WOMEN, GarmentKind::Skirt, (GINGHAM, 20.0, 2), skirt::circle),
     style("slim-trousers", WOMEN, GarmentKind::Trousers, (LINEN, 18.0, 2), |b| trousers(b, &SLIM)),
     style("straight-trousers", WOMEN, GarmentKind::Trousers, (WOOL, 18.0, 2), |b| trousers(b, &STRAIGHT)),
     style("mens-trousers", MEN_TROUSERS, GarmentKind::Trousers, (WOOL, 19.0, 2), |b| trousers(b, &MENS_STRAIGHT)),
@@ -63,29 +70,33 @@ pub const STYLES: [DraftStyle; 22] = [
     style("tee", WOMEN, GarmentKind::Tshirt, (JERSEY, 16.0, 3), |b| tops::pullover(b, &TEE, &SHORT_SLEEVE.of(b))),
     style("mens-tee", MEN, GarmentKind::Tshirt, (JERSEY, 16.0, 3), |b| tops::pullover(b, &TEE, &SHORT_SLEEVE.of(b))),
     style("blouse", WOMEN, GarmentKind::Tshirt, (LAWN, 16.0, 3), |b| tops::pullover(b, &BLOUSE, &PUFF_SLEEVE.of(b))),
-    style("shirt", WOMEN, GarmentKind::Tshirt, (LAWN, 18.0, 3), |b| tops::shirt(b, &SHIRT, &SHIRT_SLEEVE.of(b))),
-    style("mens-shirt", MEN, GarmentKind::Tshirt, (LAWN, 18.0, 3), |b| tops::shirt(b, &SHIRT, &SHIRT_SLEEVE.of(b))),
+    style("shirt", WOMEN, GarmentKind::Tshirt, (SHIRTING, 18.0, 3), |b| tops::shirt(b, &SHIRT, &SHIRT_SLEEVE.of(b))),
+    style("mens-shirt", MEN, GarmentKind::Tshirt, (SHIRTING, 18.0, 3), |b| tops::shirt(b, &SHIRT, &SHIRT_SLEEVE.of(b))),
     style("jumper", WOMEN, GarmentKind::Tshirt, (JERSEY, 17.0, 3), |b| {
         tops::pullover(b, &JUMPER, &JUMPER_SLEEVE.of(b))
     }),
-    style("mens-jumper", MEN, GarmentKind::Tshirt, (JERSEY, 18.0, 3), |b| {
+    style("mens-jumper", MEN, GarmentKind::Tshirt, (BRETON, 18.0, 3), |b| {
         tops::pullover(b, &JUMPER, &JUMPER_SLEEVE.of(b))
     }),
     style("shift-dress", WOMEN, GarmentKind::Dress, (LINEN, 18.0, 3), |b| {
         tops::sleeveless(b, &to_the_knee(SHIFT, b, 0.97))
     }),
-    style("strap-dress", WOMEN, GarmentKind::Dress, (LAWN, 17.0, 3), |b| {
+    style("strap-dress", WOMEN, GarmentKind::Dress, (FLOWERS, 17.0, 3), |b| {
         tops::sleeveless(b, &to_the_knee(STRAPS, b, 0.88))
     }),
-    style("blazer", WOMEN, GarmentKind::Jacket, (WOOL, 18.0, 4), |b| tops::jacket(b, &BLAZER, &BLAZER_SLEEVE.of(b))),
-    style("mens-blazer", MEN, GarmentKind::Jacket, (WOOL, 18.0, 4), |b| tops::jacket(b, &BLAZER, &BLAZER_SLEEVE.of(b))),
-    style("coat", WOMEN, GarmentKind::Jacket, (WOOL, 20.0, 5), |b| {
+    style("blazer", WOMEN, GarmentKind::Jacket, (HOUNDSTOOTH, 18.0, 4), |b| {
+        tops::jacket(b, &BLAZER, &BLAZER_SLEEVE.of(b))
+    }),
+    style("mens-blazer", MEN, GarmentKind::Jacket, (WINDOWPANE, 18.0, 4), |b| {
+        tops::jacket(b, &BLAZER, &BLAZER_SLEEVE.of(b))
+    }),
+    style("coat", WOMEN, GarmentKind::Jacket, (HERRINGBONE, 20.0, 5), |b| {
         tops::jacket(b, &to_the_knee(COAT, b, 0.95), &COAT_SLEEVE.of(b))
     }),
     style("mens-coat", MEN, GarmentKind::Jacket, (WOOL, 21.0, 5), |b| {
         tops::jacket(b, &to_the_knee(COAT, b, 0.95), &COAT_SLEEVE.of(b))
     }),
-    style("poncho", WOMEN, GarmentKind::Jacket, (WOOL, 20.0, 5), poncho::poncho),
+    style("poncho", WOMEN, GarmentKind::Jacket, (WINDOWPANE, 20.0, 5), poncho::poncho),
 ];
 
 /// A style with a hem at a part of the way from the waist to the knee.

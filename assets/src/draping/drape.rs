@@ -160,25 +160,34 @@ impl FirstLevel {
         let (sides, held) = (vec![None; count], vec![false; count]);
         let mut relaxed =
             Relaxation { at: self.placed.worn.clone(), springs: &self.springs, field, sides: &sides, held: &held };
-        relaxed.run(&CLOSING);
         let first = panel_starts(sewn);
+        relaxed.run(&CLOSING);
         let place = |m: &[u32; 2]| relaxed.at[first[m[0] as usize] + m[1] as usize];
-        let spread = |v: usize| {
-            let members = &sewn.members[v];
-            members.iter().flat_map(|a| members.iter().map(move |b| (a, b))).map(|(a, b)| place(a).distance(place(b)))
-        };
-        let gap = |v: usize| f64::from(spread(v).fold(0.0, f32::max));
-        let mut widest = 0.0f64;
-        for (seam, points) in pattern.seams().iter().zip(&sewn.seams) {
-            let open = points.iter().map(|v| gap(*v as usize)).fold(0.0, f64::max);
-            if open * 1e3 > MAX_OPEN_MM {
-                return Err(DrapeError::Open { seam: seam.name.clone(), open_mm: open * 1e3 });
-            }
-            widest = widest.max(open);
-        }
+        let widest = widest_gap(pattern, sewn, place)?;
         let mean = |m: &Vec<[u32; 2]>| m.iter().map(place).sum::<Vec3>() / m.len() as f32;
         Ok((sewn.members.iter().map(mean).collect(), widest))
     }
+}
+
+/// The widest gap of all seams (m).
+///
+/// # Errors
+/// [`DrapeError::Open`]: a seam that stays too far open.
+fn widest_gap(pattern: &Pattern, sewn: &SewnMesh, place: impl Fn(&[u32; 2]) -> Vec3) -> Result<f64, DrapeError> {
+    let spread = |v: usize| {
+        let members = &sewn.members[v];
+        members.iter().flat_map(|a| members.iter().map(move |b| (a, b))).map(|(a, b)| place(a).distance(place(b)))
+    };
+    let gap = |v: &u32| f64::from(spread(*v as usize).fold(0.0, f32::max));
+    let mut widest = 0.0f64;
+    for (seam, points) in pattern.seams().iter().zip(&sewn.seams) {
+        let open = points.iter().map(gap).fold(0.0, f64::max);
+        if open * 1e3 > MAX_OPEN_MM {
+            return Err(DrapeError::Open { seam: seam.name.clone(), open_mm: open * 1e3 });
+        }
+        widest = widest.max(open);
+    }
+    Ok(widest)
 }
 
 /// The side of the middle that vertices of legs belong to, below the crotch.

@@ -141,35 +141,72 @@ fn unrolled(points: &[DVec2], angle: f64, place: &crate::pattern::Placement) -> 
 /// Least angle of a sector that is worth unrolling (rad): a flared panel of less is as good straight.
 const LEAST_SECTOR: f64 = 0.12 * PI;
 
-/// How far points may lie from a ring (part of its breadth).
+/// How far points of an outline may lie from the border of the ring that it is a sector of (part of its outer radius).
 const OFF_RING: f64 = 0.02;
+
+/// Share of the points that must lie on the border: a corner that was digitised badly is no reason to give up.
+const ON_RING: f64 = 0.95;
+
+/// A ring that an outline may be a sector of.
+struct RingSector {
+    centre: DVec2,
+    /// Direction through the sector's middle (unit).
+    middle: DVec2,
+    /// Inner and outer radius (m).
+    radii: [f64; 2],
+    /// First and last angle from the middle (rad).
+    turns: [f64; 2],
+}
+
+impl RingSector {
+    /// The least sector around a centre that holds all points.
+    fn around(centre: DVec2, points: &[DVec2]) -> Option<Self> {
+        let spread = |values: &mut dyn Iterator<Item = f64>| {
+            values.fold([f64::MAX, f64::MIN], |[low, high], v| [low.min(v), high.max(v)])
+        };
+        let sum: DVec2 = points.iter().map(|p| (*p - centre).normalize_or_zero()).sum();
+        let middle = sum.try_normalize()?;
+        let radii = spread(&mut points.iter().map(|p| p.distance(centre)));
+        let turns = spread(&mut points.iter().map(|p| middle.angle_to(*p - centre)));
+        Some(Self { centre, middle, radii, turns })
+    }
+
+    /// How many points lie on its border: on one of the arcs or of the straight ends.
+    fn on_border(&self, points: &[DVec2]) -> usize {
+        let near = OFF_RING * self.radii[1];
+        let on = |p: &&DVec2| {
+            let out = **p - self.centre;
+            let (far, turn) = (out.length(), self.middle.angle_to(out));
+            self.radii.iter().any(|r| (far - r).abs() < near)
+                || self.turns.iter().any(|t| (turn - t).abs() * far < near)
+        };
+        points.iter().filter(on).count()
+    }
+
+    fn area(&self) -> f64 {
+        let [inner, outer] = self.radii;
+        0.5 * (self.turns[1] - self.turns[0]) * (outer * outer - inner * inner)
+    }
+}
 
 /// The middle of the ring that an outline is a sector of, and the direction through the sector's middle.
 fn sector(points: &[DVec2]) -> Option<(DVec2, DVec2)> {
     let n = points.len();
-    // Between two arcs of one middle, the chords of both turn by the same angle: the middle is where normals of an arc meet.
-    let mut best: Option<(usize, f64, DVec2)> = None;
-    for first in 0..n {
-        let (a, b, c) = (points[first], points[(first + 3) % n], points[(first + 6) % n]);
-        let Some(centre) = circle(a, b, c) else { continue };
-        let radius = centre.distance(a);
-        let on = |p: &DVec2| (p.distance(centre) - radius).abs() < OFF_RING * 0.1 * radius;
-        let count = points.iter().filter(|p| on(p)).count();
-        if best.is_none_or(|b| count > b.0) {
-            best = Some((count, radius, centre));
-        }
-    }
-    let (_, _, centre) = best?;
-    let distances: Vec<f64> = points.iter().map(|p| p.distance(centre)).collect();
-    let (least, most) = distances.iter().fold((f64::MAX, 0.0f64), |(l, m), d| (l.min(*d), m.max(*d)));
-    let sum: DVec2 = points.iter().map(|p| (*p - centre).normalize_or_zero()).sum();
-    let middle = sum.try_normalize()?;
-    let turns: Vec<f64> = points.iter().map(|p| middle.angle_to(*p - centre)).collect();
-    let (low, high) = turns.iter().fold((0.0f64, 0.0f64), |(l, h), t| (l.min(*t), h.max(*t)));
+    // Of a sector some three points lie on one of its arcs, near each other or far apart.
+    let triples = [3, n / 10, n / 5].into_iter().flat_map(|step| (0..n).map(move |i| [i, i + step, i + 2 * step]));
+    let centres = triples.filter_map(|t| {
+        let [a, b, c] = t.map(|i| points[i % n]);
+        circle(a, b, c)
+    });
+    let rings = centres.filter_map(|centre| RingSector::around(centre, points));
+    let best = rings.map(|ring| (ring.on_border(points), ring)).max_by_key(|(count, _)| *count);
+    let (count, ring) = best?;
     let area = 0.5 * (0..n).map(|i| points[i].perp_dot(points[(i + 1) % n])).sum::<f64>().abs();
-    let whole = 0.5 * (high - low) * (most * most - least * least);
-    let like = (area / whole - 1.0).abs() < 0.05 && high - low > LEAST_SECTOR && least > 0.05 * most;
-    like.then_some((centre, middle))
+    let like = (area / ring.area() - 1.0).abs() < 0.05
+        && ring.turns[1] - ring.turns[0] > LEAST_SECTOR
+        && ring.radii[0] > 0.05 * ring.radii[1]
+        && count as f64 > ON_RING * n as f64;
+    like.then_some((ring.centre, ring.middle))
 }
 
 /// The middle of the circle through three points.

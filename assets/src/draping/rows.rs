@@ -27,6 +27,9 @@ const LEAST_FALL: f64 = 0.3;
 /// Where the armpit lies between the bust points and the shoulders (1).
 const ARMPIT: f32 = 0.4;
 
+/// How far above its lowest point the width of cloth at its hem is taken (m): chords of a curved hem end a little above it.
+const ABOVE_HEM_M: f64 = 0.005;
+
 /// A closed line around the body.
 #[derive(Debug, Clone)]
 pub struct RowRing {
@@ -92,7 +95,8 @@ impl Rows {
         let mut y = arranged.top + arranged.lift;
         let mut radius = 0.0f64;
         for k in 0..count {
-            let height = arranged.top - STEP_M * k as f64;
+            // Below the hem there is no cloth whose width could be asked for: what lies between the last rows is as wide as it.
+            let height = (arranged.top - STEP_M * k as f64).max(lowest + ABOVE_HEM_M);
             let wide = width(sewn, &arranged.panels, height, |_| true);
             let level = (y as f32).clamp(LOWEST_M, armpit);
             let trunk = RowRing::new(BodySection::trunk(body, level), y as f32, wide as f32);

@@ -58,8 +58,8 @@ pub struct TryOnArgs {
     /// Recording to watch: .mcap, Kinect CSV, Kinectron JSON or BVH (default: the embedded session)
     #[arg(long, value_name = "F")]
     pub session: Option<PathBuf>,
-    /// Garment of the wardrobe, an OBJ file, a sewn pattern (.json, .dxf) or a garment package; repeat it to dress in layers,
-    /// inner first
+    /// Garment of the wardrobe, a mesh (.obj, .glb), a sewn pattern (.json, .dxf) or a garment package, with a fabric behind a
+    /// colon if another than its own is wanted (tee:jersey-breton); repeat it to dress in layers, inner first
     #[arg(long = "garment", value_name = "G")]
     pub garments: Vec<String>,
     /// Size to wear, as the garment's table names it (default: the one that fits)

@@ -64,6 +64,13 @@ impl ChoiceSource {
     }
 }
 
+/// A garment and its fabric, where a name has both: `shirt:lawn-gingham`. A path may hold a colon too.
+fn in_fabric(name: &str) -> Option<(&str, &str)> {
+    let (garment, fabric) = name.rsplit_once(':')?;
+    let is_word = fabric.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-');
+    (garment.len() > 1 && is_word && !Path::new(name).exists()).then_some((garment, fabric))
+}
+
 /// What is said of a name that no garment has.
 fn unknown(name: &str) -> WardrobeError {
     let known: Vec<&str> = wardrobe::names().into_iter().chain(drafting::names()).collect();
@@ -83,12 +90,17 @@ pub struct Worn {
 
 impl Choice {
     /// The garment of a name: one of the wardrobe, one that is drafted, a pattern by its ending, or else a mesh, where a file of that name
-    /// exists.
+    /// exists. Behind a colon its fabric may stand, one that is built in: `shirt:lawn-gingham`.
     ///
     /// # Errors
     /// A name that is none of these, a file that cannot be used.
     pub fn find(name: &str) -> Result<Self, FittingError> {
         let path = Path::new(name);
+        if let Some((garment, fabric)) = in_fabric(name) {
+            let found = Self::find(garment)?;
+            let fabric = Some(Fabric::built_in(fabric).map_err(FittingError::input)?);
+            return Ok(Self { name: name.to_owned(), own: ShopChoice { fabric, ..found.own }, ..found });
+        }
         if name.ends_with(ENDING) {
             return Self::open(path);
         }
