@@ -72,6 +72,14 @@ fn a_waistband_sits_at_the_waist() {
     }
 }
 
+/// Between two drafts a tee's back was once taken for a sector of a ring, and a skirt's corner wound around the body.
+#[test]
+fn sizes_between_two_drafts_hang_as_the_drafts_do() {
+    for (name, size) in [("tee", "40"), ("circle-skirt", "40"), ("circle-skirt", "46"), ("mens-shorts", "80")] {
+        let _ = hung(name, size);
+    }
+}
+
 #[test]
 fn a_jacket_bakes_in_its_layer() {
     let (package, body, _) = hung("mens-blazer", "L");

@@ -389,3 +389,67 @@ fn draped_patterns_are_read_in_the_unit_and_height_that_they_are_written_in() {
     }
     assert!(wrong.is_empty(), "{right} right, {wrong:#?}");
 }
+
+/// A strip of cloth that hangs from the waist, its left half of one material and its right half of another.
+fn two_materials(material: &str) -> String {
+    let mut text = format!("mtllib {material}\n");
+    for (row, column) in (0..=ROWS).flat_map(|r| (0..COLUMNS).map(move |c| (r, c))) {
+        let (s, c) = (column as f32 / COLUMNS as f32 * std::f32::consts::TAU).sin_cos();
+        let (wide, y) = (0.19 + 0.005 * row as f32, 1.04 - 0.025 * row as f32);
+        text += &format!(
+            "v {} {y} {}\nvt {} {}\n",
+            wide * s,
+            wide * c,
+            column as f32 / COLUMNS as f32,
+            row as f32 / ROWS as f32
+        );
+    }
+    for half in 0..2 {
+        text += if half == 0 { "usemtl Left\n" } else { "usemtl Right\n" };
+        for (row, column) in (0..ROWS).flat_map(|r| (0..COLUMNS / 2).map(move |c| (r, c + half * COLUMNS / 2))) {
+            let at = |r: usize, c: usize| r * COLUMNS + c % COLUMNS + 1;
+            let [a, b, c, d] = [at(row + 1, column), at(row + 1, column + 1), at(row, column + 1), at(row, column)];
+            text += &format!("f {a}/{a} {b}/{b} {c}/{c} {d}/{d}\n");
+        }
+    }
+    text
+}
+
+#[test]
+fn a_mesh_shows_the_pictures_and_colours_of_its_materials() {
+    let folder = Folder::new("materials");
+    let mut picture = Vec::new();
+    let green = image::RgbImage::from_pixel(12, 20, image::Rgb([20, 200, 40]));
+    green.write_to(&mut std::io::Cursor::new(&mut picture), image::ImageFormat::Png).unwrap();
+    folder.write("green.png", picture);
+    folder.write("two.mtl", "newmtl Left\nmap_Kd somewhere/else/green.png\nnewmtl Right\nKd 0.5 0 0\n");
+    let mesh = OwnMesh::read(&folder.write("skirt.obj", two_materials("two.mtl"))).unwrap();
+    assert!(mesh.notes.iter().all(|note| !note.contains("picture")), "{:?}", mesh.notes);
+    let garment = own::dress(&mesh, None, &shopper(Sex::Female)).unwrap().garments.remove(0);
+    let look = garment.look.picture.as_ref().unwrap();
+    assert_eq!(look.corners.len(), garment.triangles.len());
+    for (t, uv) in garment.triangles.iter().zip(&look.corners) {
+        let middle = (uv[0] + uv[1] + uv[2]) / 3.0;
+        let (width, height) = (look.texture.width, look.texture.height);
+        let (x, y) = ((middle.x * width as f32) as u32, ((1.0 - middle.y) * height as f32) as u32);
+        let shown = look.texture.texels[(y * width + x) as usize];
+        // The wearer's left, +x, is the first half.
+        let place: f32 = t.iter().map(|v| garment.start[*v as usize].x).sum();
+        let [left, right] = [[20, 200, 40, 255], [188, 0, 0, 255]];
+        assert_eq!(shown, if place > 0.0 { left } else { right }, "at x {place}");
+    }
+}
+
+#[test]
+fn a_picture_that_is_missing_or_broken_is_told_and_the_fabric_shows() {
+    let folder = Folder::new("broken");
+    let read = || OwnMesh::read(&folder.write("skirt.obj", two_materials("two.mtl"))).unwrap();
+    assert!(read().notes.iter().any(|note| note.contains("two.mtl") && note.contains("put the file beside it")));
+    folder.write("two.mtl", "newmtl Left\nmap_Kd green.png\n");
+    assert!(read().notes.iter().any(|note| note.contains("green.png") && note.contains("put it beside the mesh")));
+    folder.write("green.png", "no picture");
+    let mesh = read();
+    assert!(mesh.notes.iter().any(|note| note.contains("green.png") && note.contains("PNG")), "{:?}", mesh.notes);
+    let garment = own::dress(&mesh, None, &shopper(Sex::Female)).unwrap().garments.remove(0);
+    assert_eq!(garment.look.picture, None);
+}

@@ -7,6 +7,7 @@ use toile_assets::mesh::vertex_normals;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::skin::Posed;
 
+use crate::base_layer::base_layer;
 use crate::cloth_look::{ClothLook, GarmentLook};
 use crate::hidden_skin::{CoveringCloth, DrawnSkin};
 use crate::image::{Image, Size};
@@ -31,6 +32,9 @@ pub struct DrawnFrame {
     body_triangles: Vec<[u32; 3]>,
     /// Triangles of the body that are drawn.
     drawn: Vec<[u32; 3]>,
+    /// The base layer painted on it, and what of it is on the triangles that are drawn.
+    base: GarmentLook,
+    drawn_base: Vec<[Vec2; 3]>,
     /// Body vertices under a garment.
     dressed: Vec<bool>,
     cloths: Vec<DrawnGarment>,
@@ -88,7 +92,10 @@ impl DrawnFrame {
                 look,
             }
         };
+        let base = base_layer(body);
         Self {
+            drawn_base: base.corners.clone(),
+            base,
             dressed: over(0).dressed(&body.mesh.positions, &body.normals),
             body: body.mesh.positions.clone(),
             normals: body.normals.clone(),
@@ -149,6 +156,7 @@ impl DrawnFrame {
         let under = cover.hide_skin(&mut self.body, &self.normals, &self.dressed, &self.body_triangles);
         self.hidden_m = self.hidden_m.max(under.hidden_m);
         self.drawn = picked(&self.body_triangles, &under.drawn);
+        [self.drawn_base, _] = self.base.of_triangles(&under.drawn);
     }
 
     /// How far skin, or cloth worn beneath other cloth, stood out of what covers it at most, in all pictures so far (m):
@@ -165,7 +173,7 @@ impl DrawnFrame {
             triangles: &self.drawn,
             colours: Colours::One(MANNEQUIN),
             material: Material::Skin,
-            look: None,
+            look: Some(ClothLook { corners: &self.drawn_base, ..self.base.shown() }),
         }];
         for (i, cloth) in self.cloths.iter().enumerate() {
             let DrawnGarment { points, normals, drawn: triangles, look, drawn_look: [corners, edges], .. } = cloth;

@@ -19,6 +19,7 @@ pub mod fit_map;
 
 pub mod cloth_look;
 
+pub mod base_layer;
 pub mod scene;
 
 pub mod bvh;

@@ -6,6 +6,7 @@ use toile_assets::body::Body;
 use toile_assets::fabric::{Fabric, Weave};
 use toile_assets::garment::Garment;
 
+use crate::base_layer::base_layer;
 use crate::cloth_look::GarmentLook;
 use crate::image::linear;
 use crate::scene::MANNEQUIN;
@@ -146,7 +147,7 @@ impl RenderSurface {
     pub fn of_body(body: &Body) -> Self {
         Self {
             rest: body.mesh.positions.clone(),
-            look: None,
+            look: Some(base_layer(body)),
             triangles: body.mesh.triangles.clone(),
             colour: MANNEQUIN,
             material: RenderMaterial::Skin,

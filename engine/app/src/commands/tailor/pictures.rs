@@ -10,6 +10,7 @@ use toile_assets::fabric::Fabric;
 use toile_assets::garment::check::corners;
 use toile_assets::garment::{Look, Shape};
 use toile_assets::mesh::vertex_normals;
+use toile_view::base_layer::base_layer;
 use toile_view::cloth_look::GarmentLook;
 use toile_view::contact_sheet;
 use toile_view::image::{Image, Size, linear};
@@ -54,13 +55,14 @@ fn sides(body: &Body, cloth: &Cloth<'_>, title: &str) -> Image {
     let Cloth { at, triangles, colour, ref look } = *cloth;
     let mut normals = vec![Vec3::ZERO; at.len()];
     vertex_normals(at, triangles, &mut normals);
+    let base = base_layer(body);
     let skin = Surface {
         positions: &body.mesh.positions,
         normals: &body.normals,
         triangles: &body.mesh.triangles,
         colours: Colours::One(MANNEQUIN),
         material: Material::Skin,
-        look: None,
+        look: Some(base.shown()),
     };
     let cloth = Surface {
         positions: at,

@@ -1,0 +1,97 @@
+//! The mannequin's base layer: briefs, and a bandeau on a woman, painted on the skin, so that nobody stands naked under a T-shirt.
+//!
+//! It is no garment: it costs no step, and follows the skin wherever that goes.
+
+use glam::{Vec2, Vec3};
+use toile_assets::body::{Body, Region, Sex};
+use toile_assets::texture::Texture;
+
+use crate::cloth_look::{GarmentLook, TileLevels};
+
+/// Colour of the cotton, sRGB bytes.
+const COTTON: [u8; 3] = [226, 224, 219];
+
+/// How far on both sides of its edge the picture of the edge reaches (m).
+const REACH_M: f32 = 0.064;
+
+/// Texels across that: half a millimetre each.
+const TEXELS: u32 = 256;
+
+/// The base layer of a body, as a look of its skin.
+pub fn base_layer(body: &Body) -> GarmentLook {
+    let inside = heights(body);
+    let along = |d: f32| 0.5 + 0.5 * (d / REACH_M).clamp(-0.98, 0.98);
+    let corners = body.mesh.triangles.iter().map(|t| t.map(|v| Vec2::new(along(inside[v as usize]), 0.5)));
+    let [r, g, b] = COTTON;
+    let texels = (0..TEXELS).map(|x| [r, g, b, if x < TEXELS / 2 { 0 } else { 255 }]).collect();
+    let edge = TileLevels::of(&Texture { width: TEXELS, height: 1, texels });
+    GarmentLook { tile: Some(edge), corners: corners.collect(), opacity: 1.0, ..GarmentLook::default() }
+}
+
+/// How far inside of the base layer each vertex lies at rest, negative outside of it (m).
+fn heights(body: &Body) -> Vec<f32> {
+    let one = |(p, region): (&Vec3, &Region)| {
+        if matches!(region, Region::LeftArm | Region::RightArm | Region::Head) {
+            return -REACH_M;
+        }
+        let briefs = briefs(body, *p);
+        if body.sex == Sex::Female { briefs.max(bandeau(body, *p)) } else { briefs }
+    };
+    body.mesh.positions.iter().zip(&body.regions).map(one).collect()
+}
+
+/// From half of the way between waist and hip down to the legs: a woman's are cut out over the thigh, a man's have short legs.
+fn briefs(body: &Body, p: Vec3) -> f32 {
+    let levels = &body.levels;
+    let top = levels.hip + 0.45 * (levels.waist - levels.hip);
+    let below = match body.sex {
+        Sex::Male => levels.crotch - 0.07,
+        Sex::Female => {
+            let wide = 0.5 * (levels.waist - levels.crotch);
+            let aside = (p.x.abs() / wide.max(0.05)).min(1.0);
+            let side = levels.crotch + 0.45 * (levels.hip - levels.crotch);
+            levels.crotch - 0.02 + (side - levels.crotch + 0.02) * aside * aside
+        }
+    };
+    (top - p.y).min(p.y - below)
+}
+
+/// From below the breasts to above them.
+fn bandeau(body: &Body, p: Vec3) -> f32 {
+    let levels = &body.levels;
+    let rise = levels.chest - levels.underbust;
+    (levels.chest + 0.9 * rise.max(0.03) - p.y).min(p.y - (levels.underbust - 0.35 * rise))
+}
+
+#[cfg(test)]
+mod tests {
+    use toile_assets::body::Measures;
+
+    use super::*;
+
+    #[test]
+    fn what_is_covered_is_covered_and_nothing_else() {
+        for sex in [Sex::Female, Sex::Male] {
+            let body = Body::build(sex, &Measures::average(sex)).unwrap();
+            let inside = heights(&body);
+            let near = |y: f32, x: f32| {
+                let trunk = (0..inside.len())
+                    .filter(|v| body.regions[*v] == Region::Torso || body.mesh.positions[*v].y < body.levels.crotch);
+                let far = |v: &usize| {
+                    let p = body.mesh.positions[*v];
+                    (p.y - y).abs() + (p.x.abs() - x).abs()
+                };
+                inside[trunk.min_by(|a, b| far(a).total_cmp(&far(b))).unwrap()]
+            };
+            let levels = &body.levels;
+            assert!(near(levels.crotch + 0.02, 0.0) > 0.0 && near(levels.hip, 0.1) > 0.0);
+            assert!(near(levels.knee, 0.1) < 0.0 && near(levels.waist, 0.1) < 0.0 && near(levels.neck, 0.05) < 0.0);
+            assert_eq!(near(levels.chest, 0.08) > 0.0, sex == Sex::Female);
+            let arms =
+                body.regions.iter().zip(&inside).filter(|(r, _)| matches!(r, Region::LeftArm | Region::RightArm));
+            assert!(arms.into_iter().all(|(_, d)| *d < 0.0), "gloves");
+            let look = base_layer(&body);
+            assert_eq!(look.corners.len(), body.mesh.triangles.len());
+        }
+    }
+}
