@@ -1,6 +1,6 @@
 //! Drafting: our own sewn patterns, drawn for a size's body after the usual block drafts.
 //!
-//! Reads: size tables, the constants of [`styles`]. Writes: a [`PatternPackage`] of GarmentCode texts for three sizes; sizes
+//! Reads: size tables, the constants of `styles.rs`. Writes: a [`PatternPackage`] of GarmentCode texts for three sizes; sizes
 //! between are graded.
 //! Budget: 5 ms a garment; at load only.
 //! Thread: the loading thread.
