@@ -10,6 +10,7 @@ use serde::Serialize;
 use toile_assets::adapt::MeshReport;
 use toile_fitting::scene::StepTimes;
 use toile_fitting::scene::contact::ContactReport;
+use toile_fitting::wearing::PosePulls;
 
 use crate::machine::Machine;
 
@@ -235,6 +236,9 @@ pub struct TryOn {
     /// How far skin or inner cloth stood out of what covers it, which the pictures hide; none where there are no pictures.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hidden_mm: Option<Penetration>,
+    /// What the garments do when the wearer raises the arms or sits down; left out where it was not asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub poses: Vec<PosePulls>,
     /// Hash of the last state, 16 hexadecimal digits; the same input gives the same.
     pub state_hash: String,
     /// What drew the pictures; nothing where there are none.
@@ -360,6 +364,7 @@ mod tests {
             crossings: CrossingReport { worst_s: Some(0.5), ..CrossingReport::default() },
             contact: Some(ContactReport::default()),
             hidden_mm: Some(Penetration::default()),
+            poses: Vec::new(),
             state_hash: hash_text(10),
             files: vec!["out/front.png".into()],
         }

@@ -8,6 +8,7 @@ use crate::terminal::{Paint, Tone};
 use toile_assets::put_line;
 use toile_engine::frame::{DRESS_STEPS, SETTLE_STEPS};
 use toile_fitting::scene::contact::ContactReport;
+use toile_fitting::wearing::{PosePulls, Pull, ZonePull};
 
 /// The summary of a try-on.
 pub fn try_on(report: &TryOn, paint: Paint) -> String {
@@ -17,6 +18,7 @@ pub fn try_on(report: &TryOn, paint: Paint) -> String {
     for worn in std::iter::once(&report.recommendation).chain(&report.others) {
         recommendation(&mut text, worn, paint);
     }
+    poses(&mut text, &report.poses, paint);
     physics(&mut text, &report.physics, paint);
     contact(&mut text, report.contact.as_ref(), DRESS_STEPS + SETTLE_STEPS + report.physics.steps);
     crossings(&mut text, report);
@@ -25,6 +27,34 @@ pub fn try_on(report: &TryOn, paint: Paint) -> String {
         put_line!(text, "  {}", file.display());
     }
     text
+}
+
+/// A hem that moves by less (mm) is not spoken of.
+const TOLD_MM: f32 = 10.0;
+
+/// Where garments pull in each pose.
+fn poses(text: &mut String, poses: &[PosePulls], paint: Paint) {
+    for pose in poses {
+        heading(text, &format!("When {}", pose.pose), paint);
+        for garment in &pose.garments {
+            let pulls = garment.zones.iter().filter(|z| z.pull > Pull::Easy);
+            let zone = |z: &ZonePull| {
+                let how = if z.pull == Pull::Hard { "hard " } else { "" };
+                let [now, good] = [z.stretch, z.comfortable].map(|s| s * 100.0);
+                format!("{how}at {} ({now:.1} % stretch, {good:.0} % is comfortable)", z.zone.words())
+            };
+            let pulls: Vec<String> = pulls.map(zone).collect();
+            let says =
+                if pulls.is_empty() { "nowhere pulls".to_owned() } else { format!("pulls {}", pulls.join(", ")) };
+            let rides = match garment.rides_up_mm {
+                Some(up) if up >= TOLD_MM => format!("; its hem rides up by {up:.0} mm"),
+                Some(up) if up <= -TOLD_MM => format!("; its hem comes down by {:.0} mm", -up),
+                _ => String::new(),
+            };
+            let tone = if pulls.is_empty() { Tone::Good } else { Tone::Warn };
+            put_line!(text, "  {}", paint.tone(&format!("{}: {says}{rides}", garment.garment), tone));
+        }
+    }
 }
 
 /// The summary of a measuring.
@@ -249,6 +279,7 @@ mod tests {
             others: Vec::new(),
             meshes: Vec::new(),
             physics: PhysicsReport::default(),
+            poses: Vec::new(),
             state_hash: String::new(),
             files: vec!["out/front.png".into()],
         };

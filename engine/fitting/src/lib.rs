@@ -56,5 +56,6 @@ pub mod scene;
 
 pub mod live;
 pub mod plan;
+pub mod wearing;
 
 pub use error::FittingError;

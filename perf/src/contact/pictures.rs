@@ -7,13 +7,13 @@ use serde::Serialize;
 use toile_assets::limits::STEP_SECONDS;
 use toile_assets::skeleton::{Pose, Skeleton};
 use toile_fitting::heap::HeapProbe;
+use toile_fitting::wearing::poses::{arms_down, arms_raised, sitting};
 use toile_view::contact_sheet;
 use toile_view::drawn_frame::DrawnFrame;
 use toile_view::image::{Image, Size};
 use toile_view::scene::{Camera, Scene};
 use toile_view::trace::{TraceQuality, TracedScene};
 
-use super::poses::{arms_down, arms_raised, sitting};
 use super::row::ContactError;
 use super::skin::bring_into;
 use super::worn::{OUTFITS, Outfit, options};

@@ -1,13 +1,7 @@
 //! The poses in which cloth is held against the skin.
 
-use glam::{Quat, Vec3};
 use toile_assets::skeleton::{Joint, Pose, Skeleton};
-
-/// How far from the vertical arms are that hang down (degrees): beside the hips.
-const ARMS_DEGREES: f32 = 10.0;
-
-/// How far from hanging straight down they are when they are raised (degrees).
-const RAISED_DEGREES: f32 = 150.0;
+use toile_fitting::wearing::poses::{arms_down, bent, sitting, with_arms};
 
 /// A pose by its name.
 pub struct NamedPose {
@@ -25,45 +19,9 @@ pub const POSES: [NamedPose; 4] = [
     NamedPose { name: "sitting", of: sitting },
 ];
 
-/// Arms that are raised over the head.
-pub fn arms_raised(skeleton: &Skeleton) -> Pose {
-    with_arms(skeleton, RAISED_DEGREES)
-}
-
-/// Arms that hang beside the hips.
-pub fn arms_down(skeleton: &Skeleton) -> Pose {
-    with_arms(skeleton, ARMS_DEGREES)
-}
-
-/// Upper arms at an angle from hanging straight down (degrees), in the plane of the body.
-fn with_arms(skeleton: &Skeleton, degrees: f32) -> Pose {
-    let mut pose = Pose::rest(skeleton);
-    let (sin, cos) = degrees.to_radians().sin_cos();
-    for (shoulder, elbow) in [(Joint::LeftShoulder, Joint::LeftElbow), (Joint::RightShoulder, Joint::RightElbow)] {
-        let now = skeleton.offset(elbow).normalize_or_zero();
-        pose.local[shoulder.index()] = Quat::from_rotation_arc(now, Vec3::new(sin * now.x.signum(), -cos, 0.0));
-    }
-    pose
-}
-
-/// Hips bent by a right angle, thighs forward; arms hang.
-fn bent(skeleton: &Skeleton, hips: &[Joint]) -> Pose {
-    let mut pose = with_arms(skeleton, ARMS_DEGREES);
-    hips.iter().for_each(|hip| pose.local[hip.index()] = Quat::from_rotation_x(-90f32.to_radians()));
-    pose
-}
-
-/// Hips and knees at right angles.
-pub fn sitting(skeleton: &Skeleton) -> Pose {
-    let mut pose = bent(skeleton, &[Joint::LeftHip, Joint::RightHip]);
-    let knees = [Joint::LeftKnee, Joint::RightKnee];
-    knees.iter().for_each(|knee| pose.local[knee.index()] = Quat::from_rotation_x(90f32.to_radians()));
-    pose
-}
-
 #[cfg(test)]
 mod tests {
-    use glam::Affine3A;
+    use glam::{Affine3A, Vec3};
     use toile_assets::body::{Body, Measures, Sex};
     use toile_assets::skeleton::BONES;
     use toile_engine::body::palette;

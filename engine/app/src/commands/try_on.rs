@@ -31,6 +31,7 @@ use toile_fitting::dress::wish::{self, Wish};
 use toile_fitting::dress::{body, session};
 use toile_fitting::scene::StepTimes;
 use toile_fitting::scene::contact::ContactReport;
+use toile_fitting::wearing;
 use toile_sensors::frame::Joints;
 
 use crate::arguments::{Printing, TapeArgs, one_of, quality};
@@ -86,6 +87,9 @@ pub struct TryOnArgs {
     /// Write the dressed body at the session's end as dressed.glb too
     #[arg(long)]
     pub glb: bool,
+    /// Try the outfit with arms raised and sitting too, and say where it pulls
+    #[arg(long)]
+    pub poses: bool,
     /// Make no pictures: only the report and the physics
     #[arg(long = "no-pictures", action = ArgAction::SetFalse)]
     pub pictures: bool,
@@ -180,6 +184,7 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
 
     let rig = Rig::fit(&body);
     let settings = LADDER[usize::from(args.rung)].of(&Settings { quality: args.quality, ..Settings::default() });
+    let poses = if args.poses { wearing::in_poses(&body, &rig, &garments, &settings)? } else { Vec::new() };
     let (mut frame, mut reader) = Frame::new(body, &rig, garments, settings).map_err(AppError::internal)?;
     let title = title(&recommendations);
     let played = play((args, &words, &title, &judged), &mut out, &mut renderer, &mut frame, &mut reader, &track)?;
@@ -203,6 +208,7 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
             contact: contact(&frame),
             meshes,
             hidden_mm: played.hidden_mm.map(|max| report::Penetration { max }),
+            poses,
             state_hash: report::hash_text(frame.state_hash()),
             renderer: played.renderer,
             files,
