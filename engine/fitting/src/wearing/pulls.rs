@@ -155,7 +155,7 @@ fn look(
     settings: &Settings,
     pose: TakePose,
 ) -> Result<Vec<Seen>, FittingError> {
-    let made = Frame::new(body.clone(), rig, garments.to_vec(), settings.clone());
+    let made = Frame::new(body.clone(), rig, garments.to_vec(), *settings);
     let (mut frame, _reader) = made.map_err(FittingError::input)?;
     frame.dress(&poses::joints(&body.skeleton, &pose(&body.skeleton)));
     let now = frame.pose();
