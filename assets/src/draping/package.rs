@@ -122,7 +122,7 @@ pub fn is_pattern(name: &str) -> bool {
 /// # Errors
 /// One sentence: the file, what is wrong, and the cure.
 pub fn read_package(path: &Path, seams: Option<&Path>) -> Result<PatternPackage, PackageError> {
-    let text = file::read_text(path, &PACKAGE)?;
+    let text = pattern::read_text(path, &PACKAGE)?;
     let shown = path.display().to_string();
     let beside = path.with_extension("toml");
     let seams = seams.or_else(|| beside.is_file().then_some(beside.as_path()));

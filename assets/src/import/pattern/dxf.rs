@@ -1,9 +1,10 @@
 //! DXF-AAMA and ASTM D6673: an ASCII DXF file with a BLOCK for each piece, whose layers say what a line is for.
 //!
 //! Read are layer 1 (boundary), 2 (turn points), 4 (notches), 6 (fold), 7 (grain) and 14 (sew line). Where a sew line
-//! closes around the piece it is the outline, otherwise the boundary is, which then must carry no seam allowance. An edge
-//! goes from a turn point or notch to the next; without turn points, from corner to corner. Nothing says what is sewn to
-//! what: that stands in a seam file.
+//! closes around the piece it is the outline, otherwise the boundary is, which then must carry no seam allowance. AAMA
+//! has no layer for sew lines: programs draw them among the internal lines (8), where the line that goes around most of
+//! the piece is one. An edge goes from a turn point or notch to the next; without turn points, from corner to corner.
+//! Nothing says what is sewn to what: that stands in a seam file.
 //!
 //! Reads: the text of a file. Writes: its pieces, in metres. Budget: at load; points and pieces are bounded.
 //! Thread: the loading thread.
@@ -25,7 +26,19 @@ const TURN_POINTS: u32 = 2;
 const NOTCHES: u32 = 4;
 const FOLD: u32 = 6;
 const GRAIN: u32 = 7;
+const INTERNAL: u32 = 8;
 const SEW_LINE: u32 = 14;
+
+/// Share of a piece that a line among the internal ones goes around if it is the sew line: allowances of 10 mm leave
+/// half of a strip 40 mm wide, and no pocket or facing is as large.
+const SEWN_SHARE: f64 = 0.5;
+
+/// From where on a piece is moved to the origin (m): some programs place pieces kilometres away, on a sheet of their own.
+const FAR_M: f64 = 10.0;
+
+/// Largest extent of a piece that is believed to be in millimetres where the file names no unit (m): below it the file
+/// is in inches or centimetres.
+const LEAST_EXTENT_M: f64 = 0.1;
 
 /// A change of direction that is a corner where the file marks none (rad): 30 degrees.
 const CORNER: f64 = 0.52;
@@ -35,6 +48,12 @@ const BESIDE_M: f64 = 2e-3;
 
 /// How near to a point of the outline a mark is that point (m): programs round both.
 const SAME_POINT_M: f64 = 1e-3;
+
+/// Whether bytes begin as an ASCII DXF file does: with a comment or a section.
+pub fn looks_like(bytes: &[u8]) -> bool {
+    let mut lines = bytes.split(|b| *b == b'\n').map(<[u8]>::trim_ascii);
+    matches!((lines.next(), lines.next()), (Some(b"999"), Some(_)) | (Some(b"0"), Some(b"SECTION")))
+}
 
 /// Reads the pieces of a file.
 pub fn pieces(text: &str) -> Result<Vec<Piece>, Fault> {
@@ -53,10 +72,30 @@ pub fn pieces(text: &str) -> Result<Vec<Piece>, Fault> {
         let (place, what, limit) = ("the file".to_owned(), "points", "MAX_POINTS");
         return Err(PatternFlaw::TooMany { place, what, count: points, most: MAX_POINTS, limit }.into());
     }
+    let pieces: Vec<Piece> =
+        cloth.iter().zip(names(&cloth)).map(|(b, n)| piece(b, &n, file.unit)).collect::<Result<_, _>>()?;
+    let extent = pieces.iter().map(Piece::extent).fold(0.0, f64::max);
+    if !file.names_unit && extent < LEAST_EXTENT_M {
+        let mm = extent * 1e3;
+        let what = format!(
+            "it names no unit and its largest piece would be {mm:.0} mm; write the text \"Units: ENGLISH\" or scale it"
+        );
+        return Err(Fault::Content(what));
+    }
+    Ok(pieces)
+}
+
+/// Names of the pieces. A piece in several sizes is a block for each, under one title: then blocks' names tell them
+/// apart. What still has one name, as in programs that call every piece the same, is numbered in the file's order.
+fn names(cloth: &[&Block]) -> Vec<String> {
     let title = |b: &Block| name(b.title.as_ref().unwrap_or(&b.name));
-    // A piece in several sizes is a block for each, under one title.
     let alone = |b: &Block| cloth.iter().filter(|other| title(other) == title(b)).count() == 1;
-    cloth.iter().map(|b| piece(b, &if alone(b) { title(b) } else { name(&b.name) }, file.unit)).collect()
+    let given: Vec<String> = cloth.iter().map(|b| if alone(b) { title(b) } else { name(&b.name) }).collect();
+    let numbered = |(i, own): (usize, &String)| match given[..i].iter().filter(|n| *n == own).count() {
+        0 => own.clone(),
+        before => format!("{own}-{}", before + 1),
+    };
+    given.iter().enumerate().map(numbered).collect()
 }
 
 fn piece(block: &Block, name: &str, unit: f64) -> Result<Piece, Fault> {
@@ -67,9 +106,13 @@ fn piece(block: &Block, name: &str, unit: f64) -> Result<Piece, Fault> {
         ring.map(|(a, b)| a.perp_dot(*b)).sum::<f64>().abs()
     };
     let largest = |layer: u32| on(layer).filter(|l| l.is_closed()).max_by(|a, b| size(a).total_cmp(&size(b)));
-    let outline = largest(SEW_LINE).or_else(|| largest(BOUNDARY));
+    let boundary = largest(BOUNDARY);
+    let around = |l: &&Line| boundary.is_some_and(|b| (SEWN_SHARE..1.0).contains(&(size(l) / size(&b))));
+    let outline = largest(SEW_LINE).or_else(|| largest(INTERNAL).filter(around)).or(boundary);
     let outline = outline.ok_or_else(|| wrong("its boundary is no closed polyline; export closed outlines"))?;
-    let mut ring: Vec<DVec2> = outline.points.iter().map(|p| *p * unit).collect();
+    let origin = far_corner(outline, unit);
+    let metres = |p: &DVec2| *p * unit - origin;
+    let mut ring: Vec<DVec2> = outline.points.iter().map(metres).collect();
     if !ring.iter().all(|p| p.is_finite()) {
         return Err(wrong("a point of its boundary is not finite; export it again"));
     }
@@ -80,7 +123,7 @@ fn piece(block: &Block, name: &str, unit: f64) -> Result<Piece, Fault> {
     if ring.len() < 3 {
         return Err(wrong("its boundary has fewer than three points; draw its whole outline"));
     }
-    let marks = |layer: u32| block.points.iter().filter(move |(l, _)| *l == layer).map(|(_, p)| *p * unit);
+    let marks = |layer: u32| block.points.iter().filter(move |(l, _)| *l == layer).map(|(_, p)| metres(p));
     let mut ends: Vec<bool> = vec![false; ring.len()];
     marks(TURN_POINTS).for_each(|p| mark(&mut ring, &mut ends, p));
     if !ends.contains(&true) {
@@ -93,11 +136,17 @@ fn piece(block: &Block, name: &str, unit: f64) -> Result<Piece, Fault> {
     let mut piece = Piece::of_steps(name, &steps, grain)?;
     let on_fold = |l: &Line, c: &Curve| {
         let along = direction(l).unwrap_or_default();
-        let off = |p: DVec2| l.points.first().map_or(f64::MAX, |q| (p - *q * unit).perp_dot(along).abs());
+        let off = |p: DVec2| l.points.first().map_or(f64::MAX, |q| (p - metres(q)).perp_dot(along).abs());
         along != DVec2::ZERO && off(c.start()).max(off(c.end())) < BESIDE_M
     };
     piece.fold = on(FOLD).find_map(|l| piece.edges.iter().find(|(_, c)| on_fold(l, c)).map(|(number, _)| *number));
     Ok(piece)
+}
+
+/// What is taken off all points of a piece: nothing, unless it lies far away (m).
+fn far_corner(outline: &Line, unit: f64) -> DVec2 {
+    let corner = outline.points.iter().fold(DVec2::INFINITY, |low, p| low.min(*p)) * unit;
+    if corner.abs().max_element() > FAR_M { corner } else { DVec2::ZERO }
 }
 
 /// Makes the point of the outline beside a mark the end of an edge; marks elsewhere are passed over.
@@ -190,6 +239,16 @@ mod tests {
             .concat()
     }
 
+    /// The file with the numbers of some group codes changed.
+    fn with_coordinates(text: &str, codes: &[&str], change: impl Fn(f64) -> f64) -> String {
+        let lines: Vec<&str> = text.lines().collect();
+        let changed = |pair: &[&str]| match pair[1].parse::<f64>() {
+            Ok(x) if codes.contains(&pair[0].trim()) => format!("{}\n{}\n", pair[0], change(x)),
+            _ => format!("{}\n{}\n", pair[0], pair[1]),
+        };
+        lines.chunks(2).map(changed).collect()
+    }
+
     fn message(text: &str) -> String {
         pieces(text).unwrap_err().of("x.dxf").to_string()
     }
@@ -238,6 +297,56 @@ mod tests {
         let both = one.replace("  0\nENDSEC", &format!("{}  0\nENDSEC", block.replace("\nP1\n", "\nP2\n")));
         let names: Vec<String> = pieces(&both).unwrap().into_iter().map(|p| p.name).collect();
         assert_eq!(names, ["P1", "P2"]);
+    }
+
+    #[test]
+    fn pieces_of_one_name_are_numbered() {
+        let one = file();
+        let block = &one[one.find("  0\nBLOCK\n").unwrap()..one.find("  0\nENDSEC").unwrap()];
+        let both = one.replace("  0\nENDSEC", &format!("{block}{block}  0\nENDSEC"));
+        let names: Vec<String> = pieces(&both).unwrap().into_iter().map(|p| p.name).collect();
+        assert_eq!(names, ["P1", "P1-2", "P1-3"]);
+    }
+
+    #[test]
+    fn a_sew_line_may_stand_among_internal_lines_and_a_pocket_does_not() {
+        let sewn = polyline("8", &[["10", "10"], ["240", "10"], ["240", "390"], ["10", "330"]]);
+        let pocket = polyline("8", &[["50", "50"], ["150", "50"], ["150", "150"], ["50", "150"]]);
+        let with = |lines: &str| file().replace("  0\nENDBLK", &format!("{lines}  0\nENDBLK"));
+        let widest = |text: &str| pieces(text).unwrap()[0].edges.iter().fold(0.0, |x: f64, (_, c)| x.max(c.end().x));
+        assert_eq!(widest(&with(&pocket)), 0.25);
+        assert_eq!(widest(&with(&format!("{pocket}{sewn}"))), 0.24);
+    }
+
+    #[test]
+    fn a_piece_far_from_the_origin_is_the_piece_at_the_origin() {
+        let far = with_coordinates(&file(), &["20", "21"], |y| y + 1_250_000.0);
+        let (far, near) = (&pieces(&far).unwrap()[0], &pieces(&file()).unwrap()[0]);
+        assert_eq!((far.fold, far.edges.len()), (near.fold, near.edges.len()));
+        let apart = far.edges.iter().zip(&near.edges).map(|((_, a), (_, b))| a.end().distance(b.end()));
+        assert!(apart.fold(0.0, f64::max) < 1e-6);
+    }
+
+    #[test]
+    fn the_header_names_a_unit_and_without_one_small_pieces_are_doubted() {
+        let header = |number: &str| entity(&[(9, "$INSUNITS"), (70, number)]);
+        let unnamed = file().replace("Units: METRIC", "made today");
+        let with = |number: &str| unnamed.replacen("  2\nBLOCKS", &format!("{}  2\nBLOCKS", header(number)), 1);
+        let right = |text: &str| pieces(text).unwrap()[0].edges[0].1.end().x;
+        assert!((right(&with("1")) - 250.0 * 0.0254).abs() < 1e-9 && (right(&with("5")) - 2.5).abs() < 1e-9);
+        assert_eq!(right(&with("99")), 0.25);
+        let small = with_coordinates(&unnamed, &["10", "20"], |x| x / 25.4);
+        assert!(message(&small).contains("names no unit"));
+    }
+
+    #[test]
+    fn texts_of_an_old_code_page_are_read() {
+        let bytes: Vec<u8> =
+            file().replace("FRONT", "R?CKEN").bytes().map(|b| if b == b'?' { 0xdc } else { b }).collect();
+        assert!(looks_like(&bytes) && String::from_utf8(bytes.clone()).is_err());
+        let text = crate::import::pattern::decode(bytes).unwrap();
+        assert_eq!(pieces(&text).unwrap()[0].name, "RÜCKEN");
+        assert!(crate::import::pattern::decode(b"{\xff".to_vec()).is_none());
     }
 
     #[test]

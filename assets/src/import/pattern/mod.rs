@@ -16,7 +16,7 @@ use std::path::Path;
 
 pub use error::PatternError;
 
-use crate::file::{self, FileKind};
+use crate::file::{self, FileError, FileKind};
 use crate::pattern::Pattern;
 use crate::pattern::limits::MAX_PATTERN_BYTES;
 use error::Fault;
@@ -35,11 +35,30 @@ const SEAMS: FileKind = FileKind { name: "a seam file", max_bytes: MAX_PATTERN_B
 /// # Errors
 /// One sentence: the file, what is wrong where, and the cure.
 pub fn read(path: &Path, seams: Option<&Path>) -> Result<Pattern, PatternError> {
-    let text = file::read_text(path, &PATTERN_FILE)?;
+    let text = read_text(path, &PATTERN_FILE)?;
     let name = path.display().to_string();
     let Some(beside) = seams else { return parse(&name, &text, None) };
     let seams = file::read_text(beside, &SEAMS)?;
     parse(&name, &text, Some((&beside.display().to_string(), &seams)))
+}
+
+/// Text of a file that may be a pattern; as [`decode`].
+///
+/// # Errors
+/// Where it cannot be read, is too large or is no text.
+pub fn read_text(path: &Path, kind: &FileKind) -> Result<String, FileError> {
+    let not_text = || FileError::NotText { path: path.display().to_string(), kind: *kind };
+    decode(file::read(path, kind)?).ok_or_else(not_text)
+}
+
+/// Bytes as text: UTF-8, or DXF in the code page of its writer's country, as all DXF before 2007 is. That is read byte by
+/// byte, which changes letters of names and no number. `None` for all else.
+pub fn decode(bytes: Vec<u8>) -> Option<String> {
+    match String::from_utf8(bytes) {
+        Ok(text) => Some(text),
+        Err(e) if dxf::looks_like(e.as_bytes()) => Some(e.as_bytes().iter().map(|b| char::from(*b)).collect()),
+        Err(_) => None,
+    }
 }
 
 /// Reads a pattern from text; the names stand in error messages. What format it is, the text says itself.

@@ -32,6 +32,14 @@ impl Piece {
         let edges = steps.iter().cloned().enumerate().filter(|(_, c)| long(c)).collect();
         Ok(Self { name: name.to_owned(), edges, grain, fold: None })
     }
+
+    /// Longer side of the box around the ends of its edges (m).
+    pub fn extent(&self) -> f64 {
+        let ends = || self.edges.iter().map(|(_, curve)| curve.start());
+        let low = ends().fold(DVec2::INFINITY, DVec2::min);
+        let high = ends().fold(DVec2::NEG_INFINITY, DVec2::max);
+        (high - low).max_element().max(0.0)
+    }
 }
 
 /// Which half of an unfolded piece is meant.

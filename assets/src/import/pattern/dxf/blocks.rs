@@ -10,6 +10,10 @@ use super::super::error::Fault;
 const METRIC: f64 = 1e-3;
 const ENGLISH: f64 = 0.0254;
 
+/// Variable of the header that names the unit, and metres of those of its numbers that patterns are drawn in.
+const HEADER_UNIT: &str = "$INSUNITS";
+const HEADER_UNITS: [(i64, f64); 4] = [(1, ENGLISH), (4, METRIC), (5, 0.01), (6, 1.0)];
+
 /// What a text of the style begins with, in capital letters.
 const UNITS: &str = "UNITS:";
 const PIECE_NAME: &str = "PIECE NAME:";
@@ -50,6 +54,8 @@ pub struct Block {
 pub struct Blocks {
     /// Metres of its unit: of a millimetre where it does not say.
     pub unit: f64,
+    /// Whether it says so, by a text of the style or in its header.
+    pub names_unit: bool,
     /// Its blocks.
     pub blocks: Vec<Block>,
 }
@@ -77,7 +83,8 @@ impl Entity {
 
 /// Reads all blocks; texts may stand outside of them.
 pub fn read(text: &str) -> Result<Blocks, Fault> {
-    let mut reader = Reader { blocks: Vec::new(), open: None, line: None, unit: METRIC };
+    let mut reader = Reader { blocks: Vec::new(), open: None, line: None, unit: None };
+    let (mut header, mut variable) = (None, "");
     let mut entity = Entity::default();
     let mut lines = text.lines();
     let mut number = 0;
@@ -91,6 +98,12 @@ pub fn read(text: &str) -> Result<Blocks, Fault> {
             0 => {
                 reader.take(&mut entity);
                 entity = Entity { kind: value.to_uppercase(), ..Entity::default() };
+            }
+            9 => variable = value,
+            70 if variable == HEADER_UNIT => {
+                let number = value.parse().unwrap_or(0);
+                header = HEADER_UNITS.iter().find(|(n, _)| *n == number).map(|(_, unit)| *unit);
+                variable = "";
             }
             1 => entity.text = value.to_owned(),
             2 => entity.name = value.to_owned(),
@@ -110,7 +123,8 @@ pub fn read(text: &str) -> Result<Blocks, Fault> {
     if reader.open.is_some() || entity.kind != "EOF" {
         return Err(Fault::Content("it ends before its EOF; the file is cut short, export it again".into()));
     }
-    Ok(Blocks { unit: reader.unit, blocks: reader.blocks })
+    let unit = reader.unit.or(header);
+    Ok(Blocks { unit: unit.unwrap_or(METRIC), names_unit: unit.is_some(), blocks: reader.blocks })
 }
 
 /// A value as messages show it: its beginning.
@@ -136,7 +150,7 @@ struct Reader {
     open: Option<Block>,
     /// The polyline whose vertices follow.
     line: Option<Line>,
-    unit: f64,
+    unit: Option<f64>,
 }
 
 impl Reader {
@@ -185,7 +199,7 @@ impl Reader {
             begins.then(|| text[word.len()..].trim())
         };
         if let Some(unit) = after(UNITS) {
-            self.unit = if unit.eq_ignore_ascii_case("ENGLISH") { ENGLISH } else { METRIC };
+            self.unit = Some(if unit.eq_ignore_ascii_case("ENGLISH") { ENGLISH } else { METRIC });
         }
         if let (Some(name), Some(block)) = (after(PIECE_NAME), &mut self.open) {
             block.title = Some(name.to_owned());
