@@ -119,7 +119,7 @@ impl BodiceStyle {
     }
 
     /// The lower and the upper end of the middle.
-    fn middle(&self, block: &DraftBlock, side: usize) -> [DVec2; 2] {
+    pub fn middle(&self, block: &DraftBlock, side: usize) -> [DVec2; 2] {
         let dip = if side == 0 { DIP_M[usize::from(block.sex == Sex::Male)] } else { 0.0 };
         [at(0.0, -self.length(block) - dip), at(0.0, -[self.front_neck, self.back_neck][side])]
     }

@@ -17,6 +17,7 @@ mod sleeve;
 mod styles;
 mod text;
 mod tops;
+mod trims;
 mod trousers;
 mod waistband;
 

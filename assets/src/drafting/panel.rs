@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use crate::pattern::Curve;
 use crate::pattern::curve::ArcLength;
+use crate::pattern::{Curve, Trim, TrimKind};
 
 /// Where a panel is laid: the side of the body that it is seen from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,6 +36,8 @@ pub struct DraftPanel {
     pub side: DraftSide,
     /// The outline.
     pub edges: Vec<DraftEdge>,
+    /// What is put on it.
+    pub trims: Vec<Trim>,
 }
 
 /// An outline on its way.
@@ -85,27 +87,34 @@ impl Outline {
 
     /// The panel of an outline that has come back to its beginning.
     pub fn panel(self, name: &'static str, side: DraftSide) -> DraftPanel {
-        DraftPanel { name, side, edges: self.edges }
+        DraftPanel { name, side, edges: self.edges, trims: Vec::new() }
     }
 
     /// The panel cut on the fold: an outline that goes from the lower end of the line x = 0 to its upper end, and its mirror
     /// image. Labels of the one begin with `right` where those of the other begin with `left`.
     pub fn on_the_fold(self, name: &'static str, side: DraftSide) -> DraftPanel {
         let beyond = mirrored(&self.edges);
-        DraftPanel { name, side, edges: self.edges.into_iter().chain(beyond).collect() }
+        DraftPanel { name, side, edges: self.edges.into_iter().chain(beyond).collect(), trims: Vec::new() }
     }
 }
 
 impl DraftPanel {
     /// The same for the other side of the body; labels that begin with `left` begin with `right`.
     pub fn mirrored(&self, name: &'static str, side: DraftSide) -> Self {
-        Self { name, side, edges: mirrored(&self.edges) }
+        Self { name, side, edges: mirrored(&self.edges), trims: self.trims.iter().map(across).collect() }
     }
 
     /// Length of an edge (m), 0 where there is none of this label.
     pub fn length(&self, label: &str) -> f64 {
         self.edges.iter().find(|e| e.label == label).map_or(0.0, |e| ArcLength::of(&e.curve).whole())
     }
+}
+
+/// A trim seen in a mirror.
+pub fn across(trim: &Trim) -> Trim {
+    let [a, b] = trim.ends.map(|p| DVec2::new(-p.x, p.y));
+    // What lies to the left of an edge lies to its right in a mirror.
+    Trim { ends: if trim.kind == TrimKind::Edge { [b, a] } else { [a, b] }, ..*trim }
 }
 
 /// Edges seen in a mirror, in the order in which their outline runs counter-clockwise again.

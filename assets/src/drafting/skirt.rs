@@ -6,6 +6,7 @@ use super::block::{BAND_M, DraftBlock};
 use super::dart::WaistQuarter;
 use super::garment::DraftGarment;
 use super::panel::{DraftPanel, DraftSide, Outline, at};
+use super::trims;
 use super::waistband::{self, WAIST_EASE_M};
 
 /// How a straight skirt is cut.
@@ -34,7 +35,7 @@ pub fn straight(block: &DraftBlock, style: &SkirtStyle) -> DraftGarment {
             garment.sew((panel, &format!("{side} dart outer")), (panel, &format!("{side} dart inner")));
         }
     }
-    finished(garment, block, Some(block.hip + style.hip_ease))
+    finished(garment, block, Some(block.hip + style.hip_ease), 0.0)
 }
 
 fn panel(block: &DraftBlock, style: &SkirtStyle, side: usize) -> DraftPanel {
@@ -49,9 +50,10 @@ fn panel(block: &DraftBlock, style: &SkirtStyle, side: usize) -> DraftPanel {
     quarter.draw(outline, half).on_the_fold(name, at_side)
 }
 
-/// The band, and what is judged.
-fn finished(mut garment: DraftGarment, block: &DraftBlock, hip: Option<f64>) -> DraftGarment {
+/// The band, its zip below `high` (m), and what is judged.
+fn finished(mut garment: DraftGarment, block: &DraftBlock, hip: Option<f64>, high: f64) -> DraftGarment {
     waistband::add(&mut garment, block.waist + WAIST_EASE_M, ["front"; 2], ["back"; 2]);
+    trims::skirt_zip(&mut garment, high);
     garment.girths = [None, Some(block.waist + WAIST_EASE_M), hip];
     garment
 }
@@ -81,5 +83,5 @@ pub fn circle(block: &DraftBlock) -> DraftGarment {
     let mut garment =
         DraftGarment::of([half("front", "left", DraftSide::Front), half("back", "right", DraftSide::Back)]);
     garment.sew_alike("front", "back", &["left side", "right side"]);
-    finished(garment, block, None)
+    finished(garment, block, None, -inner)
 }

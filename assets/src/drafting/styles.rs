@@ -69,7 +69,7 @@ pub const STYLES: [DraftStyle; 22] = [
     style("mens-shorts", MEN_TROUSERS, GarmentKind::Trousers, (LINEN, 16.0, 2), |b| trousers(b, &SHORTS)),
     style("tee", WOMEN, GarmentKind::Tshirt, (JERSEY, 16.0, 3), |b| tops::pullover(b, &TEE, &SHORT_SLEEVE.of(b))),
     style("mens-tee", MEN, GarmentKind::Tshirt, (JERSEY, 16.0, 3), |b| tops::pullover(b, &TEE, &SHORT_SLEEVE.of(b))),
-    style("blouse", WOMEN, GarmentKind::Tshirt, (LAWN, 16.0, 3), |b| tops::pullover(b, &BLOUSE, &PUFF_SLEEVE.of(b))),
+    style("blouse", WOMEN, GarmentKind::Tshirt, (LAWN, 16.0, 3), |b| tops::blouse(b, &BLOUSE, &PUFF_SLEEVE.of(b))),
     style("shirt", WOMEN, GarmentKind::Tshirt, (SHIRTING, 18.0, 3), |b| tops::shirt(b, &SHIRT, &SHIRT_SLEEVE.of(b))),
     style("mens-shirt", MEN, GarmentKind::Tshirt, (SHIRTING, 18.0, 3), |b| tops::shirt(b, &SHIRT, &SHIRT_SLEEVE.of(b))),
     style("jumper", WOMEN, GarmentKind::Tshirt, (JERSEY, 17.0, 3), |b| {
@@ -79,22 +79,22 @@ pub const STYLES: [DraftStyle; 22] = [
         tops::pullover(b, &JUMPER, &JUMPER_SLEEVE.of(b))
     }),
     style("shift-dress", WOMEN, GarmentKind::Dress, (LINEN, 18.0, 3), |b| {
-        tops::sleeveless(b, &to_the_knee(SHIFT, b, 0.97))
+        tops::zipped(b, &to_the_knee(SHIFT, b, 0.97))
     }),
     style("strap-dress", WOMEN, GarmentKind::Dress, (FLOWERS, 17.0, 3), |b| {
-        tops::sleeveless(b, &to_the_knee(STRAPS, b, 0.88))
+        tops::buttoned(b, &to_the_knee(STRAPS, b, 0.88))
     }),
     style("blazer", WOMEN, GarmentKind::Jacket, (HOUNDSTOOTH, 18.0, 4), |b| {
-        tops::jacket(b, &BLAZER, &BLAZER_SLEEVE.of(b))
+        tops::jacket(b, &BLAZER, &BLAZER_SLEEVE.of(b), 2)
     }),
     style("mens-blazer", MEN, GarmentKind::Jacket, (WINDOWPANE, 18.0, 4), |b| {
-        tops::jacket(b, &BLAZER, &BLAZER_SLEEVE.of(b))
+        tops::jacket(b, &BLAZER, &BLAZER_SLEEVE.of(b), 2)
     }),
     style("coat", WOMEN, GarmentKind::Jacket, (HERRINGBONE, 20.0, 5), |b| {
-        tops::jacket(b, &to_the_knee(COAT, b, 0.95), &COAT_SLEEVE.of(b))
+        tops::jacket(b, &to_the_knee(COAT, b, 0.95), &COAT_SLEEVE.of(b), 3)
     }),
     style("mens-coat", MEN, GarmentKind::Jacket, (WOOL, 21.0, 5), |b| {
-        tops::jacket(b, &to_the_knee(COAT, b, 0.95), &COAT_SLEEVE.of(b))
+        tops::jacket(b, &to_the_knee(COAT, b, 0.95), &COAT_SLEEVE.of(b), 3)
     }),
     style("poncho", WOMEN, GarmentKind::Jacket, (WINDOWPANE, 20.0, 5), poncho::poncho),
 ];

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use super::garment::{DraftGarment, DraftSeamSide};
 use super::panel::{DraftEdge, DraftPanel, DraftSide};
-use crate::pattern::Curve;
+use crate::pattern::{Curve, Trim};
 
 /// Units of the text in a metre: centimetres.
 const UNITS: f64 = 100.0;
@@ -47,6 +47,7 @@ fn drawn(panel: &DraftPanel) -> Value {
     };
     json!({
         "label": label, "translation": translation, "rotation": [0.0, turn, 0.0], "vertices": vertices, "edges": edges,
+        "trims": panel.trims.iter().map(trim).collect::<Vec<Value>>(),
     })
 }
 
@@ -58,6 +59,12 @@ fn edge(edge: &DraftEdge, ends: [usize; 2]) -> Value {
         }
         _ => json!({ "endpoints": ends, "label": edge.label }),
     }
+}
+
+fn trim(trim: &Trim) -> Value {
+    let [from, to] = trim.ends.map(|p| point(p * UNITS));
+    let width = (2e6 * trim.half * UNITS).round() / 1e6;
+    json!({ "kind": trim.kind.name(), "from": from, "to": to, "width": width, "colour": trim.colour })
 }
 
 /// A control point along an edge, and across it to the left, in lengths of the edge.

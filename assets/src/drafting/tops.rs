@@ -6,6 +6,7 @@ use super::collar;
 use super::garment::DraftGarment;
 use super::panel::DraftSide;
 use super::sleeve::{self, SleeveStyle};
+use super::trims;
 
 /// Sides and shoulders of a front and a back in one panel each.
 fn closed(block: &DraftBlock, style: &BodiceStyle) -> DraftGarment {
@@ -48,9 +49,25 @@ pub fn pullover(block: &DraftBlock, style: &BodiceStyle, sleeve: &SleeveStyle) -
     garment
 }
 
-/// A garment without sleeves.
-pub fn sleeveless(block: &DraftBlock, style: &BodiceStyle) -> DraftGarment {
-    closed(block, style)
+/// The same with buttons down to the waist.
+pub fn blouse(block: &DraftBlock, style: &BodiceStyle, sleeve: &SleeveStyle) -> DraftGarment {
+    let mut garment = pullover(block, style, sleeve);
+    trims::blouse(&mut garment, block, style);
+    garment
+}
+
+/// A garment without sleeves, with a zip in its back.
+pub fn zipped(block: &DraftBlock, style: &BodiceStyle) -> DraftGarment {
+    let mut garment = closed(block, style);
+    trims::dress_zip(&mut garment, block, style);
+    garment
+}
+
+/// A garment without sleeves, with buttons down to the waist.
+pub fn buttoned(block: &DraftBlock, style: &BodiceStyle) -> DraftGarment {
+    let mut garment = closed(block, style);
+    trims::blouse(&mut garment, block, style);
+    garment
 }
 
 /// A shirt: closed down the front by a seam, with a stand around the neck.
@@ -59,16 +76,19 @@ pub fn shirt(block: &DraftBlock, style: &BodiceStyle, sleeve: &SleeveStyle) -> D
     sleeve::set_in(&mut garment, sleeve, FRONTS, "back");
     garment.sew((FRONTS[0], "middle"), (FRONTS[1], "middle"));
     collar::stand(&mut garment, FRONTS, "back");
+    trims::shirt(&mut garment, block, style);
     garment
 }
 
 /// How far below the waist the lowest button of a jacket is (m).
 const BUTTON_M: f64 = 0.03;
 
-/// A jacket or coat, its front in two panels, closed down to the lowest button by a seam in place of buttons.
-pub fn jacket(block: &DraftBlock, style: &BodiceStyle, sleeve: &SleeveStyle) -> DraftGarment {
-    let mut garment = in_halves(block, style, Some(block.to_waist + BUTTON_M));
+/// A jacket or coat, its front in two panels, closed down to the lowest of so many buttons: a seam holds it there.
+pub fn jacket(block: &DraftBlock, style: &BodiceStyle, sleeve: &SleeveStyle, buttons: usize) -> DraftGarment {
+    let open = block.to_waist + BUTTON_M;
+    let mut garment = in_halves(block, style, Some(open));
     sleeve::set_in(&mut garment, sleeve, FRONTS, "back");
     garment.sew((FRONTS[0], "middle"), (FRONTS[1], "middle"));
+    trims::jacket(&mut garment, block, style, open, buttons);
     garment
 }

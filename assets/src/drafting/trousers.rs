@@ -6,6 +6,7 @@ use super::block::{BAND_M, DraftBlock};
 use super::dart::WaistQuarter;
 use super::garment::DraftGarment;
 use super::panel::{DraftPanel, DraftSide, Outline, at};
+use super::trims;
 use super::waistband::{self, WAIST_EASE_M};
 
 /// How trousers are cut.
@@ -66,6 +67,7 @@ pub fn trousers(block: &DraftBlock, style: &TrouserStyle) -> DraftGarment {
     let girth = block.waist + WAIST_EASE_M;
     waistband::add(&mut garment, girth, ["left front", "right front"], ["left back", "right back"]);
     garment.girths = [None, Some(girth), Some(block.hip + style.hip_ease)];
+    trims::trousers(&mut garment, 0.25 * (block.hip + style.hip_ease) - BACK_M);
     garment
 }
 

@@ -49,6 +49,7 @@ pub fn shape(sewn: &SewnMesh, at: Vec<Vec3>) -> Shape {
         uvs: sewn.flat.clone(),
         flat: sewn.flat.clone(),
         panels: sewn.face_panels.clone(),
+        trims: sewn.trims.clone(),
         ..Shape::default()
     }
 }

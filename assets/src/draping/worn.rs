@@ -103,6 +103,11 @@ impl DrapedPattern {
                 *flat = flat.map(|p| -p);
             }
         }
+        for trim in &mut shape.trims {
+            if falls[trim.panel as usize] > 0.0 {
+                *trim = trim.upside_down();
+            }
+        }
     }
 }
 
@@ -120,5 +125,6 @@ fn turn_out(shape: &mut Shape) {
         *flat = flat.map(|p| glam::Vec2::new(-p.x, p.y));
     }
     shape.split.iter_mut().zip(&shape.faces).for_each(|(s, f)| *s = f[3] != crate::garment::shape::NO_VERTEX && !*s);
+    shape.trims.iter_mut().for_each(|trim| *trim = trim.from_behind());
     shape.uvs.clone_from(&shape.flat);
 }

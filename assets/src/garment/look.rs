@@ -6,6 +6,7 @@ use std::sync::Arc;
 use glam::Vec2;
 
 use super::shape::{Painted, Shape};
+use crate::pattern::{ClothTrim, MAX_TRIMS};
 use crate::texture::{Atlas, Texture};
 
 /// Farther from a hem or a seam nothing of either is seen (m).
@@ -20,6 +21,10 @@ pub struct Look {
     /// How far the corners of each triangle are from the nearest hem (x) and the nearest seam (y), [`EDGE_REACH_M`] at most
     /// (m) `[triangles]`; empty where `cloth` is.
     pub edges: Box<[[Vec2; 3]]>,
+    /// What is put on the cloth: buttons, edges, strips, at most [`MAX_TRIMS`].
+    pub trims: Box<[ClothTrim]>,
+    /// Which of them each triangle may show, a bit for each `[triangles]`; empty where there are none.
+    pub near: Box<[u32]>,
     /// The picture that a mesh brings.
     pub picture: Option<MeshPicture>,
 }
@@ -39,17 +44,21 @@ impl Look {
         let (cloth, edges) = if shape.flat.len() == shape.faces.len() && !shape.panels.is_empty() {
             let cloth = shape.corners(&shape.flat);
             let edges = edges(shape, &cloth);
-            (cloth.into(), edges.into())
+            (cloth, edges)
         } else {
             Default::default()
         };
-        Self { cloth, edges, picture: picture(shape) }
+        let trims: Box<[ClothTrim]> =
+            if cloth.is_empty() { Box::default() } else { shape.trims.iter().copied().take(MAX_TRIMS).collect() };
+        let near = if trims.is_empty() { Box::default() } else { near(shape, &cloth, &trims) };
+        Self { cloth: cloth.into(), edges: edges.into(), trims, near, picture: picture(shape) }
     }
 
     /// Bytes that it takes, without the picture, which garments share.
     pub fn bytes(&self) -> usize {
         let corners = self.picture.as_ref().map_or(0, |p| size_of_val(&*p.corners));
-        size_of_val(&*self.cloth) + size_of_val(&*self.edges) + corners
+        let trims = size_of_val(&*self.trims) + size_of_val(&*self.near);
+        size_of_val(&*self.cloth) + size_of_val(&*self.edges) + trims + corners
     }
 }
 
@@ -76,11 +85,34 @@ struct PanelEdges {
     seams: Vec<[Vec2; 2]>,
 }
 
+/// Panel of each triangle.
+fn panels(shape: &Shape) -> Vec<u32> {
+    let numbers: Vec<[u32; 4]> = shape.panels.iter().map(|p| [*p; 4]).collect();
+    shape.corners(&numbers).into_iter().map(|p| p[0]).collect()
+}
+
+/// How far beyond its own width a trim casts a shadow (m).
+pub const TRIM_SHADOW_M: f32 = 0.006;
+
+/// Which trims each triangle may show.
+fn near(shape: &Shape, cloth: &[[Vec2; 3]], trims: &[ClothTrim]) -> Box<[u32]> {
+    let touches = |corners: &[Vec2; 3], trim: &ClothTrim| {
+        let reach = trim.half + TRIM_SHADOW_M;
+        let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+        let radius = corners.iter().fold(0.0, |r: f32, p| r.max(p.distance(middle)));
+        off_line(middle, trim.ends) < radius + reach
+    };
+    let word = |(corners, panel): (&[Vec2; 3], u32)| {
+        let on = trims.iter().enumerate().filter(|(_, trim)| trim.panel == panel && touches(corners, trim));
+        on.fold(0, |word, (i, _)| word | 1 << i)
+    };
+    cloth.iter().zip(panels(shape)).map(word).collect()
+}
+
 /// Distance of every corner from hems and seams of its panel.
 fn edges(shape: &Shape, cloth: &[[Vec2; 3]]) -> Vec<[Vec2; 3]> {
     let triangles = shape.triangles();
-    let numbers: Vec<[u32; 4]> = shape.panels.iter().map(|p| [*p; 4]).collect();
-    let panels: Vec<u32> = shape.corners(&numbers).into_iter().map(|p| p[0]).collect();
+    let panels = panels(shape);
     // Every side of a triangle: the panels on both sides of it, and where it lies in each.
     let mut sides: HashMap<[u32; 2], Vec<(u32, [Vec2; 2])>> = HashMap::new();
     for ((t, flat), panel) in triangles.iter().zip(cloth).zip(&panels) {
@@ -166,6 +198,22 @@ mod tests {
         }
         // All corners of these squares lie on the outline.
         assert!(look.edges.iter().flatten().all(|far| far.x == EDGE_REACH_M));
+    }
+
+    #[test]
+    fn triangles_know_the_trims_of_their_own_panel_near_them() {
+        let mut shape = sewn();
+        let button = |panel, x| ClothTrim {
+            panel,
+            kind: crate::pattern::TrimKind::Button,
+            ends: [Vec2::new(x, 0.02); 2],
+            half: 0.005,
+            colour: [1.0; 3],
+        };
+        shape.trims = vec![button(0, 0.02), button(1, 0.02), button(1, 0.5)];
+        assert_eq!(*Look::of(&shape).near, [1, 1, 2, 2]);
+        shape.flat.clear();
+        assert_eq!(Look::of(&shape).trims.len(), 0, "without flat panels nothing says where they are");
     }
 
     #[test]

@@ -6,6 +6,7 @@ use glam::{Vec2, Vec3};
 
 use super::Overrides;
 use crate::mesh::{Influences, SkinWeights};
+use crate::pattern::ClothTrim;
 use crate::texture::Texture;
 
 /// In the fourth place of a [`Face`]: the face is a triangle.
@@ -74,6 +75,8 @@ pub struct Shape {
     pub flat: Vec<[Vec2; 4]>,
     /// The panel that each face is cut from `[faces]`, or empty: faces of different panels meet at seams.
     pub panels: Vec<u32>,
+    /// What is put on the panels' cloth, where `flat` has it: at most [`crate::pattern::MAX_TRIMS`].
+    pub trims: Vec<ClothTrim>,
     /// The pictures that the faces of a mesh show, at `uvs`.
     pub painted: Option<Painted>,
     /// Solvers that its garment file has chosen.

@@ -56,6 +56,12 @@ fn panel(a: &Panel, b: &Panel, t: f64) -> Result<Panel, GradingError> {
             translation: a.translation.lerp(b.translation, t),
             rotation: a.rotation.slerp(b.rotation, t),
         }),
+        trims: a
+            .trims
+            .iter()
+            .enumerate()
+            .map(|(i, own)| b.trims.get(i).map_or(*own, |other| own.between(other, t)))
+            .collect(),
         ..a.clone()
     })
 }
@@ -104,6 +110,7 @@ mod tests {
             grain: DVec2::Y,
             behind: false,
             placement: None,
+            trims: Vec::new(),
         };
         let side = |panel| SeamSide { panel, first: 0, count: 1, reversed: panel == 1 };
         let seam = Seam { name: "rim".into(), sides: [side(0), side(1)] };

@@ -3,6 +3,7 @@
 use glam::{DQuat, DVec2, DVec3};
 
 use super::curve::{ArcLength, Curve};
+use super::trim::Trim;
 
 /// One edge of a panel's outline.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,6 +41,8 @@ pub struct Panel {
     pub behind: bool,
     /// Where the source places it, if it does.
     pub placement: Option<Placement>,
+    /// What is put on it.
+    pub trims: Vec<Trim>,
 }
 
 impl Panel {

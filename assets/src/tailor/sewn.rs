@@ -10,7 +10,7 @@ use super::panel_mesh::{MeshBudget, PanelMesh, mesh};
 use super::sampling::sample;
 use crate::garment::check::corners;
 use crate::garment::shape::{Face, NO_VERTEX};
-use crate::pattern::{Pattern, Seam};
+use crate::pattern::{ClothTrim, Pattern, Seam};
 
 /// How often panels are meshed again because their seams would fold a face.
 const MAX_REPAIRS: usize = 4;
@@ -35,6 +35,8 @@ pub struct SewnMesh {
     pub flat: Vec<[Vec2; 4]>,
     /// True where a quad is split along b-d `[faces]`.
     pub split: Vec<bool>,
+    /// What is put on the panels, on the cloth as `flat` has it.
+    pub trims: Vec<ClothTrim>,
     /// The vertices along each seam, from its beginning to its end `[seams]`.
     pub seams: Vec<Vec<u32>>,
 }
@@ -125,10 +127,13 @@ fn join(pattern: &Pattern, panels: &[PanelMesh]) -> SewnMesh {
         face_panels: Vec::new(),
         flat: Vec::new(),
         split: Vec::new(),
+        trims: Vec::new(),
         seams,
     };
     for (p, panel) in panels.iter().enumerate() {
-        add_faces(&mut sewn, panel, p, pattern.shows_inside(p));
+        let inside = pattern.shows_inside(p);
+        add_faces(&mut sewn, panel, p, inside);
+        sewn.trims.extend(pattern.panels()[p].trims.iter().map(|trim| trim.on_cloth(p as u32, panel.axes, inside)));
     }
     sewn
 }

@@ -10,7 +10,7 @@ use crate::pattern::{Curve, Panel, PanelEdge, Pattern, Seam, SeamSide};
 fn panel(name: &str, curves: Vec<Curve>) -> Panel {
     let edge = |(number, curve)| PanelEdge { curve, number, label: None };
     let edges = curves.into_iter().enumerate().map(edge).collect();
-    Panel { name: name.into(), label: None, edges, grain: DVec2::Y, behind: false, placement: None }
+    Panel { name: name.into(), label: None, edges, grain: DVec2::Y, behind: false, placement: None, trims: Vec::new() }
 }
 
 fn polygon(name: &str, points: &[[f64; 2]]) -> Panel {

@@ -6,6 +6,7 @@ use toile_assets::garment::{Garment, Look};
 use toile_assets::texture::Texture;
 
 use crate::image::linear;
+use crate::trim_look::{DrawnTrim, TrimmedPoint};
 
 /// Half the width of the groove at a seam (m).
 pub(crate) const SEAM_HALF_M: f32 = 0.001;
@@ -121,8 +122,21 @@ pub struct GarmentLook {
     pub cloth: Vec<[Vec2; 3]>,
     /// Distance of each corner from the nearest hem and seam (m) `[triangles]`, or empty.
     pub edges: Vec<[Vec2; 3]>,
+    /// What is put on it.
+    pub trims: Vec<DrawnTrim>,
+    /// Which of them each triangle may show, a bit for each `[triangles]`, or empty.
+    pub near: Vec<u32>,
     /// Share of light that the cloth holds back (0..1).
     pub opacity: f32,
+}
+
+/// What is said of triangles, for those of them that are drawn.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct DrawnLook {
+    corners: Vec<[Vec2; 3]>,
+    cloth: Vec<[Vec2; 3]>,
+    edges: Vec<[Vec2; 3]>,
+    near: Vec<u32>,
 }
 
 impl GarmentLook {
@@ -142,20 +156,39 @@ impl GarmentLook {
             }
             _ => (None, Vec::new()),
         };
-        Self { tile, corners, cloth: look.cloth.to_vec(), edges, opacity: fabric.opacity }
+        let trims = look.trims.iter().map(DrawnTrim::of).collect();
+        let (cloth, near) = (look.cloth.to_vec(), look.near.to_vec());
+        Self { tile, corners, cloth, edges, trims, near, opacity: fabric.opacity }
     }
 
     /// As rays meet it, with all of its triangles.
     pub fn shown(&self) -> ClothLook<'_> {
-        ClothLook { tile: self.tile.as_ref(), corners: &self.corners, edges: &self.edges, opacity: self.opacity }
+        let Self { tile, corners, cloth, edges, trims, near, opacity } = self;
+        ClothLook { tile: tile.as_ref(), corners, cloth, edges, trims, near, opacity: *opacity }
     }
 
-    /// The same for some of the triangles alone.
-    pub fn of_triangles(&self, kept: &[u32]) -> [Vec<[Vec2; 3]>; 2] {
-        let pick = |all: &Vec<[Vec2; 3]>| {
+    /// What is said of some of the triangles.
+    pub fn of_triangles(&self, kept: &[u32]) -> DrawnLook {
+        fn pick<T: Copy>(all: &[T], kept: &[u32]) -> Vec<T> {
             if all.is_empty() { Vec::new() } else { kept.iter().map(|t| all[*t as usize]).collect() }
-        };
-        [pick(&self.corners), pick(&self.edges)]
+        }
+        let of = |all: &[[Vec2; 3]]| pick(all, kept);
+        let (corners, edges) = (of(&self.corners), of(&self.edges));
+        // Trims alone ask where a point lies on the cloth.
+        let cloth = if self.trims.is_empty() { Vec::new() } else { of(&self.cloth) };
+        DrawnLook { corners, cloth, edges, near: pick(&self.near, kept) }
+    }
+
+    /// What is said of all triangles.
+    pub fn all(&self) -> DrawnLook {
+        let Self { corners, cloth, edges, near, .. } = self.clone();
+        DrawnLook { corners, cloth, edges, near }
+    }
+
+    /// As rays meet it, with the triangles that are drawn.
+    pub fn shown_with<'a>(&'a self, drawn: &'a DrawnLook) -> ClothLook<'a> {
+        let DrawnLook { corners, cloth, edges, near } = drawn;
+        ClothLook { corners, cloth, edges, near, ..self.shown() }
     }
 }
 
@@ -166,8 +199,14 @@ pub struct ClothLook<'a> {
     pub tile: Option<&'a TileLevels>,
     /// Texture points of the corners of each triangle `[triangles]`, or empty.
     pub corners: &'a [[Vec2; 3]],
+    /// Where they lie on the cloth (m) `[triangles]`, or empty.
+    pub cloth: &'a [[Vec2; 3]],
     /// Distance of each corner from the nearest hem and seam (m) `[triangles]`, or empty.
     pub edges: &'a [[Vec2; 3]],
+    /// What is put on it.
+    pub trims: &'a [DrawnTrim],
+    /// Which of them each triangle may show, a bit for each `[triangles]`, or empty.
+    pub near: &'a [u32],
     /// Share of light that the cloth holds back (0..1).
     pub opacity: f32,
 }
@@ -183,10 +222,14 @@ impl ClothLook<'_> {
             let texel = tile.sample(blend(corners), pixel * area.sqrt() / size.max(1e-9));
             colour = base * (1.0 - texel.w) + texel.truncate();
         }
-        match self.edges.get(triangle) {
-            Some(edges) => colour * sewn(blend(edges), pixel),
-            None => colour,
+        let near = self.near.get(triangle).copied().unwrap_or(0);
+        let trims = || self.trims.iter().enumerate().filter(move |(i, _)| near >> i & 1 == 1).map(|(_, trim)| *trim);
+        let point = self.cloth.get(triangle).filter(|_| near != 0).map(|c| TrimmedPoint::new(blend(c), pixel));
+        if let Some(edges) = self.edges.get(triangle) {
+            let covered = point.map_or(0.0, |p| p.covered(trims()));
+            colour *= covered + (1.0 - covered) * sewn(blend(edges), pixel);
         }
+        point.map_or(colour, |p| trims().fold(colour, |colour, trim| p.with(&trim, colour)))
     }
 }
 

@@ -1,6 +1,6 @@
 //! A frame as it is drawn: body and garments, each beneath what is worn over it.
 
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 use toile_assets::body::Body;
 use toile_assets::garment::{Garment, Tuck};
 use toile_assets::mesh::vertex_normals;
@@ -8,7 +8,7 @@ use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::skin::Posed;
 
 use crate::base_layer::base_layer;
-use crate::cloth_look::{ClothLook, GarmentLook};
+use crate::cloth_look::{DrawnLook, GarmentLook};
 use crate::hidden_skin::{CoveringCloth, DrawnSkin};
 use crate::image::{Image, Size};
 use crate::scene::{Bounds, Camera, Colours, MANNEQUIN, Material, Scene, Surface};
@@ -34,7 +34,7 @@ pub struct DrawnFrame {
     drawn: Vec<[u32; 3]>,
     /// The base layer painted on it, and what of it is on the triangles that are drawn.
     base: GarmentLook,
-    drawn_base: Vec<[Vec2; 3]>,
+    drawn_base: DrawnLook,
     /// Body vertices under a garment.
     dressed: Vec<bool>,
     cloths: Vec<DrawnGarment>,
@@ -60,7 +60,7 @@ struct DrawnGarment {
     colour: Vec3,
     look: GarmentLook,
     /// Texture points and edges of the triangles that are drawn.
-    drawn_look: [Vec<[Vec2; 3]>; 2],
+    drawn_look: DrawnLook,
 }
 
 impl DrawnFrame {
@@ -88,13 +88,13 @@ impl DrawnFrame {
                 triangles: g.triangles.to_vec(),
                 normals,
                 colour: Vec3::from_array(g.fabric.colour.map(crate::image::linear)),
-                drawn_look: [look.corners.clone(), look.edges.clone()],
+                drawn_look: look.all(),
                 look,
             }
         };
         let base = base_layer(body);
         Self {
-            drawn_base: base.corners.clone(),
+            drawn_base: base.all(),
             base,
             dressed: over(0).dressed(&body.mesh.positions, &body.normals),
             body: body.mesh.positions.clone(),
@@ -156,7 +156,7 @@ impl DrawnFrame {
         let under = cover.hide_skin(&mut self.body, &self.normals, &self.dressed, &self.body_triangles);
         self.hidden_m = self.hidden_m.max(under.hidden_m);
         self.drawn = picked(&self.body_triangles, &under.drawn);
-        [self.drawn_base, _] = self.base.of_triangles(&under.drawn);
+        self.drawn_base = self.base.of_triangles(&under.drawn);
     }
 
     /// How far skin, or cloth worn beneath other cloth, stood out of what covers it at most, in all pictures so far (m):
@@ -173,16 +173,13 @@ impl DrawnFrame {
             triangles: &self.drawn,
             colours: Colours::One(MANNEQUIN),
             material: Material::Skin,
-            look: Some(ClothLook { corners: &self.drawn_base, ..self.base.shown() }),
+            look: Some(self.base.shown_with(&self.drawn_base)),
         }];
         for (i, cloth) in self.cloths.iter().enumerate() {
-            let DrawnGarment { points, normals, drawn: triangles, look, drawn_look: [corners, edges], .. } = cloth;
+            let DrawnGarment { points, normals, drawn: triangles, look, drawn_look, .. } = cloth;
             let (colours, material, look) = match map {
                 Some(map) => (Colours::Tightness(&map[i]), Material::Diffuse, None),
-                None => {
-                    let look = ClothLook { corners, edges, ..look.shown() };
-                    (Colours::One(cloth.colour), Material::Cloth, Some(look))
-                }
+                None => (Colours::One(cloth.colour), Material::Cloth, Some(look.shown_with(drawn_look))),
             };
             surfaces.push(Surface { positions: points, normals, triangles, colours, material, look });
         }

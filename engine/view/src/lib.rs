@@ -17,6 +17,8 @@ pub mod video;
 pub mod contact_sheet;
 pub mod fit_map;
 
+pub mod trim_look;
+
 pub mod cloth_look;
 
 pub mod base_layer;

@@ -8,8 +8,9 @@ use serde_json::{Map, Value};
 
 use super::error::{Fault, meant};
 use super::json::{index, list, name, pair, text, triple};
+use super::trims;
 use crate::pattern::limits::{MAX_PANEL_EDGES, MAX_PANELS, MAX_SEAMS};
-use crate::pattern::{Curve, Panel, PanelEdge, Pattern, PatternFlaw, Placement, Seam, SeamSide};
+use crate::pattern::{Curve, MAX_TRIMS, Panel, PanelEdge, Pattern, PatternFlaw, Placement, Seam, SeamSide};
 
 /// What a stitch says whose outside meets an inside: it is sewn from both beginnings.
 const RIGHT_TO_WRONG: &str = "right_wrong";
@@ -42,7 +43,12 @@ pub fn parse(file: &Value) -> Result<Pattern, Fault> {
     }
     let read: Result<Vec<Panel>, Fault> =
         panels.iter().map(|(key, value)| panel(&name(key), value, &dialect)).collect();
-    Ok(Pattern::checked(read?, stitches(&pattern["stitches"], panels)?)?)
+    let read = read?;
+    let count = read.iter().map(|p| p.trims.len()).sum();
+    if count > MAX_TRIMS {
+        return Err(too_many("the pattern", "trims", count, MAX_TRIMS, "MAX_TRIMS"));
+    }
+    Ok(Pattern::checked(read, stitches(&pattern["stitches"], panels)?)?)
 }
 
 fn too_many(place: &str, what: &'static str, count: usize, most: usize, limit: &'static str) -> Fault {
@@ -71,6 +77,7 @@ fn panel(own: &str, value: &Value, dialect: &Dialect) -> Result<Panel, Fault> {
         grain: DVec2::Y,
         behind: false,
         placement: placement(own, value, dialect)?,
+        trims: trims::read(own, &value["trims"], dialect.unit)?,
     };
     // The order in which a panel is drawn says which side is the outside: from there its edges run counter-clockwise.
     Ok(Panel { behind: panel.signed_area() < 0.0, ..panel })

@@ -11,6 +11,7 @@ mod garment_code;
 mod json;
 mod piece;
 mod seam_file;
+mod trims;
 
 use std::path::Path;
 

@@ -139,6 +139,7 @@ impl SeamFile {
             grain,
             behind: false,
             placement: entry.side.map(PanelSide::placement),
+            trims: Vec::new(),
         });
         Ok(Pattern::checked(panels.collect(), seams)?)
     }
@@ -185,7 +186,15 @@ pub fn unsewn(pieces: &[Piece]) -> Result<Pattern, Fault> {
         let edges = UnfoldedPiece::new(piece, piece.fold, false);
         let edges = edges.map_err(|reason| format!("piece {}: {reason}", piece.name))?.into_edges();
         let grain = piece.grain.unwrap_or(DVec2::Y);
-        Ok(Panel { name: piece.name.clone(), label: None, edges, grain, behind: false, placement: None })
+        Ok(Panel {
+            name: piece.name.clone(),
+            label: None,
+            edges,
+            grain,
+            behind: false,
+            placement: None,
+            trims: Vec::new(),
+        })
     };
     let panels = pieces.iter().map(panel).collect::<Result<Vec<Panel>, Fault>>()?;
     Ok(Pattern::checked(panels, Vec::new())?)

@@ -187,7 +187,8 @@ impl Pipelines {
             samples: quality.samples,
             strip: false,
         };
-        let source = VertexAttribute { format: VertexFormat::Uint32, offset: 0, shader_location: 0 };
+        let whole = |shader_location, offset| VertexAttribute { format: VertexFormat::Uint32, offset, shader_location };
+        let (source, near) = (whole(0, 0), whole(6, 4 + 2 * VEC2));
         let line_buffers = [Some(VertexBufferLayout {
             array_stride: 3 * VEC3,
             step_mode: VertexStepMode::Instance,
@@ -215,7 +216,10 @@ impl Pipelines {
             surface: PipelineDescription {
                 groups: &[frame, depths, Some(&layouts.surface), Some(&layouts.places)],
                 buffers: &[
-                    per_vertex(POINT_BYTES as u64, &[source, attribute(1, 4, false), attribute(2, 4 + VEC2, false)]),
+                    per_vertex(
+                        POINT_BYTES as u64,
+                        &[source, attribute(1, 4, false), attribute(2, 4 + VEC2, false), near],
+                    ),
                     per_vertex(VEC2, &[attribute(3, 0, false)]),
                     per_vertex(2 * VEC3, &[attribute(4, 0, true), attribute(5, VEC3, true)]),
                 ],

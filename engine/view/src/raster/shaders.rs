@@ -3,7 +3,9 @@
 use super::render_quality::MOST_BEAMS;
 use super::weave_relief::STEEPEST;
 use crate::fit_map;
-use crate::{cloth_look, shading, tone_mapping};
+use crate::{cloth_look, shading, tone_mapping, trim_look};
+use toile_assets::garment::look::TRIM_SHADOW_M;
+use toile_assets::pattern::MAX_TRIMS;
 
 const FRAME: &str = include_str!("shaders/frame.wgsl");
 const SHADING: &str = include_str!("shaders/shading.wgsl");
@@ -32,7 +34,7 @@ pub fn depth(made: ShaderOptions) -> String {
 
 /// Text of the shader of body and garments.
 pub fn surface(made: ShaderOptions) -> String {
-    [&numbers(made), FRAME, SHADING, include_str!("shaders/surface.wgsl")].concat()
+    [&numbers(made), FRAME, SHADING, include_str!("shaders/trims.wgsl"), include_str!("shaders/surface.wgsl")].concat()
 }
 
 /// Text of the shader of the backdrop.
@@ -70,6 +72,20 @@ fn numbers(made: ShaderOptions) -> String {
         ("HEM", cloth_look::HEM_M),
         ("STITCH_HALF", cloth_look::STITCH_HALF_M),
         ("STITCH_DARK", cloth_look::STITCH_DARK),
+        ("TRIM_SHADOW", TRIM_SHADOW_M),
+        ("EDGE_HALF", trim_look::EDGE_HALF_M),
+        ("EDGE_DARK", trim_look::EDGE_DARK),
+        ("SHADOW_DARK", trim_look::SHADOW_DARK),
+        ("STRIP_STITCH", trim_look::STRIP_STITCH_M),
+        ("TRIM_STITCH_HALF", trim_look::TRIM_STITCH_HALF_M),
+        ("TRIM_STITCH_DARK", trim_look::TRIM_STITCH_DARK),
+        ("RIM", trim_look::RIM),
+        ("RIM_DARK", trim_look::RIM_DARK),
+        ("HOLE_AWAY", trim_look::HOLE_AWAY),
+        ("HOLE", trim_look::HOLE),
+        ("HOLE_DARK", trim_look::HOLE_DARK),
+        ("TEETH_HALF", trim_look::TEETH_HALF_M),
+        ("TOOTH", trim_look::TOOTH_M),
     ];
     let ShaderOptions { weave, by_vertex, encode } = made;
     let figures: String = figures.iter().map(|(name, value)| format!("const {name} = {value:?};\n")).collect();
@@ -77,7 +93,7 @@ fn numbers(made: ShaderOptions) -> String {
     let choices: String = choices.iter().map(|(name, value)| format!("const {name} = {value};\n")).collect();
     let (count, list) = (steps.len(), steps.join(", "));
     format!(
-        "const MOST_BEAMS = {MOST_BEAMS};\n{figures}{choices}const FIT_STEPS = array<vec3<f32>, {count}>({list});\n"
+        "const MOST_BEAMS = {MOST_BEAMS};\nconst MAX_TRIMS = {MAX_TRIMS}u;\n{figures}{choices}const FIT_STEPS = array<vec3<f32>, {count}>({list});\n"
     )
 }
 

@@ -6,8 +6,8 @@ use glam::Vec2;
 
 use super::model::RenderSurface;
 
-/// Bytes of the points of a vertex that is drawn: its source, texture point, distances.
-pub const POINT_BYTES: usize = 20;
+/// Bytes of the points of a vertex that is drawn: its source, texture point, distances, trims near it.
+pub const POINT_BYTES: usize = 24;
 
 /// The vertices of a surface as they are drawn.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,6 +16,8 @@ pub struct SplitVertices {
     pub source: Vec<u32>,
     /// Texture point, place on the cloth (m), distance from hem and seam (m) of each `[drawn]`.
     pub points: Vec<[Vec2; 3]>,
+    /// The trims that its triangles may show, a bit for each `[drawn]`.
+    pub near: Vec<u32>,
     /// Corners of the triangles, as they are drawn.
     pub triangles: Vec<[u32; 3]>,
 }
@@ -29,19 +31,22 @@ impl SplitVertices {
         let Some(look) = shape.look.as_ref().filter(|l| !(l.corners.is_empty() && l.cloth.is_empty())) else {
             let source: Vec<u32> = (0..shape.rest.len() as u32).collect();
             let points = vec![[Vec2::ZERO, Vec2::ZERO, FAR]; source.len()];
-            return Self { source, points, triangles: shape.triangles.clone() };
+            let near = vec![0; source.len()];
+            return Self { source, points, near, triangles: shape.triangles.clone() };
         };
-        let mut split = Self { source: Vec::new(), points: Vec::new(), triangles: Vec::new() };
-        let mut known: HashMap<(u32, [[u32; 2]; 3]), u32> = HashMap::new();
+        let mut split = Self { source: Vec::new(), points: Vec::new(), near: Vec::new(), triangles: Vec::new() };
+        let mut known: HashMap<(u32, u32, [[u32; 2]; 3]), u32> = HashMap::new();
         let at = |list: &[[Vec2; 3]], t: usize, k: usize, none: Vec2| list.get(t).map_or(none, |corners| corners[k]);
         for (t, corners) in shape.triangles.iter().enumerate() {
+            let near = look.near.get(t).copied().unwrap_or(0);
             let corner = |k: usize| {
                 let zero = Vec2::ZERO;
                 let point = [at(&look.corners, t, k, zero), at(&look.cloth, t, k, zero), at(&look.edges, t, k, FAR)];
                 let bits = point.map(|p| p.to_array().map(f32::to_bits));
-                *known.entry((corners[k], bits)).or_insert_with(|| {
+                *known.entry((corners[k], near, bits)).or_insert_with(|| {
                     split.source.push(corners[k]);
                     split.points.push(point);
+                    split.near.push(near);
                     split.source.len() as u32 - 1
                 })
             };

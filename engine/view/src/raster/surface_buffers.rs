@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use glam::{Vec2, Vec3};
 use toile_assets::fabric::Weave;
 use toile_assets::mesh::vertex_normals;
+use toile_assets::pattern::MAX_TRIMS;
 use toile_gpu::vertex_source::{STRIDE, VertexSource};
 use wgpu::{BindGroup, Buffer, BufferSlice, BufferUsages, Device, Queue, TextureView};
 
@@ -15,9 +16,10 @@ use super::textures;
 use super::weave_relief::repeat;
 use super::weave_textures::WeaveTextures;
 use crate::scene::Bounds;
+use crate::trim_look::DrawnTrim;
 
-/// Bytes of a surface's uniform block: three vectors of four numbers.
-const BLOCK_BYTES: usize = 48;
+/// Numbers of a surface's uniform block: three vectors of four, and as many of each trim.
+const BLOCK_NUMBERS: usize = 12 * (1 + MAX_TRIMS);
 
 /// Sent in place of a fit that is NaN.
 const NO_FIT: f32 = -9.0;
@@ -57,6 +59,7 @@ pub struct SurfaceBuffers {
     vertices: usize,
     room: usize,
     look: [f32; 4],
+    trims: Vec<DrawnTrim>,
     colour: Vec3,
     material: RenderMaterial,
     fit: Vec<f32>,
@@ -130,7 +133,7 @@ impl SurfaceUploader<'_> {
                 mapped_at_creation: false,
             })
         };
-        let block = buffer("surface", BLOCK_BYTES, BufferUsages::UNIFORM);
+        let block = buffer("surface", 4 * BLOCK_NUMBERS, BufferUsages::UNIFORM);
         let weave = if let RenderMaterial::Cloth(cloth) = shape.material { cloth.weave } else { Weave::Plain };
         let places = BufferUsages::VERTEX | BufferUsages::STORAGE;
         let positions = buffer("positions", vertices.max(1) * STRIDE as usize, places);
@@ -161,6 +164,7 @@ impl SurfaceUploader<'_> {
             count: 0,
             bind: self.bind(&block, self.threads.of(weave), tile_view.as_ref().unwrap_or(&self.threads.blank)),
             look: [flag(tile.is_some()), flag(sewn), opacity, surface as f32],
+            trims: shape.look.as_ref().map_or_else(Vec::new, |look| look.trims.clone()),
             bounds: Bounds::EMPTY,
             visible: true,
             block,
@@ -371,10 +375,11 @@ impl SurfaceBuffers {
     }
 
     fn send_points(&self, queue: &Queue) {
-        let point = |(source, [tile, _, edges]): (&u32, &[Vec2; 3])| {
-            [*source, tile.x.to_bits(), tile.y.to_bits(), edges.x.to_bits(), edges.y.to_bits()]
+        let SplitVertices { source, points, near, .. } = &self.split;
+        let point = |((source, [tile, _, edges]), near): ((&u32, &[Vec2; 3]), &u32)| {
+            [*source, tile.x.to_bits(), tile.y.to_bits(), edges.x.to_bits(), edges.y.to_bits(), *near]
         };
-        let words: Vec<u32> = self.split.source.iter().zip(&self.split.points).flat_map(point).collect();
+        let words: Vec<u32> = source.iter().zip(points).zip(near).flat_map(point).collect();
         queue.write_buffer(&self.points, 0, bytemuck::cast_slice(&words));
     }
 
@@ -395,7 +400,13 @@ impl SurfaceBuffers {
         let Vec3 { x, y, z } = if self.colour.is_finite() { self.colour } else { Vec3::splat(0.5) };
         let fitted = if self.fitted { 1.0 } else { 0.0 };
         let [tile, sewn, opacity, number] = self.look;
-        let block = [x, y, z, kind, sheen, repeats.x, repeats.y, fitted, tile, sewn, opacity, number];
+        let mut block = [0.0f32; BLOCK_NUMBERS];
+        let own = [x, y, z, kind, sheen, repeats.x, repeats.y, fitted, tile, sewn, opacity, number];
+        block[..own.len()].copy_from_slice(&own);
+        for (numbers, trim) in block[own.len()..].chunks_exact_mut(12).zip(&self.trims) {
+            let ([a, b], Vec3 { x, y, z }) = (trim.ends, trim.colour);
+            numbers.copy_from_slice(&[a.x, a.y, b.x, b.y, trim.half, trim.kind as f32, 0.0, 0.0, x, y, z, 0.0]);
+        }
         queue.write_buffer(&self.block, 0, bytemuck::cast_slice(&block));
     }
 }

@@ -7,6 +7,7 @@ struct Surface {
     cloth: vec4<f32>,
     // 1 where there is a print; 1 where seams and hems are known; share of light that is held back; number of the surface.
     look: vec4<f32>,
+    trims: array<Trim, MAX_TRIMS>,
 }
 
 @group(2) @binding(0) var<uniform> surface: Surface;
@@ -28,6 +29,8 @@ struct Varying {
     // The point of the print, v upwards; how far from the nearest hem and seam (m).
     @location(6) point: vec2<f32>,
     @location(7) edges: vec2<f32>,
+    // The trims that the triangle may show, a bit for each.
+    @location(8) @interpolate(flat) near: u32,
 }
 
 @vertex
@@ -40,12 +43,14 @@ fn vertex_main(
     @location(3) marks: vec2<f32>,
     @location(4) rest: vec3<f32>,
     @location(5) rest_normal: vec3<f32>,
+    @location(6) near: u32,
 ) -> Varying {
     let position = positions[first + source].xyz;
     let normal = normals[first + source].xyz;
     var out: Varying;
     out.point = point;
     out.edges = edges;
+    out.near = near;
     out.clip = frame.clip * vec4(position, 1.0);
     // Farther along the line of sight: the same point in the picture, another depth.
     let sight = normalize(position - frame.eye.xyz);
@@ -112,12 +117,6 @@ fn woven(v: Varying, normal: vec3<f32>) -> vec4<f32> {
     return vec4(whole, front.open + side.open + top.open);
 }
 
-// How much of a line of this half width a pixel so wide sees at a distance (m).
-fn line(distance: f32, half: f32, pixel: f32) -> f32 {
-    let seen = clamp((half + 0.5 * pixel - distance) / pixel, 0.0, 1.0);
-    return seen * min(2.0 * half / pixel, 1.0);
-}
-
 // The colour with the print on it, the grooves of seams and the stitches of hems.
 fn cloth_colour(v: Varying, base: vec3<f32>) -> vec3<f32> {
     var colour = base;
@@ -128,8 +127,16 @@ fn cloth_colour(v: Varying, base: vec3<f32>) -> vec3<f32> {
     }
     if surface.look.y > 0.5 {
         let pixel = max(length(dpdx(v.position)), 1e-6);
-        colour *= 1.0 - SEAM_DARK * line(v.edges.y, SEAM_HALF, pixel);
-        colour *= 1.0 - STITCH_DARK * line(abs(v.edges.x - HEM), STITCH_HALF, pixel);
+        let seam = 1.0 - SEAM_DARK * line(v.edges.y, SEAM_HALF, pixel);
+        let hem = 1.0 - STITCH_DARK * line(abs(v.edges.x - HEM), STITCH_HALF, pixel);
+        var covered = 0.0;
+        for (var left = v.near; left != 0u; left &= left - 1u) {
+            covered = max(covered, trim_cover(surface.trims[firstTrailingBit(left)], v.rest.xy, pixel));
+        }
+        colour *= mix(seam * hem, 1.0, covered);
+        for (var left = v.near; left != 0u; left &= left - 1u) {
+            colour = with_trim(surface.trims[firstTrailingBit(left)], v.rest.xy, pixel, colour);
+        }
     }
     return colour;
 }
