@@ -161,19 +161,26 @@ const STRAPS: BodiceStyle = BodiceStyle {
     ..TEE
 };
 const BLAZER: BodiceStyle = BodiceStyle {
-    chest_ease: 0.14,
-    hip_ease: 0.12,
+    chest_ease: 0.17,
+    hip_ease: 0.14,
     waist_in: 0.015,
     below_waist: 0.25,
     neck_wider: 0.02,
     front_neck: 0.3,
-    shoulder_out: 0.008,
-    armhole_drop: 0.02,
+    shoulder_out: 0.014,
+    armhole_drop: 0.03,
     neck_square: 0.15,
     ..TEE
 };
-const COAT: BodiceStyle =
-    BodiceStyle { chest_ease: 0.2, hip_ease: 0.2, flare: 0.03, front_neck: 0.2, armhole_drop: 0.03, ..BLAZER };
+const COAT: BodiceStyle = BodiceStyle {
+    chest_ease: 0.23,
+    hip_ease: 0.22,
+    flare: 0.03,
+    front_neck: 0.2,
+    shoulder_out: 0.02,
+    armhole_drop: 0.045,
+    ..BLAZER
+};
 
 /// A sleeve in proportion to a body.
 #[derive(Debug, Clone, Copy)]

@@ -3,7 +3,7 @@
 use super::{STYLES, names, style};
 use crate::draping::PatternPackage;
 use crate::import::pattern::parse;
-use crate::pattern::Pattern;
+use crate::pattern::{MAX_TRIMS, Pattern, TrimKind};
 use crate::sizes::SizeTable;
 
 /// The most that one side of a seam may be longer than the other (1), where it is not gathered: what cloth takes by steam.
@@ -95,6 +95,38 @@ fn grading_meets_the_drafts_between() {
     }
     println!("worst: {:.1} mm, {}", worst.0 * 1e3, worst.1);
     assert!(worst.0 < OFF_M, "{:.1} mm off: {}", worst.0 * 1e3, worst.1);
+}
+
+/// How far beyond its panel's outline a trim may reach (m): what two panels share at a seam, and a fly's lap.
+const BEYOND_M: f64 = 0.03;
+
+#[test]
+fn trims_lie_on_their_panels_in_every_size_and_on_both_sides_alike() {
+    for style in &STYLES {
+        for size in SizeTable::embedded(style.table).unwrap().codes() {
+            let pattern = drafted(style.name, size);
+            let count: usize = pattern.panels().iter().map(|p| p.trims.len()).sum();
+            assert!(count <= MAX_TRIMS, "{} has {count} trims", style.name);
+            for panel in pattern.panels() {
+                let ends = || panel.edges.iter().map(|e| e.curve.start());
+                let low = ends().reduce(|a, b| a.min(b)).unwrap() - BEYOND_M;
+                let high = ends().reduce(|a, b| a.max(b)).unwrap() + BEYOND_M;
+                for trim in &panel.trims {
+                    for p in trim.ends {
+                        let within = p.cmpge(low).all() && p.cmple(high).all();
+                        assert!(within, "{} {size} {}: {trim:?} in {low}, {high}", style.name, panel.name);
+                    }
+                }
+            }
+        }
+    }
+    let shirt = drafted("shirt", "44");
+    let buttons = |name: &str| {
+        let panel = shirt.panels().iter().find(|p| p.name == name).unwrap();
+        panel.trims.iter().filter(|t| t.kind == TrimKind::Button).count()
+    };
+    // A button in the middle lies half on each front.
+    assert_eq!((buttons("left front"), buttons("right front"), buttons("left sleeve")), (7, 7, 1));
 }
 
 #[test]

@@ -10,7 +10,7 @@ use crate::pattern::{Trim, TrimKind};
 
 /// Colours of buttons and zips (sRGB).
 const PEARL: [f32; 3] = [0.9, 0.88, 0.83];
-const HORN: [f32; 3] = [0.13, 0.09, 0.06];
+const HORN: [f32; 3] = [0.25, 0.18, 0.12];
 const METAL: [f32; 3] = [0.42, 0.42, 0.43];
 
 /// Radius of a shirt's, a jacket's and a coat's buttons (m): lines 18, 32 and 44.

@@ -5,6 +5,7 @@ use toile_assets::bake::bake;
 use toile_assets::fabric::Fabric;
 use toile_assets::garment::{Garment, Shape};
 use toile_assets::mesh::vertex_normals;
+use toile_assets::pattern::{ClothTrim, TrimKind};
 use toile_view::cloth_look::GarmentLook;
 use toile_view::image::{Image, linear};
 use toile_view::raster::{Model, RenderSurface, Renderer};
@@ -18,7 +19,7 @@ const SQUARES: u32 = 24;
 const SPACING_M: f32 = 0.015;
 
 /// A curved sheet of two panels that meet in the middle, each drawn at an origin of its own.
-fn sheet(fabric: &Fabric) -> Garment {
+fn sheet(fabric: &Fabric, trims: Vec<ClothTrim>) -> Garment {
     let side = SQUARES + 1;
     let mut shape = Shape::sheet(side, side, |row, column| {
         let (x, y) = (column as f32 * SPACING_M, 1.0 - row as f32 * SPACING_M);
@@ -32,13 +33,19 @@ fn sheet(fabric: &Fabric) -> Garment {
         [at(row, column), at(row, column + 1), at(row - 1, column + 1), at(row - 1, column)]
     };
     shape.flat = (0..shape.faces.len()).map(flat).collect();
+    shape.trims = trims;
     bake("sheet", "one", &shape, fabric).expect("a sheet is whole")
 }
 
 /// The sheet from the front by the ray tracer and by the rasteriser.
 fn both(fabric: &Fabric) -> Option<[Image; 2]> {
+    both_with(fabric, Vec::new())
+}
+
+/// The same with trims on it.
+fn both_with(fabric: &Fabric, trims: Vec<ClothTrim>) -> Option<[Image; 2]> {
     let gpu = gpu()?;
-    let garment = sheet(fabric);
+    let garment = sheet(fabric, trims);
     let mut normals = vec![Vec3::ZERO; garment.particles()];
     vertex_normals(&garment.start, &garment.triangles, &mut normals);
     let look = GarmentLook::of(&garment);
@@ -105,6 +112,47 @@ fn the_seam_between_two_panels_is_a_dark_line_in_both() {
         let deepest = (SIZE.width as usize * 2 / 5..SIZE.width as usize * 3 / 5).map(dip).fold(0.0, f32::max);
         println!("{name}: the seam is {deepest:.1} of 255 darker");
         assert!(deepest > 6.0, "{name}: {deepest}");
+    }
+}
+
+#[test]
+fn a_button_and_a_strip_over_the_seam_are_seen_in_both() {
+    let (white, dark) = ([0.9; 3], [0.02; 3]);
+    let fabric = Fabric { colour: white, ..Fabric::built_in("cotton-lawn").unwrap() };
+    // The seam is the right border of the first panel and the left one of the second, 4 mm off there.
+    let [seam, there] = [0.18, 0.004];
+    let row = -0.5 * 24.0 * SPACING_M;
+    let on = |panel, kind, x: f32, half, ends: [f32; 2]| ClothTrim {
+        panel,
+        kind,
+        ends: ends.map(|y| Vec2::new(x, row + y)),
+        half,
+        colour: dark,
+    };
+    let halves = [(0, seam), (1, there)];
+    let button: Vec<ClothTrim> = halves.iter().map(|(p, x)| on(*p, TrimKind::Button, *x, 0.02, [0.0, 0.001])).collect();
+    let strip = halves.iter().map(|(p, x)| on(*p, TrimKind::Strip, *x, 0.02, [-0.1, 0.1])).collect();
+    let middle_row = |image: &Image| {
+        let all = pixels(image);
+        let (width, y) = (SIZE.width as usize, SIZE.height as usize / 2);
+        all[y * width + width * 2 / 5..y * width + width * 3 / 5].iter().map(|p| p.y).collect::<Vec<f32>>()
+    };
+    let least = |row: &[f32]| row.iter().copied().fold(f32::MAX, f32::min);
+    let (Some(plain), Some(buttoned), Some(hidden)) =
+        (both(&fabric), both_with(&fabric, button), both_with(&fabric, strip))
+    else {
+        return;
+    };
+    for (k, name) in ["traced", "drawn"].into_iter().enumerate() {
+        let [plain, buttoned, hidden] = [&plain, &buttoned, &hidden].map(|images| middle_row(&images[k]));
+        let width = buttoned.iter().filter(|v| **v < 110.0).count();
+        println!("{name}: a button {width} pixels wide, {:.0} dark", least(&buttoned));
+        assert!(width > 3 && width < 40, "{name}: {width} pixels are dark");
+        // Where the strip lies, the seam is no longer a line: in the middle it is as light as beside it.
+        let at_seam = plain.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)).unwrap().0;
+        let dip = |row: &[f32]| 0.5 * (row[at_seam - 3] + row[at_seam + 3]) - row[at_seam];
+        println!("{name}: the seam {:.1} deep, beneath the strip {:.1}", dip(&plain), dip(&hidden));
+        assert!(dip(&hidden) < 0.5 * dip(&plain), "{name}: {} beside {}", dip(&hidden), dip(&plain));
     }
 }
 
