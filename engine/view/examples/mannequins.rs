@@ -13,8 +13,10 @@ use toile_view::image::{Image, Size};
 use toile_view::scene::{Bounds, Camera, Colours, Material, Scene, Surface};
 use toile_view::trace::{TraceQuality, TracedScene};
 
-const WHOLE: Size = Size::new(300, 560);
-const BUST: Size = Size::new(300, 340);
+const SIZE: Size = Size::new(320, 400);
+
+/// How far the camera is from a whole body (m).
+const AWAY_M: f32 = 5.2;
 
 /// From the crown down, as far as a bust is shown, and half as wide (m).
 const BUST_M: f32 = 0.44;
@@ -35,17 +37,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     let tone = |skin| Appearance { skin, ..plain };
     let cut = |hair, skin| Appearance { skin, hair };
     use Hair::{Bob, Bun, Short};
-    use SkinTone::{Ebony, Honey, Porcelain, Sand, Umber};
+    use SkinTone::{Honey, Sand, Umber};
     let mut shots = Vec::new();
     for (body, who) in [(&woman, "woman"), (&man, "man")] {
         for (yaw, from) in [(FRONT, "front"), (TURNED, "turned"), (SIDE, "side")] {
             shots.push((bust(body, plain, yaw), format!("{who}, {from}")));
         }
     }
-    for (body, skin) in [(&woman, Porcelain), (&man, Sand), (&woman, Honey), (&man, Umber), (&woman, Ebony)] {
-        shots.push((whole(body, tone(skin)), skin.name().to_owned()));
+    for (i, skin) in SkinTone::ALL.into_iter().enumerate() {
+        shots.push((whole(if i % 2 == 0 { &woman } else { &man }, tone(skin)), skin.name().to_owned()));
     }
-    shots.push((whole(&man, cut(Short, SkinTone::Mannequin)), "mannequin, short".to_owned()));
     for (body, hair, skin) in [(&man, Short, Honey), (&woman, Bob, Sand), (&woman, Bun, Umber)] {
         for yaw in [TURNED, SIDE] {
             shots.push((bust(body, cut(hair, skin), yaw), format!("{hair}, {skin}")));
@@ -73,8 +74,10 @@ fn traced(body: &Body, appearance: Appearance, shot: impl Fn(&TracedScene) -> Im
 
 fn whole(body: &Body, appearance: Appearance) -> Image {
     traced(body, appearance, |scene| {
-        let camera = Camera::framing(&scene.bounds(), 0.0, WHOLE.width as f32 / WHOLE.height as f32);
-        scene.render(&camera, WHOLE, TraceQuality::Still)
+        let Bounds { min, max } = scene.bounds();
+        let target = (min + max) * 0.5;
+        let camera = Camera { target, yaw: FRONT, height: 0.25, distance: AWAY_M, fov_y: 0.38 };
+        scene.render(&camera, SIZE, TraceQuality::Still)
     })
 }
 
@@ -82,5 +85,5 @@ fn bust(body: &Body, appearance: Appearance, yaw: f32) -> Image {
     let top = Bounds::of(&body.mesh.positions).max.y;
     let camera =
         Camera { target: Vec3::new(0.0, top - 0.42 * BUST_M, 0.0), yaw, height: 0.05, distance: 2.0, fov_y: 0.24 };
-    traced(body, appearance, |scene| scene.render(&camera, BUST, TraceQuality::Still))
+    traced(body, appearance, |scene| scene.render(&camera, SIZE, TraceQuality::Still))
 }

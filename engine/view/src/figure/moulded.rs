@@ -29,7 +29,7 @@ const SUNK_MM: f32 = 3.0;
 const HOLLOW_MM: f32 = 30.0;
 
 /// How far hair that hangs is turned in at its hem (0..1).
-const TURNED_IN: f32 = 0.11;
+const TURNED_IN: f32 = 0.15;
 
 /// How hair is cut.
 pub struct Cut {
@@ -115,7 +115,7 @@ impl<'a> Layout<'a> {
         let (toward, share) = (self.toward(row, column), share(row));
         let lines = combed * comb(turn(column)) * ease(share, 0.08, 0.35);
         let worn = self.skin[row][column] + side + (top - side) * ease(toward.y, 0.1, 0.9);
-        let hanging = |half| hanging(toward, half) * (1.0 - TURNED_IN * ease(share, 0.72, 1.0));
+        let hanging = |half| hanging(toward, half) * (1.0 - TURNED_IN * ease(share, 0.6, 1.05));
         let out = lines + hangs.map_or(worn, |half| largest(worn, hanging(half)));
         let from_hem = ((1.0 - share) * self.reach[column] * out / round).min(1.0);
         out - round * (1.0 - (from_hem * (2.0 - from_hem)).sqrt())
