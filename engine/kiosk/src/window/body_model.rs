@@ -83,7 +83,7 @@ impl BodyModel {
             dressed.into_iter().map(|d| if d { depth.max(RECESS_M * 0.25) } else { 0.0 }).collect()
         };
         let figure = Figure::of(body, appearance);
-        let mut recesses = vec![recess(0, &body.mesh.positions, &body.normals)];
+        let mut recesses: Vec<Vec<f32>> = vec![recess(0, &body.mesh.positions, &body.normals)];
         // Hair lies over everything.
         recesses[0].resize(figure.rest.len(), 0.0);
         for (i, garment) in garments.iter().enumerate() {
