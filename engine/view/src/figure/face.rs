@@ -5,7 +5,7 @@ use toile_assets::body::{Body, Region};
 use toile_assets::mesh::vertex_normals;
 
 use super::egg::{self, ease};
-use super::fairing::Patch;
+use super::fairing::FairedPatch;
 use super::head_space::HeadSpace;
 
 /// Pull to the shape while folds are smoothed out, where the drawn face is smooth and where it folds: at ears, lids, lips, nostrils.
@@ -44,7 +44,7 @@ struct HeadPatch {
     drawn: Vec<Vec3>,
     /// How far the shape takes over, 0 to 1.
     share: Vec<f32>,
-    fairing: Patch,
+    fairing: FairedPatch,
 }
 
 impl Face {
@@ -79,7 +79,7 @@ impl HeadPatch {
         let share = |(v, p): (&usize, &Vec3)| ease(depth[*v] as f32, 0.0, NECK_RINGS as f32) * (1.0 - kept(*p));
         // The outermost ring has neighbours outside of the patch, and none here.
         let ring = |v: &usize| rings[*v].iter().map(|n| place[*n as usize]).collect::<Option<Vec<u32>>>();
-        let fairing = Patch {
+        let fairing = FairedPatch {
             rings: vertices.iter().map(|v| ring(v).unwrap_or_default()).collect(),
             free: places().map(|(v, p)| is_head[*v] && kept(*p) < 1.0).collect(),
             pull: Vec::new(),

@@ -11,7 +11,7 @@ const ITERATIONS: usize = 400;
 const ENOUGH: f64 = 1e-7;
 
 /// A patch of a mesh: all its vertices, each with its neighbours.
-pub struct Patch {
+pub struct FairedPatch {
     /// Neighbours of each vertex, among all vertices `[vertices]`.
     pub rings: Vec<Vec<u32>>,
     /// Whether a vertex may move `[vertices]`.
@@ -20,7 +20,7 @@ pub struct Patch {
     pub pull: Vec<f64>,
 }
 
-impl Patch {
+impl FairedPatch {
     /// Moves the free vertices of `at`, towards `wanted` and into the smoothest surface.
     pub fn fair(&self, at: &mut [DVec3], wanted: &[DVec3]) {
         // Unknown is how far each moves, which is nothing at the border.
