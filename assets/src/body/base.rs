@@ -12,7 +12,7 @@ use glam::{Vec2, Vec3};
 use super::landmarks::Landmarks;
 use super::stored::StoredBodies;
 use super::{Region, Sex, shares, skin};
-use crate::mesh::SkinWeights;
+use crate::mesh::{Mesh, SkinWeights};
 use crate::skeleton::Skeleton;
 
 /// One sex's body as drawn: closed, symmetric about x = 0, facing +z, soles on y = 0, arms half raised.
@@ -86,6 +86,12 @@ impl BaseBody {
     pub fn triangle_corners(&self) -> Vec<[u32; 3]> {
         split(&self.corners)
     }
+}
+
+/// Whether a mesh is that of a drawn body, of whatever size.
+pub fn is_drawn(mesh: &Mesh) -> bool {
+    let all = &*STORED;
+    mesh.positions.len() == all.regions.len() && mesh.triangles == split(&all.quads)
 }
 
 /// Each face split along the diagonal from its first corner: the same split on both sides of the body.

@@ -1,12 +1,14 @@
 //! What several commands take: options that they share, and parsers of values.
 
 use std::ops::RangeBounds;
+use std::path::Path;
 
 use clap::builder::{PossibleValuesParser, RangedU64ValueParser, TypedValueParser};
 use toile_engine::cloth::Quality;
 use toile_engine::lanes::Width;
 use toile_engine::workers::SHARES;
 use toile_gpu::backend::Backend;
+use toile_view::figure::{Appearance, Hair, SkinTone};
 
 use crate::exit::AppError;
 use crate::terminal::Words;
@@ -67,6 +69,51 @@ pub struct CrashArg {
     /// Panic after so many seconds, to see what a crash leaves
     #[arg(id = "crash-after", long = "crash-after", value_name = "S")]
     pub after_s: Option<u64>,
+}
+
+/// The option `--skin`.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, clap::Args)]
+pub struct SkinArg {
+    /// Tone of the body's skin
+    #[arg(
+        id = "skin",
+        long = "skin",
+        value_name = "TONE",
+        value_parser = one_of(SkinTone::ALL, SkinTone::name),
+        default_value = SkinTone::default().name()
+    )]
+    pub tone: SkinTone,
+}
+
+/// How the mannequin looks.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, clap::Args)]
+pub struct AppearanceArgs {
+    #[command(flatten)]
+    skin: SkinArg,
+    /// Moulded hair of the mannequin
+    #[arg(long, value_name = "CUT", value_parser = one_of(Hair::ALL, Hair::name), default_value = Hair::default().name())]
+    hair: Hair,
+}
+
+impl AppearanceArgs {
+    /// The same as pictures take it.
+    pub fn appearance(self) -> Appearance {
+        Appearance { skin: self.skin.tone, hair: self.hair }
+    }
+
+    /// The same on a body of a file, which keeps its own head.
+    ///
+    /// # Errors
+    /// [`AppError::Usage`] where hair is asked for.
+    pub fn on_body_of(self, file: &Path) -> Result<Appearance, AppError> {
+        if self.hair == Hair::None {
+            return Ok(self.appearance());
+        }
+        let (hair, file) = (self.hair, file.display());
+        Err(AppError::Usage(format!(
+            "--hair {hair} is for our own mannequins, and {file} keeps its own head; leave it out"
+        )))
+    }
 }
 
 /// What the shopper or a tape tells.

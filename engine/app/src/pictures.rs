@@ -6,7 +6,7 @@ use std::io::BufWriter;
 
 use glam::Vec3;
 use toile_assets::limits::STEP_HZ;
-use toile_engine::frame::{Frame, Snapshot};
+use toile_engine::frame::Snapshot;
 use toile_engine::lines::Line;
 use toile_engine::skin::Posed;
 use toile_view::contact_sheet;
@@ -71,7 +71,7 @@ pub struct Pictures {
 
 impl Pictures {
     /// Begins the animation of a session of `steps` steps.
-    pub fn begin(out: &mut OutputFolder, frame: &Frame, steps: u64, bar: Progress) -> Result<Self, AppError> {
+    pub fn begin(out: &mut OutputFolder, frame: DrawnFrame, steps: u64, bar: Progress) -> Result<Self, AppError> {
         let timing = AnimationTiming::new(steps);
         let path = out.stage("session.png")?;
         let file = BufWriter::new(File::create(&path).map_err(AppError::input)?);
@@ -79,7 +79,7 @@ impl Pictures {
             animation: Animation::new(file, MOTION, timing.frames, timing.fps).map_err(AppError::input)?,
             timing,
             kept: Vec::new(),
-            frame: DrawnFrame::new(frame),
+            frame,
             bar,
         })
     }

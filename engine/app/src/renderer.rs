@@ -4,9 +4,9 @@
 //! Budget: a second for a still by rays, milliseconds on a GPU.
 //! Thread: the main thread; rays use every core.
 
-use toile_assets::body::Body;
 use toile_assets::garment::Garment;
 use toile_engine::lines::Line;
+use toile_view::figure::Figure;
 use toile_view::image::{Image, Size};
 use toile_view::scene::{Bounds, Camera, Scene, Surface};
 use toile_view::trace::{TraceQuality, TracedScene};
@@ -56,15 +56,15 @@ impl PictureRenderer {
         }
     }
 
-    /// Gets ready for a body and what it wears.
-    pub fn prepare(&mut self, body: &Body, garments: &[Garment]) {
+    /// Gets ready for a figure and what it wears.
+    pub fn prepare(&mut self, figure: &Figure, garments: &[Garment]) {
         match self {
             // Rays need nothing but the surfaces of each picture.
             Self::RayTracer => {
-                let (_, _) = (body, garments);
+                let (_, _) = (figure, garments);
             }
             #[cfg(feature = "view")]
-            Self::Gpu(gpu) => gpu.prepare(body, garments),
+            Self::Gpu(gpu) => gpu.prepare(figure, garments),
         }
     }
 

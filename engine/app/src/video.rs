@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use toile_assets::limits::STEP_HZ;
-use toile_engine::frame::{Frame, Snapshot};
+use toile_engine::frame::Snapshot;
 use toile_engine::lines::Line;
 use toile_view::drawn_frame::DrawnFrame;
 use toile_view::image::Size;
@@ -35,9 +35,9 @@ impl Video {
     ///
     /// # Errors
     /// Bad input: a name or a place that no video can have.
-    pub fn begin(path: &Path, frame: &Frame, steps: u64, bar: Progress) -> Result<Self, AppError> {
+    pub fn begin(path: &Path, frame: DrawnFrame, steps: u64, bar: Progress) -> Result<Self, AppError> {
         let video = VideoWriter::begin(path, SIZE, Self::work(steps) as u32, FPS).map_err(AppError::input)?;
-        Ok(Self { video, frame: DrawnFrame::new(frame), bar })
+        Ok(Self { video, frame, bar })
     }
 
     /// Frames of a session of so many steps.

@@ -23,6 +23,28 @@ fn lines_without_a_gpu_and_films_of_no_kind_are_refused() {
     assert!(stderr_of(&film).contains(".webm") && !scratch.path().join("film.gif").exists(), "{}", stderr_of(&film));
 }
 
+#[test]
+fn tones_and_hair_that_are_none_are_refused_with_the_nearest() {
+    let scratch = Scratch::new("look-appearance");
+    let lines: [&[&str]; 4] = [
+        &["try-on", "--skin", "sandy"],
+        &["tailor", "tee", "--skin", "sandy"],
+        &["catalogue", "sheet", "shop", "--skin", "sandy"],
+        &["body", "someone.glb", "--skin", "sandy"],
+    ];
+    for line in lines {
+        let refused = scratch.toile(line);
+        let said = stderr_of(&refused);
+        assert_eq!(refused.status.code(), Some(2), "{said}");
+        assert!(said.contains("--skin") && said.contains("'sand'") && said.lines().count() == 1, "{said}");
+    }
+    let hair = scratch.toile(&["try-on", "--hair", "bbo"]);
+    assert!(hair.status.code() == Some(2) && stderr_of(&hair).contains("'bob'"), "{}", stderr_of(&hair));
+    let own = scratch.toile(&["try-on", "--hair", "bob", "--body", "someone.glb"]);
+    assert_eq!(own.status.code(), Some(2), "{}", stderr_of(&own));
+    assert!(stderr_of(&own).contains("someone.glb keeps its own head"), "{}", stderr_of(&own));
+}
+
 #[cfg(not(feature = "view"))]
 #[test]
 fn a_gpu_that_was_not_built_in_is_told_with_the_cure() {

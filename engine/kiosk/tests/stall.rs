@@ -151,7 +151,7 @@ fn serve(diary: &Diary, display: Gate, meanwhile: impl FnOnce() + Send) {
             print_line: &print_line,
             figures: None,
             dresser: Dresser::new(wish),
-            to_scene: |frame| (Gated::new(frame), ()),
+            to_scene: Box::new(|frame| (Gated::new(frame), ())),
             pose,
             flight_recorder: None,
         };

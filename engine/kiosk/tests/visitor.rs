@@ -210,7 +210,7 @@ fn serve() -> Vec<SessionState> {
         screens: screens.writer,
         next_input: Box::new(move || asks.pop()),
         pairs: show,
-        draped: |_, _| (),
+        draped: Box::new(|_, _| ()),
     };
     let stop = StopSignal::default();
     thread::scope(|scope| {
@@ -225,7 +225,7 @@ fn serve() -> Vec<SessionState> {
             print_line: &print_line,
             figures: None,
             dresser: Dresser::new(wish),
-            to_scene: |frame| (FrameScene::new(frame), ()),
+            to_scene: Box::new(|frame| (FrameScene::new(frame), ())),
             pose,
             flight_recorder: None,
         };

@@ -17,14 +17,22 @@ const REACH_M: f32 = 0.064;
 /// Texels across that: half a millimetre each.
 const TEXELS: u32 = 256;
 
-/// The base layer of a body, as a look of its skin.
-pub fn base_layer(body: &Body) -> GarmentLook {
+/// Where hair lies in the picture of the edge: the skin ends at a quarter of it, the cotton at six tenths, the hair at nine.
+pub(crate) const HAIR_AT: Vec2 = Vec2::new(0.75, 0.5);
+
+/// The base layer of a body, as a look of its skin; the look's picture has the colour of hair (sRGB) too.
+pub fn base_layer(body: &Body, hair: [u8; 3]) -> GarmentLook {
     let inside = heights(body);
-    let along = |d: f32| 0.5 + 0.5 * (d / REACH_M).clamp(-0.98, 0.98);
+    let along = |d: f32| 0.25 + 0.25 * (d / REACH_M).clamp(-0.98, 0.98);
     let corners = body.mesh.triangles.iter().map(|t| t.map(|v| Vec2::new(along(inside[v as usize]), 0.5)));
-    let [r, g, b] = COTTON;
-    let texels = (0..TEXELS).map(|x| [r, g, b, if x < TEXELS / 2 { 0 } else { 255 }]).collect();
-    let edge = TileLevels::of(&Texture { width: TEXELS, height: 1, texels });
+    let painted = |x: u32| match 10 * x / (2 * TEXELS) {
+        _ if x < TEXELS / 2 => (COTTON, 0),
+        0..6 => (COTTON, 255),
+        6..9 => (hair, 255),
+        _ => (COTTON, 0),
+    };
+    let texels = (0..2 * TEXELS).map(painted).map(|([r, g, b], cover)| [r, g, b, cover]).collect();
+    let edge = TileLevels::of(&Texture { width: 2 * TEXELS, height: 1, texels });
     GarmentLook { tile: Some(edge), corners: corners.collect(), opacity: 1.0, ..GarmentLook::default() }
 }
 
@@ -90,7 +98,7 @@ mod tests {
             let arms =
                 body.regions.iter().zip(&inside).filter(|(r, _)| matches!(r, Region::LeftArm | Region::RightArm));
             assert!(arms.into_iter().all(|(_, d)| *d < 0.0), "gloves");
-            let look = base_layer(&body);
+            let look = base_layer(&body, [0; 3]);
             assert_eq!(look.corners.len(), body.mesh.triangles.len());
         }
     }

@@ -7,11 +7,11 @@ use toile_assets::mesh::vertex_normals;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::skin::Posed;
 
-use crate::base_layer::base_layer;
 use crate::cloth_look::{DrawnLook, GarmentLook};
+use crate::figure::{Appearance, Figure, PlacedHead};
 use crate::hidden_skin::{CoveringCloth, DrawnSkin};
 use crate::image::{Image, Size};
-use crate::scene::{Bounds, Camera, Colours, MANNEQUIN, Material, Scene, Surface};
+use crate::scene::{Bounds, Camera, Colours, Material, Scene, Surface};
 use crate::trace::{TraceQuality, TracedScene};
 
 /// Half the width of what an animation shows around the shopper: arms stretched out (m).
@@ -25,6 +25,7 @@ const FOLLOW: f32 = 0.35;
 
 /// Body and garments as they are drawn: topology and colours, which stay, and room for the positions, which change.
 pub struct DrawnFrame {
+    /// The body's vertices, then its hair's.
     body: Vec<Vec3>,
     normals: Vec<Vec3>,
     /// Of the body, before it is drawn beneath the garments.
@@ -32,7 +33,10 @@ pub struct DrawnFrame {
     body_triangles: Vec<[u32; 3]>,
     /// Triangles of the body that are drawn.
     drawn: Vec<[u32; 3]>,
-    /// The base layer painted on it, and what of it is on the triangles that are drawn.
+    head: PlacedHead,
+    /// Linear RGB of the skin.
+    skin: Vec3,
+    /// The base layer painted on it and its hair, and what of them is on the triangles that are drawn.
     base: GarmentLook,
     drawn_base: DrawnLook,
     /// Body vertices under a garment.
@@ -65,12 +69,12 @@ struct DrawnGarment {
 
 impl DrawnFrame {
     /// Room for a frame's body and garments, as they are put on.
-    pub fn new(frame: &Frame) -> Self {
-        Self::of(frame.body(), frame.garments())
+    pub fn new(frame: &Frame, appearance: Appearance) -> Self {
+        Self::of(frame.body(), frame.garments(), appearance)
     }
 
     /// Room for a body and garments, inner first, as they are put on.
-    pub fn of(body: &Body, garments: &[Garment]) -> Self {
+    pub fn of(body: &Body, garments: &[Garment], appearance: Appearance) -> Self {
         let starts: Vec<&[Vec3]> = garments.iter().map(|g| &*g.start).collect();
         let over = |first: usize| {
             let worn = garments.iter().zip(&starts).skip(first);
@@ -92,16 +96,21 @@ impl DrawnFrame {
                 look,
             }
         };
-        let base = base_layer(body);
+        let figure = Figure::of(body, appearance);
+        // Hair is worn over everything.
+        let mut dressed = over(0).dressed(&body.mesh.positions, &body.normals);
+        dressed.resize(figure.rest.len(), false);
         Self {
-            drawn_base: base.all(),
-            base,
-            dressed: over(0).dressed(&body.mesh.positions, &body.normals),
-            body: body.mesh.positions.clone(),
-            normals: body.normals.clone(),
-            bounds: Bounds::of(&body.mesh.positions),
-            drawn: body.mesh.triangles.clone(),
-            body_triangles: body.mesh.triangles.clone(),
+            drawn_base: figure.look.all(),
+            base: figure.look,
+            head: figure.head,
+            skin: figure.colour,
+            dressed,
+            bounds: Bounds::of(&figure.rest),
+            body: figure.rest,
+            normals: figure.normals,
+            drawn: figure.triangles.clone(),
+            body_triangles: figure.triangles,
             cloths: garments.iter().enumerate().map(cloth).collect(),
             middle: None,
             stature: body.measures.stature,
@@ -151,6 +160,7 @@ impl DrawnFrame {
             over.extend(triangles.iter().map(|t| (t.map(|v| at[v as usize]), beneath(t))));
         }
         skin.read(&mut self.body, &mut self.normals);
+        self.head.place(&mut self.body, &mut self.normals);
         self.bounds = Bounds::of(&self.body);
         let cover = CoveringCloth::new(over.into_iter().map(|(face, _)| face));
         let under = cover.hide_skin(&mut self.body, &self.normals, &self.dressed, &self.body_triangles);
@@ -171,7 +181,7 @@ impl DrawnFrame {
             positions: &self.body,
             normals: &self.normals,
             triangles: &self.drawn,
-            colours: Colours::One(MANNEQUIN),
+            colours: Colours::One(self.skin),
             material: Material::Skin,
             look: Some(self.base.shown_with(&self.drawn_base)),
         }];
@@ -208,9 +218,8 @@ fn cover(triangles: &[[u32; 3]], points: &[Vec3]) -> CoveringCloth {
     CoveringCloth::new(triangles.iter().map(|t| t.map(|v| points[v as usize])))
 }
 
-/// A small picture of a dressed body, seen from `yaw` (rad), its garments in these colours (linear RGB, inner first).
-pub fn still(frame: &Frame, snapshot: &Snapshot, yaw: f32, colours: &[[f32; 3]], size: Size) -> Image {
-    let mut drawn = DrawnFrame::new(frame).coloured(colours);
+/// A picture of a frame as it lies in a snapshot, seen from `yaw` (rad).
+pub fn still(mut drawn: DrawnFrame, snapshot: &Snapshot, yaw: f32, size: Size) -> Image {
     drawn.update(snapshot);
     let surfaces = drawn.surfaces(None);
     let scene = TracedScene::build(Scene { surfaces: &surfaces, floor: true });

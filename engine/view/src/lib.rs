@@ -25,6 +25,8 @@ pub mod base_layer;
 pub mod scene;
 
 pub mod bvh;
+
+pub mod figure;
 mod shading;
 
 pub mod hidden_skin;

@@ -10,6 +10,7 @@ use toile_fitting::heap::HeapProbe;
 use toile_fitting::wearing::poses::{arms_down, arms_raised, sitting};
 use toile_view::contact_sheet;
 use toile_view::drawn_frame::DrawnFrame;
+use toile_view::figure::Appearance;
 use toile_view::image::{Image, Size};
 use toile_view::scene::{Camera, Scene};
 use toile_view::trace::{TraceQuality, TracedScene};
@@ -97,7 +98,7 @@ pub fn pictures<E: From<ContactError>>(done: &mut dyn FnMut(OutfitPicture) -> Re
 
 fn picture(outfit: &Outfit, pose: &'static str, way: Way) -> Result<OutfitPicture, ContactError> {
     let mut scene = WornScene::new(&options(outfit.garments, 2), &HeapProbe::none())?;
-    let mut drawn = DrawnFrame::of(&scene.body, &scene.garments);
+    let mut drawn = DrawnFrame::of(&scene.body, &scene.garments, Appearance::default());
     match way {
         Way::Into(pose) => {
             let goal = pose(scene.skeleton());

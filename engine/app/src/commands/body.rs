@@ -16,11 +16,12 @@ use toile_engine::frame::BLEND;
 use toile_engine::skin::SkinningJob;
 use toile_sensors::frame::Joints;
 use toile_view::contact_sheet;
+use toile_view::figure::SkinTone;
 use toile_view::image::Size;
-use toile_view::scene::{Camera, Colours, MANNEQUIN, Material, Scene, Surface};
+use toile_view::scene::{Camera, Colours, Material, Scene, Surface};
 use toile_view::trace::{TraceQuality, TracedScene};
 
-use crate::arguments::{Printing, count, one_of};
+use crate::arguments::{Printing, SkinArg, count, one_of};
 use crate::exit::AppError;
 use crate::output::{Inputs, OutputFolder};
 use crate::pictures::write_png;
@@ -67,6 +68,8 @@ pub struct BodyArgs {
     /// Accept a surface that is open outside of the head
     #[arg(long)]
     pub allow_holes: bool,
+    #[command(flatten)]
+    skin: SkinArg,
     /// Folder for the files; it is made if missing
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
@@ -121,9 +124,9 @@ pub fn run(args: &BodyArgs) -> Result<(), AppError> {
     let (imported, rows) = import(args)?;
     if args.pictures {
         let bar = words.bar(2 * VIEWS.len() as u64, "drawing");
-        draw(&mut out, "body.png", &imported.body, &title(args, &imported.body), || bar.inc(1))?;
+        draw(&mut out, "body.png", (&imported.body, args.skin.tone), &title(args, &imported.body), || bar.inc(1))?;
         let walking = walking(&imported.body)?;
-        draw(&mut out, "walking.png", &walking, "walking", || bar.inc(1))?;
+        draw(&mut out, "walking.png", (&walking, args.skin.tone), "walking", || bar.inc(1))?;
         bar.finish_and_clear();
     }
     out.write("body.glb", &glb(&DressedBody { body: &imported.body, palette: None, worn: &[] }))?;
@@ -209,12 +212,18 @@ fn walking(body: &Body) -> Result<Body, AppError> {
     Ok(posed)
 }
 
-fn draw(out: &mut OutputFolder, name: &str, body: &Body, title: &str, mut done: impl FnMut()) -> Result<(), AppError> {
+fn draw(
+    out: &mut OutputFolder,
+    name: &str,
+    (body, skin): (&Body, SkinTone),
+    title: &str,
+    mut done: impl FnMut(),
+) -> Result<(), AppError> {
     let surfaces = [Surface {
         positions: &body.mesh.positions,
         normals: &body.normals,
         triangles: &body.mesh.triangles,
-        colours: Colours::One(MANNEQUIN),
+        colours: Colours::One(skin.colour()),
         material: Material::Skin,
         look: None,
     }];

@@ -15,10 +15,11 @@ use toile_fitting::dress::wish::Wish;
 use toile_fitting::dress::{dressed, session};
 use toile_sensors::frame::Joints;
 use toile_view::contact_sheet;
-use toile_view::drawn_frame;
+use toile_view::drawn_frame::{self, DrawnFrame};
+use toile_view::figure::Appearance;
 use toile_view::image::{Image, Size, linear};
 
-use crate::arguments::Printing;
+use crate::arguments::{AppearanceArgs, Printing};
 use crate::exit::AppError;
 use crate::output::{Inputs, OutputFile};
 use crate::report::Document;
@@ -59,6 +60,8 @@ pub(crate) struct SheetArgs {
     /// Picture to write
     #[arg(long, value_name = "FILE", default_value = "catalogue.png")]
     pub out: PathBuf,
+    #[command(flatten)]
+    look: AppearanceArgs,
     /// What is printed.
     #[command(flatten)]
     pub printing: Printing,
@@ -202,7 +205,7 @@ fn sheet(args: &SheetArgs) -> Result<(), AppError> {
     let mut pictures = Vec::with_capacity(items.len());
     let mut captions = Vec::with_capacity(items.len());
     for (item, choice) in &items {
-        match draw(&item.manifest, choice, &pose) {
+        match draw(&item.manifest, choice, &pose, args.look.appearance()) {
             Ok(image) => {
                 let price = item.manifest.price.as_ref().map_or_else(String::new, |p| format!(", {p}"));
                 captions.push(format!("{}{price}", word(&item.manifest.names, "en")));
@@ -229,7 +232,7 @@ fn sheet(args: &SheetArgs) -> Result<(), AppError> {
 }
 
 /// A garment on a body of its middle size, from the front.
-fn draw(manifest: &GarmentManifest, choice: &Choice, pose: &Joints) -> Result<Image, AppError> {
+fn draw(manifest: &GarmentManifest, choice: &Choice, pose: &Joints, appearance: Appearance) -> Result<Image, AppError> {
     let wish = Wish { garments: vec![choice.name.clone()], ..Wish::default() };
     let mut dressed = dressed::mannequin(&wish, pose)?;
     for _ in 0..SETTLING {
@@ -238,7 +241,8 @@ fn draw(manifest: &GarmentManifest, choice: &Choice, pose: &Joints) -> Result<Im
     let snapshot = dressed.reader.latest().clone();
     let colour = manifest.colours.first().map_or(choice.fabric()?.colour, |c| c.srgb).map(linear);
     let colours = vec![colour; dressed.frame.garments().len()];
-    Ok(drawn_frame::still(&dressed.frame, &snapshot, 0.0, &colours, PICTURE))
+    let drawn = DrawnFrame::new(&dressed.frame, appearance).coloured(&colours);
+    Ok(drawn_frame::still(drawn, &snapshot, 0.0, PICTURE))
 }
 
 fn pack(args: &PackArgs) -> Result<(), AppError> {

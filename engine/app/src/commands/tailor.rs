@@ -18,8 +18,9 @@ use toile_assets::draping::{self, DrapedPattern, PatternPackage};
 use toile_assets::fabric::Fabric;
 use toile_assets::sizes::GarmentKind;
 use toile_assets::tailor::PanelQuality;
+use toile_view::figure::Figure;
 
-use crate::arguments::{Printing, one_of};
+use crate::arguments::{AppearanceArgs, Printing, one_of};
 use crate::exit::AppError;
 use crate::output::{Inputs, OutputFile, OutputFolder};
 use crate::report::{Document, StrainReport};
@@ -77,6 +78,8 @@ pub struct TailorArgs {
     /// Folder for pictures: the panels flat, around the body, and draped, from front and back
     #[arg(long, value_name = "DIR")]
     pub pictures: Option<PathBuf>,
+    #[command(flatten)]
+    look: AppearanceArgs,
     #[command(flatten)]
     printing: Printing,
 }
@@ -174,7 +177,7 @@ pub fn run(args: &TailorArgs) -> Result<(), AppError> {
         })
         .collect();
     if let Some(folder) = &mut folder {
-        pictures::draw(folder, &draped, &body, &fabric)?;
+        pictures::draw(folder, &draped, &Figure::of(&body, args.look.appearance()), &fabric)?;
     }
     if let Some(folder) = folder {
         report.files = folder.commit().map_err(AppError::input)?;

@@ -33,8 +33,10 @@ use toile_fitting::scene::StepTimes;
 use toile_fitting::scene::contact::ContactReport;
 use toile_fitting::wearing;
 use toile_sensors::frame::Joints;
+use toile_view::drawn_frame::DrawnFrame;
+use toile_view::figure::{Appearance, Figure};
 
-use crate::arguments::{Printing, TapeArgs, one_of, quality};
+use crate::arguments::{AppearanceArgs, Printing, TapeArgs, one_of, quality};
 use crate::commands::crossings::CrossingCount;
 use crate::exit::AppError;
 use crate::output::Inputs;
@@ -72,6 +74,8 @@ pub struct TryOnArgs {
     /// Body to show: female, male, or a file (.glb, .gltf, .vrm) (default: by the garment)
     #[arg(long, value_name = "B", value_parser = Wearer::parse)]
     pub body: Option<Wearer>,
+    #[command(flatten)]
+    look: AppearanceArgs,
     /// Measures taken by tape
     #[command(flatten)]
     pub tape: TapeArgs,
@@ -119,6 +123,14 @@ impl TryOnArgs {
         pictures.chain(self.glb.then_some("dressed.glb")).chain(["report.json"]).collect()
     }
 
+    /// How the body looks.
+    fn appearance(&self) -> Result<Appearance, AppError> {
+        match &self.body {
+            Some(Wearer::File(file)) => self.look.on_body_of(file),
+            _ => Ok(self.look.appearance()),
+        }
+    }
+
     /// Files that are read, and so must not be overwritten.
     pub fn inputs(&self) -> Inputs {
         let body = if let Some(Wearer::File(file)) = &self.body { Some(file.as_path()) } else { None };
@@ -157,6 +169,7 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     if args.renderer == RendererChoice::Cpu && !args.lines.is_empty() {
         return Err(AppError::Usage("lines are drawn by the GPU alone; add `--renderer gpu`".to_owned()));
     }
+    args.appearance()?;
     let mut renderer = PictureRenderer::open(args.renderer)?;
     let words = args.printing.words();
     let inputs = args.inputs();
@@ -272,13 +285,17 @@ fn play(
 ) -> Result<Played, AppError> {
     let mut player = Player::new(track);
     let steps = player.steps();
-    renderer.prepare(frame.body(), frame.garments());
+    let appearance = args.appearance()?;
+    renderer.prepare(&Figure::of(frame.body(), appearance), frame.garments());
     let mut pictures = None;
     if args.pictures {
         let bar = words.bar(Pictures::work(steps), "drawing");
-        pictures = Some(Pictures::begin(out, frame, steps, bar)?);
+        pictures = Some(Pictures::begin(out, DrawnFrame::new(frame, appearance), steps, bar)?);
     }
-    let film = |path: &PathBuf| Video::begin(path, frame, steps, words.bar(Video::work(steps), "filming"));
+    let film = |path: &PathBuf| {
+        let bar = words.bar(Video::work(steps), "filming");
+        Video::begin(path, DrawnFrame::new(frame, appearance), steps, bar)
+    };
     let mut video = args.video.as_ref().map(film).transpose()?;
     let playing = (pictures.is_none() && video.is_none()).then(|| words.bar(steps, "playing"));
     let mut lines = Lines::new(if args.lines.is_empty() { 0 } else { CAPACITY });

@@ -1,8 +1,8 @@
 //! The GPU renderer, off the screen, for the pictures of a try-on.
 
-use toile_assets::body::Body;
 use toile_assets::garment::Garment;
 use toile_engine::lines::Line;
+use toile_view::figure::Figure;
 use toile_view::image::{Image, Size};
 use toile_view::raster::{
     AdapterChoice, Backdrop, Gpu, GpuError, Model, ModelError, Offscreen, RenderQuality, Renderer,
@@ -37,9 +37,9 @@ impl GpuRenderer {
         Ok(Self { gpu, model: Model::default(), still: None, motion: None, targets: Vec::new() })
     }
 
-    /// Prepares for a body and what it wears.
-    pub fn prepare(&mut self, body: &Body, garments: &[Garment]) {
-        self.model = Model::of_outfit(body, garments);
+    /// Prepares for a figure and what it wears.
+    pub fn prepare(&mut self, figure: &Figure, garments: &[Garment]) {
+        self.model = Model::of_outfit(figure, garments);
         (self.still, self.motion) = (None, None);
     }
 

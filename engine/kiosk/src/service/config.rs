@@ -17,6 +17,7 @@ use toile_assets::catalogue::{Catalogue, CatalogueItem};
 use toile_fitting::dress::measured::ShopperFacts;
 use toile_fitting::dress::wish::Wish;
 use toile_track::tape_readings::TapeReadings;
+use toile_view::figure::{Appearance, Hair, SkinTone};
 
 /// The default configuration with all keys explained.
 pub const EXAMPLE: &str = include_str!("../../systemd/kiosk.toml");
@@ -179,6 +180,10 @@ pub struct DisplayConfig {
     pub picture_minutes: f64,
     /// Where the mark is on the floor, in the sensor's world (x and z, m).
     pub mark_m: Option<[f32; 2]>,
+    /// Tone of the skin of every body.
+    pub skin: String,
+    /// Moulded hair of every body.
+    pub hair: String,
 }
 
 /// Figures for Prometheus.
@@ -237,6 +242,8 @@ impl Default for DisplayConfig {
             motion: true,
             picture_minutes: 3.0,
             mark_m: None,
+            skin: SkinTone::default().name().into(),
+            hair: Hair::default().name().into(),
         }
     }
 }
@@ -260,8 +267,14 @@ impl DisplayConfig {
         } else if !lengths.into_iter().all(f32::is_finite) {
             Some("a length in [display] is not a finite number; correct it".into())
         } else {
-            None
+            let skin = self.skin.parse::<SkinTone>().err().map(|e| format!("display.skin: {e}"));
+            skin.or_else(|| self.hair.parse::<Hair>().err().map(|e| format!("display.hair: {e}")))
         }
+    }
+
+    /// How every body looks.
+    pub fn appearance(&self) -> Appearance {
+        Appearance { skin: self.skin.parse().unwrap_or_default(), hair: self.hair.parse().unwrap_or_default() }
     }
 }
 
@@ -417,6 +430,8 @@ mod tests {
             ("[display]\nlanguage = \"tlh\"", "display.language"),
             ("[display]\npicture_minutes = 0.0", "display.picture_minutes"),
             ("[display]\nmark_m = [0.0, nan]", "[display]"),
+            ("[display]\nskin = \"sandy\"", "display.skin: no skin tone is called \"sandy\"; did you mean \"sand\"?"),
+            ("[display]\nhair = \"mohawk\"", "display.hair: no hair is called \"mohawk\"; choose one of none, short"),
         ] {
             let message = Config::parse("k.toml", text).unwrap_err().to_string();
             assert!(message.starts_with("k.toml: ") && message.contains(key), "{message}");

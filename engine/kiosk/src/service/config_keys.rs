@@ -13,7 +13,20 @@ pub const KEYS: [(&str, &[&str]); 9] = [
     ("session", &["step_in_s", "measure_s", "step_out_s", "wipe_s"]),
     ("health", &["every_s"]),
     ("machine", &["workers", "lock_memory"]),
-    ("display", &["lower_edge_mm", "height_mm", "language", "large_type", "motion", "picture_minutes", "mark_m"]),
+    (
+        "display",
+        &[
+            "lower_edge_mm",
+            "height_mm",
+            "language",
+            "large_type",
+            "motion",
+            "picture_minutes",
+            "mark_m",
+            "skin",
+            "hair",
+        ],
+    ),
     ("metrics", &["port"]),
     ("crash", &["recording"]),
 ];

@@ -22,6 +22,9 @@ pub const MOST_FRAMES: usize = 3600;
 /// Fewest frames that somebody can be measured from.
 pub const FEWEST_FRAMES: usize = 10;
 
+/// What a dressed frame becomes in the loop, and what the renderer has to know of it.
+pub type ToScene<S, O> = Box<dyn Fn(Frame) -> (S, O)>;
+
 /// Parts of the kiosk that a controller uses.
 pub struct ControllerContext<S, O> {
     /// How scenes are changed.
@@ -29,7 +32,7 @@ pub struct ControllerContext<S, O> {
     /// Dresses the mannequin, and shoppers where no window does.
     pub dresser: Dresser,
     /// A dressed frame as a scene of the loop, and what the renderer has to know of it.
-    pub to_scene: fn(Frame) -> (S, O),
+    pub to_scene: ToScene<S, O>,
     /// How the mannequin stands.
     pub pose: Joints,
 }
@@ -37,7 +40,7 @@ pub struct ControllerContext<S, O> {
 impl<S: Scene, O> ControllerContext<S, O> {
     /// Somebody dressed, as the loop takes them.
     pub fn scene(&self, dressed: Dressed) -> DressedScene<S, O> {
-        DressedScene::new(dressed, self.to_scene)
+        DressedScene::new(dressed, &self.to_scene)
     }
 
     /// Has a mannequin dressed, where there is none to come back and no other job is under way.

@@ -44,7 +44,7 @@ use toile_sensors::source::Session;
 
 use crate::error::KioskError;
 use config::{Config, SensorSource};
-use controller::SessionController;
+use controller::{SessionController, ToScene};
 use health::HealthFigures;
 use instance::InstanceLock;
 use report::KioskReport;
@@ -97,7 +97,8 @@ pub fn run(
     let run = KioskRun { options, config: &config, begun, clock, stop: &stop, print_line, figures };
     if options.headless {
         let renderer = |_: &Frame| Ok(HeadlessRenderer::default());
-        let frontend = Frontend { renderer, to_scene: |frame| (FrameScene::new(frame), ()), controller: |_| None };
+        let frontend =
+            Frontend { renderer, to_scene: Box::new(|frame| (FrameScene::new(frame), ())), controller: |_| None };
         Ok(serve(run, frontend)?.0)
     } else {
         windowed(run)
@@ -135,7 +136,7 @@ pub struct Frontend<F, H, O> {
     /// Makes the renderer, once the mannequin is dressed.
     pub renderer: F,
     /// A dressed frame as a scene of the loop, and what the renderer has to know of it.
-    pub to_scene: fn(Frame) -> (FrameScene, O),
+    pub to_scene: ToScene<FrameScene, O>,
     /// Makes the controller, given the recording that shoppers are measured from, if one is played.
     pub controller: H,
 }

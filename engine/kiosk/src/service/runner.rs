@@ -4,7 +4,6 @@ use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use toile_engine::frame::Frame;
 use toile_engine::frame_loop::flight_recorder::FlightRecorder;
 use toile_engine::frame_loop::physics_thread::Scene;
 use toile_engine::frame_loop::queue::Capacity;
@@ -18,7 +17,7 @@ use toile_fitting::live::source::Feed;
 use toile_fitting::live::watchdog::Watchdog;
 use toile_sensors::frame::Joints;
 
-use super::controller::{ControllerContext, HeadlessController, SessionController};
+use super::controller::{ControllerContext, HeadlessController, SessionController, ToScene};
 use super::health::{HealthCounter, HealthFigures};
 use super::report::RunRecord;
 use super::service_manager::{ServiceManager, ServiceStatus, StopSignal};
@@ -66,7 +65,7 @@ pub struct ServiceEnvironment<'a, S, O> {
     /// Dresses shoppers on a thread of its own.
     pub dresser: Dresser,
     /// What a dressed frame becomes in the loop, and what the renderer has to know of it.
-    pub to_scene: fn(Frame) -> (S, O),
+    pub to_scene: ToScene<S, O>,
     /// How the mannequin stands.
     pub pose: Joints,
     /// What is kept for a crash, where somebody asked for it.

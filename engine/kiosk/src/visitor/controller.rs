@@ -36,7 +36,7 @@ pub struct WindowChannels<'a, O> {
     /// Where two outfits go, and none when they are to be seen no more.
     pub pairs: Sender<Option<OutfitPair<O>>>,
     /// What the renderer has to know of a frame as it lies in a snapshot.
-    pub draped: fn(&Frame, &Snapshot) -> O,
+    pub draped: Box<dyn Fn(&Frame, &Snapshot) -> O>,
 }
 
 /// Measuring that takes longer than this many times its own time has found nobody.

@@ -13,7 +13,8 @@ use toile_fitting::live::background::{BackgroundJob, Finished};
 use toile_fitting::live::dresser::ShopperSource;
 use toile_sensors::frame::Joints;
 use toile_track::tape_readings;
-use toile_view::drawn_frame;
+use toile_view::drawn_frame::{self, DrawnFrame};
+use toile_view::figure::Appearance;
 use toile_view::image::{Size, linear};
 
 use super::picture::{self, PictureCode, RgbImage};
@@ -83,6 +84,8 @@ pub struct DressingContext {
     pub quality: Quality,
     /// What is known of every shopper.
     pub facts: ShopperFacts,
+    /// How their body looks in pictures.
+    pub appearance: Appearance,
 }
 
 /// Runs one job at a time on a thread of its own, beside the live loop.
@@ -188,7 +191,8 @@ impl DressingContext {
         let (frame, snapshot) = self.draped(client, worn)?;
         let colour = |w: &super::wardrobe::WornItem| self.wardrobe.items.get(w.item)?.colours.get(w.colour);
         let colours: Vec<[f32; 3]> = worn.iter().filter_map(colour).map(|c| c.srgb.map(linear)).collect();
-        let image = drawn_frame::still(&frame, &snapshot, yaw, &colours, DRAWN);
+        let drawn = DrawnFrame::new(&frame, self.appearance).coloured(&colours);
+        let image = drawn_frame::still(drawn, &snapshot, yaw, DRAWN);
         let still = RgbImage { size: image.size(), bytes: image.bytes().to_vec() };
         picture::encode(&still).map_err(KioskError::internal)
     }
@@ -209,6 +213,7 @@ mod tests {
             wardrobe: Arc::new(Wardrobe::stock().unwrap()),
             quality: Quality::Draft,
             facts: ShopperFacts::default(),
+            appearance: Appearance::default(),
         }
     }
 

@@ -51,7 +51,8 @@ impl VisitorSetup {
             tape,
             motion: display.motion,
         };
-        let context = DressingContext { wardrobe: wardrobe.clone(), quality: config.wish().quality, facts };
+        let (quality, appearance) = (config.wish().quality, display.appearance());
+        let context = DressingContext { wardrobe: wardrobe.clone(), quality, facts, appearance };
         let model = VisitModel::new(defaults, wardrobe, now_ns);
         Ok(Self { model, texts: Texts::load()?, mount, context, mark: display.mark_m })
     }

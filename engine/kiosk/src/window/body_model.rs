@@ -6,6 +6,7 @@ use toile_assets::mesh::vertex_normals;
 use toile_assets::sizes::Girth;
 use toile_engine::cloth::measure;
 use toile_engine::frame::{Frame, Snapshot};
+use toile_view::figure::{Appearance, Figure, PlacedHead};
 use toile_view::hidden_skin::CoveringCloth;
 use toile_view::raster::Model;
 
@@ -18,8 +19,10 @@ pub type ModelPair = [BodyModel; 2];
 /// The meshes of a body and its garments.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct BodyModel {
-    /// The body, then the garments, inner first.
+    /// The body with its hair, then the garments, inner first.
     pub meshes: Model,
+    /// What brings the head along with the posed skin.
+    pub head: PlacedHead,
     /// How much farther off each vertex counts `[surfaces][vertices]` (m): what lies under something.
     pub recess: Vec<Vec<f32>>,
     /// How tight each garment sits, -1 .. 1 `[garments][particles]`.
@@ -52,21 +55,22 @@ impl BodyModel {
     }
 
     /// Of a frame that was dressed, in rest as it lies in a snapshot of its own.
-    pub fn draped(frame: &Frame, snapshot: &Snapshot) -> Self {
-        let mut model = Self::of(frame);
-        let mut normals = vec![Vec3::ZERO; snapshot.skin.vertices()];
+    pub fn draped(frame: &Frame, snapshot: &Snapshot, appearance: Appearance) -> Self {
+        let mut model = Self::of(frame, appearance);
+        let mut normals = vec![Vec3::ZERO; snapshot.skin.vertices() + model.head.hair()];
         let points = snapshot.garments.iter().map(|g| g.to_vec());
         for (surface, points) in model.meshes.surfaces.iter_mut().skip(1).zip(points) {
             surface.rest = points;
         }
         if let Some(body) = model.meshes.surfaces.first_mut() {
             snapshot.skin.read(&mut body.rest, &mut normals);
+            model.head.place(&mut body.rest, &mut normals);
         }
         model
     }
 
     /// Of a frame that was dressed.
-    pub fn of(frame: &Frame) -> Self {
+    pub fn of(frame: &Frame, appearance: Appearance) -> Self {
         let (body, garments) = (frame.body(), frame.garments());
         let over = |first: usize| {
             let worn = garments.iter().skip(first);
@@ -78,7 +82,10 @@ impl BodyModel {
             let depth = RECESS_M * (garments.len() + 1 - first) as f32 / (garments.len() + 1) as f32;
             dressed.into_iter().map(|d| if d { depth.max(RECESS_M * 0.25) } else { 0.0 }).collect()
         };
-        let mut recesses = vec![recess(0, &body.mesh.positions, &body.normals)];
+        let figure = Figure::of(body, appearance);
+        let mut recesses: Vec<Vec<f32>> = vec![recess(0, &body.mesh.positions, &body.normals)];
+        // Hair lies over everything.
+        recesses[0].resize(figure.rest.len(), 0.0);
         for (i, garment) in garments.iter().enumerate() {
             let mut normals = vec![Vec3::ZERO; garment.particles()];
             vertex_normals(&garment.start, &garment.triangles, &mut normals);
@@ -86,7 +93,8 @@ impl BodyModel {
         }
         let tight = |(cloth, garment)| measure::tightness(cloth, garment, frame.colliders());
         Self {
-            meshes: Model::of_outfit(body, garments),
+            meshes: Model::of_outfit(&figure, garments),
+            head: figure.head,
             recess: recesses,
             fit: frame.cloths().iter().zip(garments).map(tight).collect(),
             zones: garments.iter().map(|g| g.start.iter().map(|p| zone(&body.levels, p.y)).collect()).collect(),

@@ -7,6 +7,7 @@ use glam::Vec3;
 use toile_assets::mesh::vertex_normals;
 use toile_assets::sizes::Girth;
 use toile_engine::frame::Snapshot;
+use toile_view::figure::PlacedHead;
 use toile_view::fit_map;
 use toile_view::image::Size;
 use toile_view::raster::{Backdrop, Gpu, Model, RenderQuality, Renderer, SurfaceInterpolation, Viewport};
@@ -44,6 +45,8 @@ pub struct BodyRenderer {
     renderer: Renderer,
     /// Whether motion between snapshots is shown: where the processor draws, pictures are too far apart for it.
     smooth: bool,
+    /// What brings the head along with the posed skin.
+    head: PlacedHead,
     triangles: Vec<Vec<[u32; 3]>>,
     /// Surfaces of the body and its garments; those of a pair follow.
     worn: usize,
@@ -71,6 +74,7 @@ impl BodyRenderer {
         Self {
             renderer: Renderer::new(gpu, format, RenderQuality::live(software)),
             smooth: !software,
+            head: PlacedHead::default(),
             triangles: Vec::new(),
             worn: 0,
             pair: [0; 2],
@@ -99,6 +103,7 @@ impl BodyRenderer {
         }
         self.worn = model.meshes.surfaces.len();
         self.pair = pair.map_or([0; 2], |pair| pair.each_ref().map(|m| m.meshes.surfaces.len()));
+        self.head = model.head.clone();
         self.triangles = surfaces().map(|s| s.triangles.clone()).collect();
         (self.fit, self.zones) = (model.fit.clone(), model.zones.clone());
         (self.heights, self.levels) = (model.heights.clone(), model.levels);
@@ -117,10 +122,11 @@ impl BodyRenderer {
         if self.worn != 1 + snapshot.garments.len() {
             return;
         }
-        let vertices = snapshot.skin.vertices();
+        let vertices = snapshot.skin.vertices() + self.head.hair();
         self.positions.resize(vertices, Vec3::ZERO);
         self.normals.resize(vertices, Vec3::ZERO);
         snapshot.skin.read(&mut self.positions, &mut self.normals);
+        self.head.place(&mut self.positions, &mut self.normals);
         self.follow();
         self.move_to(0, snapshot.times.published_ns, now_ns);
         for (i, points) in snapshot.garments.iter().enumerate() {

@@ -1,14 +1,16 @@
 //! The kiosk with a window: the visit's controller decides, the window's renderer draws.
 
 use toile_engine::clock::Clock;
-use toile_engine::frame::Frame;
+use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::frame_loop::physics_thread::FrameScene;
+use toile_view::figure::Appearance;
 
 use super::body_model::BodyModel;
 use super::open::{self, ServiceChannels};
 use super::options::WindowOptions;
 use super::{UserEvent, WindowRenderer};
 use crate::error::KioskError;
+use crate::service::controller::ToScene;
 use crate::service::report::KioskReport;
 use crate::service::{BoxedController, Frontend, KioskRun, serve};
 use crate::visitor::controller;
@@ -31,10 +33,12 @@ pub fn run(kiosk: KioskRun<'_>) -> Result<KioskReport, KioskError> {
         first: setup.first(),
         stop: kiosk.stop.clone(),
     };
+    let appearance = display.appearance();
     open::run(options, |channels| {
         let ServiceChannels { screens, mut user_events, pairs, opening } = channels;
         let next_input = Box::new(move || user_events.pop().map(input));
-        let channels = controller::WindowChannels { screens, next_input, pairs, draped: BodyModel::draped };
+        let draped = Box::new(move |frame: &Frame, snapshot: &Snapshot| BodyModel::draped(frame, snapshot, appearance));
+        let channels = controller::WindowChannels { screens, next_input, pairs, draped };
         let controller =
             move |played| -> BoxedController<'_, BodyModel> { Some(Box::new(setup.controller(channels, played))) };
         let print_line = kiosk.print_line;
@@ -43,9 +47,9 @@ pub fn run(kiosk: KioskRun<'_>) -> Result<KioskReport, KioskError> {
             if let Some(slow) = renderer.slowness() {
                 print_line(&slow);
             }
-            Ok(renderer.showing(BodyModel::of(mannequin)))
+            Ok(renderer.showing(BodyModel::of(mannequin, appearance)))
         };
-        let (mut report, drawn) = serve(kiosk, Frontend { renderer, to_scene, controller })?;
+        let (mut report, drawn) = serve(kiosk, Frontend { renderer, to_scene: to_scene(appearance), controller })?;
         if let Some(mut renderer) = drawn {
             let (window, warnings) = WindowRenderer::report(&mut renderer);
             report.window = Some(window);
@@ -56,9 +60,11 @@ pub fn run(kiosk: KioskRun<'_>) -> Result<KioskReport, KioskError> {
 }
 
 /// A frame as a scene of the loop, and what is drawn of it.
-fn to_scene(frame: Frame) -> (FrameScene, BodyModel) {
-    let model = BodyModel::of(&frame);
-    (FrameScene::new(frame), model)
+fn to_scene(appearance: Appearance) -> ToScene<FrameScene, BodyModel> {
+    Box::new(move |frame| {
+        let model = BodyModel::of(&frame, appearance);
+        (FrameScene::new(frame), model)
+    })
 }
 
 /// An event from the display as the visitor's model takes it.

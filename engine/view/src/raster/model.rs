@@ -2,14 +2,12 @@
 
 use glam::{Vec2, Vec3};
 
-use toile_assets::body::Body;
 use toile_assets::fabric::{Fabric, Weave};
 use toile_assets::garment::Garment;
 
-use crate::base_layer::base_layer;
 use crate::cloth_look::GarmentLook;
+use crate::figure::Figure;
 use crate::image::linear;
-use crate::scene::MANNEQUIN;
 
 /// All surfaces of a scene, in dressing order: the body, then garments from the skin outwards.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -19,10 +17,10 @@ pub struct Model {
 }
 
 impl Model {
-    /// A body and what it wears, inner garments first.
-    pub fn of_outfit(body: &Body, garments: &[Garment]) -> Self {
+    /// A figure and what it wears, inner garments first.
+    pub fn of_outfit(figure: &Figure, garments: &[Garment]) -> Self {
         let surfaces =
-            std::iter::once(RenderSurface::of_body(body)).chain(garments.iter().map(RenderSurface::of_garment));
+            std::iter::once(RenderSurface::of_figure(figure)).chain(garments.iter().map(RenderSurface::of_garment));
         Self { surfaces: surfaces.collect() }
     }
 }
@@ -143,13 +141,13 @@ pub enum ModelError {
 }
 
 impl RenderSurface {
-    /// The skin of a body at rest, in the mannequin's colour.
-    pub fn of_body(body: &Body) -> Self {
+    /// A figure at rest.
+    pub fn of_figure(figure: &Figure) -> Self {
         Self {
-            rest: body.mesh.positions.clone(),
-            look: Some(base_layer(body)),
-            triangles: body.mesh.triangles.clone(),
-            colour: MANNEQUIN,
+            rest: figure.rest.clone(),
+            look: Some(figure.look.clone()),
+            triangles: figure.triangles.clone(),
+            colour: figure.colour,
             material: RenderMaterial::Skin,
         }
     }

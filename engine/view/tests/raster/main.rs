@@ -11,6 +11,7 @@ use toile_view::scene::{Bounds, Camera, Colours, Material, Scene};
 use toile_view::{fit_map, trace};
 
 mod dressed;
+mod figures;
 mod offload;
 mod prints;
 

@@ -4,17 +4,16 @@ use std::f32::consts::PI;
 use std::fmt::Write;
 
 use glam::Vec3;
-use toile_assets::body::Body;
 use toile_assets::draping::DrapedPattern;
 use toile_assets::fabric::Fabric;
 use toile_assets::garment::check::corners;
 use toile_assets::garment::{Look, Shape};
 use toile_assets::mesh::vertex_normals;
-use toile_view::base_layer::base_layer;
 use toile_view::cloth_look::GarmentLook;
 use toile_view::contact_sheet;
+use toile_view::figure::Figure;
 use toile_view::image::{Image, Size, linear};
-use toile_view::scene::{Camera, Colours, MANNEQUIN, Material, Scene, Surface};
+use toile_view::scene::{Camera, Colours, Material, Scene, Surface};
 use toile_view::trace::{TraceQuality, TracedScene};
 
 use crate::exit::AppError;
@@ -30,16 +29,16 @@ const GAP_M: f64 = 0.04;
 const ROW_M: f64 = 2.0;
 
 /// Draws all of them.
-pub fn draw(out: &mut OutputFolder, draped: &DrapedPattern, body: &Body, fabric: &Fabric) -> Result<(), AppError> {
+pub fn draw(out: &mut OutputFolder, draped: &DrapedPattern, figure: &Figure, fabric: &Fabric) -> Result<(), AppError> {
     out.write("flat.svg", flat(draped).as_bytes())?;
     let placed = &draped.placed;
     let look = |shape: &Shape| GarmentLook::new(&Look::of(shape), fabric);
     let colour = Vec3::from_array(fabric.colour.map(linear));
     let before = Cloth { at: &placed.worn, triangles: &placed.triangles(), colour, look: look(placed) };
-    write_png(out, "placed.png", &sides(body, &before, "Around the body"))?;
+    write_png(out, "placed.png", &sides(figure, &before, "Around the body"))?;
     let hanging = draped.hanging();
     let after = Cloth { at: &hanging.worn, triangles: &hanging.triangles(), colour, look: look(&hanging) };
-    write_png(out, "draped.png", &sides(body, &after, "Draped"))
+    write_png(out, "draped.png", &sides(figure, &after, "Draped"))
 }
 
 /// Cloth as it lies.
@@ -50,19 +49,18 @@ struct Cloth<'a> {
     look: GarmentLook,
 }
 
-/// Front and back of a body in cloth.
-fn sides(body: &Body, cloth: &Cloth<'_>, title: &str) -> Image {
+/// Front and back of a figure in cloth.
+fn sides(figure: &Figure, cloth: &Cloth<'_>, title: &str) -> Image {
     let Cloth { at, triangles, colour, ref look } = *cloth;
     let mut normals = vec![Vec3::ZERO; at.len()];
     vertex_normals(at, triangles, &mut normals);
-    let base = base_layer(body);
     let skin = Surface {
-        positions: &body.mesh.positions,
-        normals: &body.normals,
-        triangles: &body.mesh.triangles,
-        colours: Colours::One(MANNEQUIN),
+        positions: &figure.rest,
+        normals: &figure.normals,
+        triangles: &figure.triangles,
+        colours: Colours::One(figure.colour),
         material: Material::Skin,
-        look: Some(base.shown()),
+        look: Some(figure.look.shown()),
     };
     let cloth = Surface {
         positions: at,
