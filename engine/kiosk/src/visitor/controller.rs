@@ -1,5 +1,7 @@
 //! The controller of a visit: feeds the visitor's model with what the sensor and the window report, and carries out its effects.
 
+use std::sync::Arc;
+
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::frame_loop::physics_thread::Scene;
 use toile_engine::frame_loop::queue::Sender;
@@ -16,10 +18,11 @@ use super::presence::{Presence, PresenceTracker};
 use super::reach::DisplayMount;
 use super::screen::Screen;
 use super::texts::Texts;
-use super::wardrobe::Outfit;
+use super::wardrobe::{Outfit, Wardrobe};
 use crate::error::KioskError;
 use crate::service::controller::{ControllerContext, FEWEST_FRAMES, MOST_FRAMES, STALE_NS, SessionController};
 use crate::service::session::{SessionState, StateChange};
+use crate::service::stock_watch::{StockChange, StockFigures, StockWatch};
 
 /// Two outfits, draped, as the renderer draws them: left and right.
 pub type OutfitPair<O> = Box<[O; 2]>;
@@ -83,6 +86,7 @@ pub struct VisitController<'a, O> {
     /// Whether the next who is dressed is another one than is shown.
     afresh: bool,
     shown: Option<Screen>,
+    watch: Option<StockWatch<Arc<Wardrobe>>>,
 }
 
 impl<'a, O> VisitController<'a, O> {
@@ -112,6 +116,28 @@ impl<'a, O> VisitController<'a, O> {
             jobs: PendingJobs::default(),
             afresh: true,
             shown: None,
+            watch: None,
+        }
+    }
+
+    /// The same with a stock that is watched.
+    #[must_use]
+    pub fn watching(self, watch: Option<StockWatch<Arc<Wardrobe>>>) -> Self {
+        Self { watch, ..self }
+    }
+
+    /// Takes a stock that was read again, when nobody is there: a visitor keeps what they see.
+    fn restock<S: Scene>(&mut self, context: &mut ControllerContext<S, O>) {
+        let Some(watch) = &mut self.watch else { return };
+        watch.poll();
+        if self.model.is_idle()
+            && !self.worker.is_busy()
+            && context.is_at_rest()
+            && let Some(StockChange { stock, hung, mannequin }) = watch.take()
+        {
+            self.model.restock(hung.clone(), stock.first.wish.garments.clone());
+            self.worker.restock(hung, stock.first.clone());
+            context.restock(stock.first, mannequin);
         }
     }
 
@@ -278,8 +304,17 @@ impl<S: Scene, O> SessionController<S, O> for VisitController<'_, O> {
         }
         self.measure(now, context);
         self.start_next_job()?;
+        self.restock(context);
         self.show();
         let to = self.model.state();
         Ok((from != to).then_some(StateChange { from, to }))
+    }
+
+    fn lines(&mut self) -> Vec<String> {
+        self.watch.as_mut().map(StockWatch::lines).unwrap_or_default()
+    }
+
+    fn stock(&self) -> Option<&StockFigures> {
+        self.watch.as_ref().map(StockWatch::figures)
     }
 }

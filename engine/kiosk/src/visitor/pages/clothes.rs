@@ -5,7 +5,7 @@ use super::super::screen::{Block, Page};
 use super::super::size_fit::{OutOfRange, SizeChoice};
 use super::super::texts::{TextKey, TextValue};
 use super::PageWriter;
-use toile_assets::catalogue::word;
+use toile_assets::catalogue::{Price, word};
 
 /// As sure as this, a size is simply the best.
 const SURE: f32 = toile_track::recommend::SURE;
@@ -104,9 +104,14 @@ impl PageWriter<'_> {
             let names: Vec<String> = off.map(|other| self.garment(other)).collect();
             let others = self.translation.list(&names);
             let instead = || self.format(TextKey::GarmentsInstead, &[("others", TextValue::Text(&others))]);
-            if names.is_empty() { item.price.clone() } else { Some(instead()) }
+            if names.is_empty() { item.price.as_ref().map(|price| self.price(price)) } else { Some(instead()) }
         };
         (self.garment(item), detail)
+    }
+
+    /// A price as the language writes it.
+    pub(super) fn price(&self, price: &Price) -> String {
+        price.to_string().replace('.', &self.translation.language().decimal_mark().to_string())
     }
 
     /// The size before or after, and which that is.
