@@ -59,7 +59,7 @@ impl Default for ThemeColours {
 #[derive(Clone, PartialEq)]
 pub struct ShopTheme {
     /// The logo, as it is shown.
-    pub logo: Option<Picture>,
+    pub logo: Option<Arc<Picture>>,
     /// Its colours.
     pub colours: ThemeColours,
     /// The bytes of its font, TrueType or OpenType; characters that it lacks are shown in the built-in ones.
@@ -102,13 +102,13 @@ impl ShopTheme {
             font::check(&bytes).map_err(|reason| wrong(name, reason))?;
             Ok::<_, CatalogueError>(Arc::from(bytes))
         });
-        Ok(Self { logo: logo.transpose()?, colours, font: font.transpose()? })
+        Ok(Self { logo: logo.transpose()?.map(Arc::new), colours, font: font.transpose()? })
     }
 
     /// Bytes that it holds.
     pub fn bytes(&self) -> usize {
         size_of::<Self>()
-            + self.logo.as_ref().map_or(0, Picture::bytes)
+            + self.logo.as_ref().map_or(0, |logo| logo.bytes())
             + self.font.as_ref().map_or(0, |font| font.len())
     }
 }

@@ -14,6 +14,7 @@ use toile_track::gesture::Gestures;
 
 use super::dressing_worker::{DressingContext, DressingJob, DressingWorker, JobResult, MeasuredVisitor, MeasuringJob};
 use super::model::{Effect, Input, VisitModel};
+use super::photographs::Photographs;
 use super::presence::{Presence, PresenceTracker};
 use super::reach::DisplayMount;
 use super::screen::Screen;
@@ -86,7 +87,10 @@ pub struct VisitController<'a, O> {
     /// Whether the next who is dressed is another one than is shown.
     afresh: bool,
     shown: Option<Screen>,
+    photographs: Photographs,
     watch: Option<StockWatch<Arc<Wardrobe>>>,
+    /// Lines for whoever looks after the kiosk.
+    lines: Vec<String>,
 }
 
 impl<'a, O> VisitController<'a, O> {
@@ -116,7 +120,9 @@ impl<'a, O> VisitController<'a, O> {
             jobs: PendingJobs::default(),
             afresh: true,
             shown: None,
+            photographs: Photographs::default(),
             watch: None,
+            lines: Vec::new(),
         }
     }
 
@@ -251,7 +257,9 @@ impl<'a, O> VisitController<'a, O> {
 
     /// Shows what has changed.
     fn show(&mut self) {
-        let screen = Screen::of(&self.model, &self.texts, &self.mount);
+        let mut screen = Screen::of(&self.model, &self.texts, &self.mount);
+        let failed = self.photographs.show(&mut screen, self.model.wardrobe());
+        self.lines.extend(failed.map(|left| format!("a photograph is not shown: {}", left.why)));
         if self.shown.as_ref() != Some(&screen) {
             self.window.screens.publish(screen.clone());
             self.shown = Some(screen);
@@ -311,7 +319,9 @@ impl<S: Scene, O> SessionController<S, O> for VisitController<'_, O> {
     }
 
     fn lines(&mut self) -> Vec<String> {
-        self.watch.as_mut().map(StockWatch::lines).unwrap_or_default()
+        let mut lines = std::mem::take(&mut self.lines);
+        lines.extend(self.watch.iter_mut().flat_map(StockWatch::lines));
+        lines
     }
 
     fn stock(&self) -> Option<&StockFigures> {

@@ -61,6 +61,11 @@ impl VisitModel {
         self.visit = Visit::new(&self.defaults);
     }
 
+    /// The garments to choose from.
+    pub fn wardrobe(&self) -> &Wardrobe {
+        &self.wardrobe
+    }
+
     /// The state of the session.
     pub fn state(&self) -> SessionState {
         self.session.state()

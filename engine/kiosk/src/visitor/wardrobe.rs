@@ -21,8 +21,21 @@ use super::texts::TextKey;
 use crate::error::KioskError;
 use crate::service::stock::{LeftOut, Stock};
 
-/// The garments that hang where no shop brings its own.
-const STOCK: [&str; 4] = ["sun-dress", "t-shirt", "wide-trousers", "jacket"];
+/// The garments that hang where no shop brings its own, some of them in a print, each with its name in the pages' texts.
+const STOCK: [(&str, TextKey); 12] = [
+    ("sun-dress", TextKey::GarmentSunDress),
+    ("t-shirt", TextKey::GarmentTShirt),
+    ("wide-trousers", TextKey::GarmentWideTrousers),
+    ("jacket", TextKey::GarmentJacket),
+    ("circle-skirt:lawn-flowers", TextKey::GarmentCircleSkirt),
+    ("slim-trousers", TextKey::GarmentSlimTrousers),
+    ("shirt:lawn-gingham", TextKey::GarmentShirt),
+    ("jumper:jersey-breton", TextKey::GarmentJumper),
+    ("mens-shirt", TextKey::GarmentMensShirt),
+    ("mens-trousers", TextKey::GarmentMensTrousers),
+    ("blazer", TextKey::GarmentBlazer),
+    ("coat", TextKey::GarmentCoat),
+];
 
 /// Garments that are worn at once, at most: one over each half of the body, in each of eight layers.
 pub const MOST_WORN: usize = 16;
@@ -251,13 +264,7 @@ fn average() -> Result<Body, KioskError> {
 }
 
 fn title(choice: &Choice) -> ItemName {
-    let key = match choice.name.as_str() {
-        "sun-dress" => Some(TextKey::GarmentSunDress),
-        "t-shirt" => Some(TextKey::GarmentTShirt),
-        "jacket" => Some(TextKey::GarmentJacket),
-        "wide-trousers" => Some(TextKey::GarmentWideTrousers),
-        _ => None,
-    };
+    let key = STOCK.iter().find(|(name, _)| *name == choice.name).map(|(_, key)| *key);
     match (key, &choice.source) {
         (Some(key), _) => ItemName::Word(key),
         (None, ChoiceSource::Style(style)) => ItemName::Title(style.title.clone()),
@@ -302,7 +309,7 @@ impl Wardrobe {
     /// A garment whose file, sizes or fabric cannot be used.
     pub fn stock() -> Result<Self, KioskError> {
         let average = average()?;
-        let hung = |name: &&str| WardrobeItem::of(&*attire::find_now(name)?, &average);
+        let hung = |(name, _): &(&str, TextKey)| WardrobeItem::of(&*attire::find_now(name)?, &average);
         Ok(Self::hung(STOCK.iter().map(hung).collect::<Result<_, KioskError>>()?, None))
     }
 
@@ -408,9 +415,11 @@ mod tests {
         for item in wardrobe().items {
             assert!(item.word().is_some() && item.sizes.len() >= 3, "{}", item.name);
             assert!((4..=5).contains(&item.colours.len()));
-            let own = Choice::find(&item.name).unwrap().fabric().unwrap().colour;
-            assert_eq!(item.colours[0].srgb, own, "the first is the fabric's");
-            for (i, colour) in item.colours.iter().enumerate() {
+            let fabric = Choice::find(&item.name).unwrap().fabric().unwrap();
+            assert_eq!(item.colours[0].srgb, fabric.colour, "the first is the fabric's");
+            let woven = usize::from(item.colours[0].word == TextKey::ColourOwn);
+            assert!(woven == 0 || fabric.print.is_some(), "only a print is told by no colour's name");
+            for (i, colour) in item.colours.iter().enumerate().skip(woven) {
                 assert_ne!(colour.word, TextKey::ColourOwn, "{} has a colour without a name", item.name);
                 assert!(item.colours[..i].iter().all(|c| c.word != colour.word));
             }
