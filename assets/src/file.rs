@@ -7,6 +7,7 @@
 use std::fs::{File, Metadata};
 use std::io::{self, Read};
 use std::path::Path;
+use std::time::SystemTime;
 
 use thiserror::Error;
 
@@ -104,6 +105,26 @@ pub fn read(path: &Path, kind: &FileKind) -> Result<Vec<u8>, FileError> {
         return Err(too_large(None));
     }
     Ok(bytes)
+}
+
+/// By what a file is known to be still the same: another one, or another content, has another stamp.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FileStamp {
+    /// When it was written last, where the file system knows that.
+    modified: Option<SystemTime>,
+    bytes: u64,
+    /// Its number in the file system, which a file that takes its place does not have.
+    number: u64,
+}
+
+/// The stamp of a file; none of what is not there.
+pub fn stamp(path: &Path) -> Option<FileStamp> {
+    let data = std::fs::metadata(path).ok()?;
+    #[cfg(unix)]
+    let number = std::os::unix::fs::MetadataExt::ino(&data);
+    #[cfg(not(unix))]
+    let number = 0;
+    Some(FileStamp { modified: data.modified().ok(), bytes: data.len(), number })
 }
 
 /// Reads a whole file as text.

@@ -117,6 +117,7 @@ fn packages_that_are_none_are_refused_in_one_sentence() {
     assert!(refused(with(&png(100_000, 100))).contains("100000 x 100 pixels"));
     assert!(refused(with(&png(0, 100))).contains("0 x 100 pixels"));
     assert!(refused(with(b"GIF89a")).contains("PNG or JPEG"));
+    assert!(refused(with(&png(8_000, 8_000))).contains("64000000 pixels"));
 }
 
 #[test]
@@ -203,6 +204,70 @@ fn a_folder_that_is_no_catalogue_is_refused() {
     assert!(sentence(&Catalogue::read(&scratch.0).unwrap_err()).contains("line 1"));
     scratch.file("catalogue.toml", "shop = \"A\"\nlogo = \"x\"\n");
     assert!(sentence(&Catalogue::read(&scratch.0).unwrap_err()).contains("line 2"));
+}
+
+/// A whole picture of one colour.
+fn picture(width: u32, height: u32) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    image::RgbaImage::from_pixel(width, height, image::Rgba([180, 60, 50, 255]))
+        .write_to(&mut bytes, image::ImageFormat::Png)
+        .unwrap();
+    bytes.into_inner()
+}
+
+#[test]
+fn a_theme_is_read_and_what_is_wrong_with_it_is_one_sentence() {
+    let scratch = Scratch::new("theme");
+    let font = include_bytes!("../../engine/kiosk/fonts/NotoSans-Regular.ttf");
+    scratch.file("logo.png", picture(1_000, 400));
+    scratch.file("shop.ttf", font);
+    let whole = "shop = \"A\"\n[theme]\nlogo = \"logo.png\"\nfont = \"shop.ttf\"\nground = [0.96, 0.94, 0.9]\n\
+                 text = [0.1, 0.1, 0.12]\naccent = [0.6, 0.2, 0.2]\n";
+    scratch.file("catalogue.toml", whole);
+    let theme = Catalogue::read(&scratch.0).unwrap().theme.unwrap();
+    let logo = theme.logo.as_ref().unwrap();
+    assert_eq!((logo.width, logo.height), (512, 205), "as large as it is shown");
+    assert_eq!(theme.font.as_ref().map(|bytes| bytes.len()), Some(font.len()));
+    assert_eq!((theme.colours.ground, theme.colours.accent), ([0.96, 0.94, 0.9], [0.6, 0.2, 0.2]));
+    for (from, to, word) in [
+        ("[0.1, 0.1, 0.12]", "[0.7, 0.7, 0.7]", "contrast of 1.9:1"),
+        ("[0.6, 0.2, 0.2]", "[153, 51, 51]", "theme.accent"),
+        ("[0.6, 0.2, 0.2]", "[0.6, 0.2]", "line 7"),
+        ("accent", "akzent", "line 7"),
+        ("logo.png", "gone.png", "gone.png"),
+        ("logo.png", "../logo.png", "no plain file name"),
+        ("logo.png", "shop.ttf", "no picture in PNG or JPEG"),
+        ("logo.png", "wide.png", "3000 x 2 pixels"),
+        ("logo.png", "half.png", "half.png"),
+        ("shop.ttf", "logo.png", "no font in TrueType or OpenType"),
+        ("shop.ttf", "cut.ttf", "cut.ttf"),
+        ("shop.ttf", "large.ttf", "at most 8388608 bytes"),
+    ] {
+        scratch.file("wide.png", picture(3_000, 2));
+        let logo = picture(60, 60);
+        scratch.file("half.png", &logo[..logo.len() / 2]);
+        scratch.file("cut.ttf", &font[..300]);
+        scratch.file("large.ttf", vec![0; 9 << 20]);
+        scratch.file("catalogue.toml", whole.replace(from, to));
+        let refused = sentence(&Catalogue::read(&scratch.0).unwrap_err());
+        assert!(refused.contains(word), "{to}: {refused}");
+    }
+}
+
+#[test]
+fn a_package_that_is_still_the_same_is_not_read_again() {
+    let scratch = Scratch::new("again");
+    scratch.file("catalogue.toml", "shop = \"A\"\n");
+    let package = |article: &str| zipped(&[("garment.toml", manifest(article, "sun-dress").as_bytes())]);
+    scratch.file("a.toile", package("A-1"));
+    scratch.file("b.toile", package("B-1"));
+    let before = Catalogue::read(&scratch.0).unwrap();
+    assert_eq!(Catalogue::read_after(&scratch.0, Some(&before)).unwrap(), before);
+    scratch.file("b.toile", package("B-22"));
+    let after = Catalogue::read_after(&scratch.0, Some(&before)).unwrap();
+    assert_eq!(after.items[0], before.items[0]);
+    assert_eq!(after.items[1].manifest.article, "B-22");
+    assert_ne!(after.items[1].stamp, before.items[1].stamp);
 }
 
 #[test]

@@ -12,6 +12,27 @@ pub const MAX_UNPACKED_BYTES: u64 = 128 << 20;
 /// Most pixels along a side of a photograph or texture.
 pub const MAX_PIXELS: usize = 8_192;
 
+/// Most pixels of a photograph: those of a camera of 24 megapixels.
+pub const MAX_PICTURE_PIXELS: u64 = 24 << 20;
+
+/// Most bytes that reading one photograph or logo may take for a moment: four a pixel, and what the decoder needs.
+pub const MAX_DECODED_BYTES: u64 = 5 * MAX_PICTURE_PIXELS;
+
+/// Most bytes of a shop's logo.
+pub const MAX_LOGO_BYTES: u64 = 2 << 20;
+
+/// Most pixels along a side of a logo's file.
+pub const MAX_LOGO_SIDE: usize = 2_048;
+
+/// Pixels along the longer side at which a logo is kept: what a large display shows of it.
+pub const LOGO_SIDE: u32 = 512;
+
+/// Most bytes of a shop's font: one with a few thousand characters.
+pub const MAX_FONT_BYTES: u64 = 8 << 20;
+
+/// Least contrast between text and ground (WCAG 2.2, success criterion 1.4.3).
+pub const MIN_CONTRAST: f32 = 4.5;
+
 /// Most packages of a catalogue.
 pub const MAX_GARMENTS: usize = 2_000;
 

@@ -11,7 +11,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
 use super::error::CatalogueError;
-use super::limits::{MAX_FILES, MAX_PACKAGE_BYTES, MAX_PIXELS, MAX_TOML_BYTES, MAX_UNPACKED_BYTES};
+use super::limits::{MAX_FILES, MAX_PACKAGE_BYTES, MAX_PICTURE_PIXELS, MAX_PIXELS, MAX_TOML_BYTES, MAX_UNPACKED_BYTES};
 use super::manifest::GarmentManifest;
 use crate::adapt::source;
 use crate::fabric::Fabric;
@@ -150,6 +150,12 @@ impl GarmentPackage {
             );
             return Err(self.content(file, reason));
         }
+        let pixels = size.width as u64 * size.height as u64;
+        if pixels > MAX_PICTURE_PIXELS {
+            let reason =
+                format!("it has {pixels} pixels, and a photograph has {MAX_PICTURE_PIXELS} at most; make it smaller");
+            return Err(self.content(file, reason));
+        }
         Ok(())
     }
 
@@ -223,7 +229,7 @@ fn garbled(package: &str, error: &ZipError) -> CatalogueError {
 }
 
 /// Whether a name is that of a file, and no path: letters, digits, and a few signs.
-fn is_plain(name: &str) -> bool {
+pub(super) fn is_plain(name: &str) -> bool {
     let allowed = |c: char| c.is_alphanumeric() || " ._-+()".contains(c);
     !name.is_empty() && name.len() <= 120 && !name.starts_with('.') && name.chars().all(allowed)
 }

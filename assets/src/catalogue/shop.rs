@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use serde::Deserialize;
 
@@ -9,14 +10,15 @@ use super::error::CatalogueError;
 use super::limits::{MAX_GARMENTS, MAX_TOML_BYTES};
 use super::manifest::GarmentManifest;
 use super::package::{ENDING, GarmentPackage};
-use crate::file::{self, FileKind};
+use super::theme::{ShopTheme, ThemeFile};
+use crate::file::{self, FileKind, FileStamp};
 use crate::toml_keys::place;
 
 /// What is read as a catalogue.
 const CATALOGUE: FileKind = FileKind { name: "a catalogue", max_bytes: MAX_TOML_BYTES, cure: "name each package once" };
 
 /// The catalogue's own file.
-const FILE: &str = "catalogue.toml";
+pub const FILE: &str = "catalogue.toml";
 
 /// What `catalogue.toml` says.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
@@ -26,6 +28,8 @@ pub struct ShopFile {
     pub shop: String,
     /// The packages in the order in which they are shown; left out, all of the folder by name.
     pub garments: Option<Vec<String>>,
+    /// How its screens look; left out, as they do without a catalogue.
+    pub theme: Option<ThemeFile>,
 }
 
 /// A garment of a catalogue.
@@ -35,6 +39,8 @@ pub struct CatalogueItem {
     pub path: PathBuf,
     /// What the shop says of it.
     pub manifest: GarmentManifest,
+    /// Its package as it was read: one of another stamp is another package.
+    pub stamp: FileStamp,
 }
 
 /// A package that is left out.
@@ -55,14 +61,24 @@ pub struct Catalogue {
     pub items: Vec<CatalogueItem>,
     /// The packages that are left out.
     pub refused: Vec<RefusedPackage>,
+    /// How its screens look.
+    pub theme: Option<Arc<ShopTheme>>,
 }
 
 impl Catalogue {
     /// Reads a catalogue; a package that cannot be used, or has another's article number, is left out and named.
     ///
     /// # Errors
-    /// A folder that cannot be read or holds no catalogue.
+    /// A folder that cannot be read or holds no catalogue, a theme that cannot be used.
     pub fn read(folder: &Path) -> Result<Self, CatalogueError> {
+        Self::read_after(folder, None)
+    }
+
+    /// The same where it was read before: a package that is still the same is not read again.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn read_after(folder: &Path, before: Option<&Self>) -> Result<Self, CatalogueError> {
         let wrong = |reason: String| CatalogueError::Folder { folder: folder.display().to_string(), reason };
         if !folder.is_dir() {
             return Err(wrong("it is no folder".into()));
@@ -76,10 +92,13 @@ impl Catalogue {
             Some(names) => names,
             None => packages(folder).map_err(|e| wrong(format!("it cannot be read ({e})")))?,
         };
-        let mut catalogue = Self { shop: shop.shop, items: Vec::new(), refused: Vec::new() };
+        let theme = shop.theme.map(|theme| ShopTheme::read(folder, FILE, &theme).map(Arc::new)).transpose()?;
+        let mut catalogue = Self { shop: shop.shop, items: Vec::new(), refused: Vec::new(), theme };
+        let mut known: BTreeMap<&Path, &CatalogueItem> = BTreeMap::new();
+        known.extend(before.into_iter().flat_map(|before| &before.items).map(|item| (item.path.as_path(), item)));
         let mut articles: BTreeMap<String, String> = BTreeMap::new();
         for (place, name) in names.into_iter().enumerate() {
-            match read_item(folder, &name, place, &articles) {
+            match read_item((folder, &name), place, &known, &articles) {
                 Ok(item) => {
                     articles.insert(item.manifest.article.clone(), name);
                     catalogue.items.push(item);
@@ -100,6 +119,7 @@ impl Catalogue {
             size_of_val(item) + item.path.as_os_str().len() + m.article.len() + words(&m.names) + files + colours
         };
         self.items.iter().map(of).sum::<usize>()
+            + self.theme.as_ref().map_or(0, |theme| theme.bytes())
             + self.refused.iter().map(|r| size_of_val(r) + r.package.len() + r.why.len()).sum::<usize>()
     }
 }
@@ -118,9 +138,9 @@ fn packages(folder: &Path) -> std::io::Result<Vec<String>> {
 }
 
 fn read_item(
-    folder: &Path,
-    name: &str,
+    (folder, name): (&Path, &str),
     place: usize,
+    known: &BTreeMap<&Path, &CatalogueItem>,
     articles: &BTreeMap<String, String>,
 ) -> Result<CatalogueItem, String> {
     if place >= MAX_GARMENTS {
@@ -130,12 +150,20 @@ fn read_item(
         return Err(format!("{name}: it is no name of a package; give one that ends in {ENDING} beside {FILE}"));
     }
     let path = folder.join(name);
-    let manifest = GarmentPackage::open(&path).and_then(|mut package| package.manifest()).map_err(|e| e.to_string())?;
+    let stamp = file::stamp(&path);
+    let same = known.get(path.as_path()).filter(|item| Some(item.stamp) == stamp);
+    let manifest = match same {
+        Some(item) => item.manifest.clone(),
+        None => GarmentPackage::open(&path).and_then(|mut package| package.manifest()).map_err(|e| e.to_string())?,
+    };
+    let stamp = stamp.filter(|_| file::stamp(&path) == stamp);
+    let stamp =
+        stamp.ok_or_else(|| format!("{name}: it was changed while it was read; write it anew and rename it"))?;
     if let Some(other) = articles.get(&manifest.article) {
         return Err(format!(
             "{name}: its article number {} is that of {other}; give each garment its own",
             manifest.article
         ));
     }
-    Ok(CatalogueItem { path, manifest })
+    Ok(CatalogueItem { path, manifest, stamp })
 }

@@ -116,7 +116,7 @@ fn material(name: &str, srgb: [f32; 3], roughness: f32, double_sided: bool) -> V
 }
 
 /// A linear value of an sRGB one (IEC 61966-2-1).
-fn linear(srgb: f32) -> f32 {
+pub(crate) fn linear(srgb: f32) -> f32 {
     let c = srgb.clamp(0.0, 1.0);
     if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
 }

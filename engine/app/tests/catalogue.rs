@@ -90,6 +90,29 @@ fn a_kiosk_wears_what_its_catalogue_has() {
 }
 
 #[test]
+fn a_theme_is_checked_and_one_that_cannot_be_read_is_refused() {
+    let scratch = Scratch::new("catalogue-theme");
+    fs::create_dir_all(scratch.path().join("shop")).unwrap();
+    let catalogue = |text: &str| fs::write(scratch.path().join("shop/catalogue.toml"), text).unwrap();
+    fs::write(scratch.path().join("shop/logo.png"), include_bytes!("screens/1-attract.png")).unwrap();
+    catalogue("shop = \"A\"\n[theme]\nlogo = \"logo.png\"\nground = [1.0, 1.0, 1.0]\ntext = [0.0, 0.0, 0.0]\n");
+    let checked = json(&scratch, &["catalogue", "check", "shop", "--json"]);
+    assert_eq!(checked["theme"], serde_json::json!({"logo": [288, 512], "font_bytes": null, "contrast": 21.0}));
+    for (text, word) in [
+        ("ground = [1.0, 1.0, 1.0]", "contrast of 1.1:1"),
+        ("logo = \"gone.png\"", "gone.png"),
+        ("font = \"logo.png\"", "no font"),
+        ("colour = [1.0, 0.0, 0.0]", "line 3"),
+    ] {
+        catalogue(&format!("shop = \"A\"\n[theme]\n{text}\n"));
+        let output = scratch.toile(&["catalogue", "check", "shop"]);
+        assert_eq!(output.status.code(), Some(4), "{text}");
+        let message = sentence(&output);
+        assert!(message.contains(word) && message.contains("; "), "{text}: {message}");
+    }
+}
+
+#[test]
 fn what_cannot_be_packed_is_refused_in_one_sentence() {
     let scratch = Scratch::new("catalogue-bad");
     garment(&scratch, "empty", "article = \"A\"\ngarment = \"gone.json\"\nname = { en = \"Gone\" }\n");

@@ -10,6 +10,7 @@ use std::sync::Arc;
 use common::Scratch;
 use serde_json::Value;
 use toile_assets::wardrobe;
+use toile_fitting::dress::attire::Attire;
 use toile_fitting::dress::measured::{self, ShopperFacts};
 use toile_fitting::dress::offer::GarmentOffer;
 use toile_fitting::dress::session;
@@ -38,7 +39,7 @@ fn zones(recommendation: &Value) -> Vec<(String, f64, String)> {
 /// The headless kiosk's door: its dresser, with the recording that it plays.
 fn dressed_by_the_kiosk(path: &Path, garment: &str) -> (String, [f32; 5]) {
     let wish = Wish { garments: vec![garment.to_owned()], ..Wish::default() };
-    let mut dresser = Dresser::new(wish);
+    let mut dresser = Dresser::new(Arc::new(Attire::open(wish).unwrap()));
     let recording = Arc::new(session::open(Some(path), None).unwrap());
     dresser.begin(DressJob::Shopper(ShopperSource::Recording(recording))).unwrap();
     let dressed = loop {

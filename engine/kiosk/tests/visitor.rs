@@ -27,6 +27,7 @@ use toile_kiosk::service::config::Config;
 use toile_kiosk::service::runner::{Service, ServiceEnvironment, ServiceOptions};
 use toile_kiosk::service::service_manager::{ServiceManager, ServiceStatus, StopSignal};
 use toile_kiosk::service::session::SessionState;
+use toile_kiosk::service::stock::Stock;
 use toile_kiosk::visitor::controller::{OutfitPair, WindowChannels};
 use toile_kiosk::visitor::model::Input;
 use toile_kiosk::visitor::screen::{Action, Block, BodyView, Page, Screen};
@@ -179,11 +180,11 @@ fn a_whole_visit_opens_no_file_to_write_and_no_socket_and_writes_not_a_byte() {
 fn serve() -> Vec<SessionState> {
     let clock = RealClock::default();
     let config = Config::parse("kiosk.toml", "[wear]\nquality = \"draft\"").unwrap();
-    let setup = VisitorSetup::new(&config, clock.now_ns()).unwrap();
+    let stock = Stock::read(&config).unwrap();
+    let setup = VisitorSetup::new(&config, &stock, clock.now_ns()).unwrap();
     let session = Arc::new(session::open(None, None).unwrap());
     let pose = session::standing(&session).unwrap()[0];
-    let wish = config.wish();
-    let dressed = dressed::mannequin(&wish, &pose).unwrap();
+    let dressed = dressed::mannequin_in(&stock.first, &pose).unwrap();
     // They stand there for as long as the visit takes.
     let source = Feed::Played(Visits::of(&session, clock.now_ns(), 0));
     let first = DressedScene::new(dressed, |frame| (FrameScene::new(frame), ()));
@@ -224,7 +225,7 @@ fn serve() -> Vec<SessionState> {
             stop: &stop,
             print_line: &print_line,
             figures: None,
-            dresser: Dresser::new(wish),
+            dresser: Dresser::new(stock.first.clone()),
             to_scene: Box::new(|frame| (FrameScene::new(frame), ())),
             pose,
             flight_recorder: None,

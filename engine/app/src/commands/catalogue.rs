@@ -8,7 +8,9 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use toile_assets::body::{Body, Measures, Sex};
-use toile_assets::catalogue::{Catalogue, CatalogueItem, GarmentManifest, GarmentPackage, package, word};
+use toile_assets::catalogue::{
+    Catalogue, CatalogueItem, GarmentManifest, GarmentPackage, ShopTheme, ThemeColours, contrast, package, word,
+};
 use toile_assets::wardrobe::own;
 use toile_fitting::dress::choice::Choice;
 use toile_fitting::dress::wish::Wish;
@@ -38,7 +40,7 @@ pub(crate) enum CatalogueCommand {
     Pack(PackArgs),
 }
 
-/// Read every package of a catalogue, and say which cannot be used and why.
+/// Read a catalogue with its theme and every package of it, and say which cannot be used and why.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(after_help = "Example: before the shop opens\n  toile catalogue check /etc/toile/catalogue")]
 pub(crate) struct CheckArgs {
@@ -100,10 +102,40 @@ struct RefusedReport {
     why: String,
 }
 
+/// How the screens of a catalogue look.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct ThemeReport {
+    /// Pixels of the logo as it is shown.
+    logo: Option<[u32; 2]>,
+    /// Bytes of the font.
+    font_bytes: Option<usize>,
+    /// Of text on ground.
+    contrast: f32,
+}
+
+impl ThemeReport {
+    fn of(theme: &ShopTheme) -> Self {
+        let ThemeColours { text, ground, .. } = theme.colours;
+        Self {
+            logo: theme.logo.as_ref().map(|logo| [logo.width, logo.height]),
+            font_bytes: theme.font.as_ref().map(|font| font.len()),
+            contrast: (contrast(text, ground) * 10.0).round() / 10.0,
+        }
+    }
+
+    fn line(&self) -> String {
+        let logo = self.logo.map_or_else(String::new, |[w, h]| format!(", logo of {w} x {h} pixels"));
+        let font = self.font_bytes.map_or_else(String::new, |bytes| format!(", font of {bytes} bytes"));
+        format!("theme: contrast {:.1}:1{logo}{font}", self.contrast)
+    }
+}
+
 /// The body of the three.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 struct CatalogueReport {
     shop: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    theme: Option<ThemeReport>,
     garments: Vec<GarmentReport>,
     refused: Vec<RefusedReport>,
     memory_bytes: usize,
@@ -139,6 +171,7 @@ impl Checked {
         let memory_bytes = catalogue.bytes();
         let refused = catalogue.refused.into_iter().map(|r| RefusedReport { package: r.package, why: r.why });
         let mut report = CatalogueReport {
+            theme: catalogue.theme.as_deref().map(ThemeReport::of),
             shop: catalogue.shop,
             garments: Vec::new(),
             refused: refused.collect(),
@@ -262,6 +295,7 @@ fn pack(args: &PackArgs) -> Result<(), AppError> {
     let name = args.out.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let report = CatalogueReport {
         shop: String::new(),
+        theme: None,
         garments: vec![garment(name, &manifest, sizes)],
         refused: Vec::new(),
         memory_bytes: bytes.len(),
@@ -285,6 +319,7 @@ fn summary(report: &CatalogueReport, paint: Paint) -> String {
     if !report.shop.is_empty() {
         line(paint.tone(&report.shop, Tone::Strong).into_owned());
     }
+    report.theme.iter().for_each(|theme| line(format!("  {}", theme.line())));
     for g in &report.garments {
         let price = g.price.as_ref().map_or_else(String::new, |p| format!(", {p}"));
         line(format!("  {} {}: sizes {}{price} ({})", g.article, g.name, g.sizes.join(", "), g.languages.join(", ")));

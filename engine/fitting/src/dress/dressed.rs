@@ -5,6 +5,7 @@ use toile_engine::triple_buffer::Reader;
 use toile_sensors::frame::Joints;
 use toile_sensors::source::Session;
 
+use super::attire::{self, Attire, FindChoice};
 use super::measured;
 use super::recipe::Recipe;
 use super::session;
@@ -46,7 +47,15 @@ impl Dressed {
     /// # Errors
     /// A recipe of which no scene can be made.
     pub fn make(recipe: Recipe, first: &Joints, still: bool) -> Result<Self, FittingError> {
-        let (frame, reader) = recipe.make(first)?;
+        Self::make_of(recipe, first, still, &attire::find_now)
+    }
+
+    /// The same with garments that are found by `find`.
+    ///
+    /// # Errors
+    /// As [`Self::make`]; those of `find`.
+    pub fn make_of(recipe: Recipe, first: &Joints, still: bool, find: FindChoice<'_>) -> Result<Self, FittingError> {
+        let (frame, reader) = recipe.make_of(first, find)?;
         Ok(Self { frame, reader, dressing: Dressing { recipe, first: *first, still } })
     }
 }
@@ -55,10 +64,11 @@ impl Dressed {
 ///
 /// # Errors
 /// A session that nobody can be measured or dressed in, a garment or a size that there is not.
-pub fn shopper(session: &Session, wish: &Wish) -> Result<Dressed, FittingError> {
+pub fn shopper(session: &Session, attire: &Attire) -> Result<Dressed, FittingError> {
     let track = session::standing(session)?;
-    let measured = measured::measure(session, wish.facts())?;
-    Dressed::make(Recipe::choose(&session.name, &measured, wish)?, &track[0], false)
+    let measured = measured::measure(session, attire.wish.facts())?;
+    let recipe = Recipe::choose_of(&session.name, &measured, attire)?;
+    Dressed::make_of(recipe, &track[0], false, &|name| attire.find(name))
 }
 
 /// The mannequin that stands in the mirror while nobody is measured: the body that the outermost garment is shown on, as `pose` has
@@ -67,18 +77,28 @@ pub fn shopper(session: &Session, wish: &Wish) -> Result<Dressed, FittingError> 
 /// # Errors
 /// A garment that there is not, a size that is not made.
 pub fn mannequin(wish: &Wish, pose: &Joints) -> Result<Dressed, FittingError> {
+    mannequin_in(&Attire::open(wish.clone())?, pose)
+}
+
+/// The same in garments that are open.
+///
+/// # Errors
+/// As [`mannequin`].
+pub fn mannequin_in(attire: &Attire, pose: &Joints) -> Result<Dressed, FittingError> {
     let (mut garments, mut body) = (Vec::new(), None);
-    for choice in wish.choices()? {
+    let wish = &attire.wish;
+    for choice in &attire.choices {
         let (sex, measures, size) = choice.shown_on()?;
         let (measures, size) = match &wish.size {
             Some(asked) => (choice.body_of(asked)?.unwrap_or(measures), asked.clone()),
             None => (measures, size),
         };
         body = Some((sex, measures));
-        garments.push((choice.name, size));
+        garments.push((choice.name.clone(), size));
     }
     let Some((sex, measures)) = body else {
         return Err(FittingError::Input("no garment is named; name one in [wear]".into()));
     };
-    Dressed::make(Recipe::of_body("mannequin", sex, &measures, garments, wish.quality), pose, true)
+    let recipe = Recipe::of_body("mannequin", sex, &measures, garments, wish.quality);
+    Dressed::make_of(recipe, pose, true, &|name| attire.find(name))
 }

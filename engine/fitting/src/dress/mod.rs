@@ -7,6 +7,7 @@
 //! [`measured`] is the one way to measure: every command and the kiosk take it, so that the same session gives the same
 //! measures, sizes and verdicts everywhere.
 
+pub mod attire;
 pub mod body;
 pub mod choice;
 pub mod depth;

@@ -1,5 +1,7 @@
 //! The recipe of a dressed shopper, which a recording holds so that a replay makes the same one.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::garment::Garment;
@@ -12,8 +14,8 @@ use toile_engine::triple_buffer::Reader;
 use toile_sensors::frame::Joints;
 use toile_track::measure::Measurements;
 
+use super::attire::{self, Attire, FindChoice};
 use super::body;
-use super::choice::Choice;
 use super::measured::Measured;
 use super::wish::{self, Wish};
 use crate::FittingError;
@@ -54,11 +56,19 @@ impl Recipe {
     /// # Errors
     /// A garment that there is not, a size that is not made, measures that no body has.
     pub fn choose(session: &str, measured: &Measured, wish: &Wish) -> Result<Self, FittingError> {
-        let choices = wish.choices()?;
-        let sex = measured.sex(wish::population(&choices)?);
+        Self::choose_of(session, measured, &Attire::open(wish.clone())?)
+    }
+
+    /// The same of garments that are open.
+    ///
+    /// # Errors
+    /// As [`Self::choose`].
+    pub fn choose_of(session: &str, measured: &Measured, attire: &Attire) -> Result<Self, FittingError> {
+        let Attire { wish, choices } = attire;
+        let sex = measured.sex(wish::population(choices.iter().map(Arc::as_ref))?);
         let (body, _) = body::build(sex, &measured.best, Population::from(Some(sex)))?;
         let (mut garments, mut beneath) = (Vec::with_capacity(choices.len()), Vec::new());
-        for choice in &choices {
+        for choice in choices {
             let fit = choice.judge(wish.size.as_deref(), &measured.best, &body, &beneath)?;
             garments.push((choice.name.clone(), fit.map_or_else(|| own::UNKNOWN.to_owned(), |fit| fit.size)));
             beneath.extend(choice.offer(&body)?);
@@ -99,13 +109,17 @@ impl Recipe {
     /// # Errors
     /// A recipe of which no scene can be made, because it was tampered with or comes from another version.
     pub fn parts(&self) -> Result<Parts, FittingError> {
+        self.parts_of(&attire::find_now)
+    }
+
+    fn parts_of(&self, find: FindChoice<'_>) -> Result<Parts, FittingError> {
         let sex = if self.sex == "male" { Sex::Male } else { Sex::Female };
         let [stature, shoulder_breadth, chest_girth, waist_girth, hip_girth] = self.measures.map(f32::from_bits);
         let measures = Measures { stature, shoulder_breadth, chest_girth, waist_girth, hip_girth };
         let body = Body::build(sex, &measures).map_err(FittingError::input)?;
         let mut garments = Vec::with_capacity(self.garments.len());
         for (name, size) in &self.garments {
-            garments.extend(Choice::find(name)?.dress(Some(size), &body)?.garments);
+            garments.extend(find(name)?.dress(Some(size), &body)?.garments);
         }
         let quality = self.quality.parse().map_err(FittingError::Input)?;
         let settings = Settings { quality, workers: 1, ..Settings::default() };
@@ -118,7 +132,15 @@ impl Recipe {
     /// # Errors
     /// As [`Self::parts`].
     pub fn make(&self, first: &Joints) -> Result<(Frame, Reader<Snapshot>), FittingError> {
-        let Parts { body, rig, garments, settings } = self.parts()?;
+        self.make_of(first, &attire::find_now)
+    }
+
+    /// The same with garments that are found by `find`.
+    ///
+    /// # Errors
+    /// As [`Self::parts`]; those of `find`.
+    pub fn make_of(&self, first: &Joints, find: FindChoice<'_>) -> Result<(Frame, Reader<Snapshot>), FittingError> {
+        let Parts { body, rig, garments, settings } = self.parts_of(find)?;
         let (mut frame, reader) = Frame::new(body, &rig, garments, settings).map_err(FittingError::input)?;
         frame.dress(first);
         Ok((frame, reader))

@@ -45,7 +45,11 @@ impl Wish {
         self.names().into_iter().map(Choice::find).collect()
     }
 
-    fn check_count(&self) -> Result<(), FittingError> {
+    /// Whether a body can wear so many.
+    ///
+    /// # Errors
+    /// That it cannot, with the cure.
+    pub fn check_count(&self) -> Result<(), FittingError> {
         let count = self.garments.len();
         if count > MAX_GARMENTS {
             return Err(FittingError::Input(format!(

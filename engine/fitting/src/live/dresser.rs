@@ -7,9 +7,9 @@ use toile_sensors::source::Session;
 
 use super::background::{BackgroundJob, Finished};
 use crate::FittingError;
+use crate::dress::attire::Attire;
 use crate::dress::dressed::{self, Dressed};
 use crate::dress::session;
-use crate::dress::wish::Wish;
 
 /// A job for the dresser.
 #[derive(Debug, Clone)]
@@ -52,14 +52,19 @@ pub enum DressOutcome {
 /// Dresses everybody in the same.
 #[derive(Debug)]
 pub struct Dresser {
-    wish: Wish,
+    attire: Arc<Attire>,
     job: BackgroundJob<Result<Dressed, FittingError>>,
 }
 
 impl Dresser {
-    /// One that dresses everybody as this wish says.
-    pub fn new(wish: Wish) -> Self {
-        Self { wish, job: BackgroundJob::default() }
+    /// One that dresses everybody in this.
+    pub fn new(attire: Arc<Attire>) -> Self {
+        Self { attire, job: BackgroundJob::default() }
+    }
+
+    /// From the next job on, everybody is dressed in something else.
+    pub fn change(&mut self, attire: Arc<Attire>) {
+        self.attire = attire;
     }
 
     /// Whether a job is under way, wanted or not.
@@ -72,10 +77,10 @@ impl Dresser {
     /// # Errors
     /// Where the system gives no thread.
     pub fn begin(&mut self, job: DressJob) -> std::io::Result<()> {
-        let wish = self.wish.clone();
+        let attire = self.attire.clone();
         self.job.start("toile-dresser", move || match job {
-            DressJob::Shopper(source) => dressed::shopper(&source.session(), &wish),
-            DressJob::Mannequin(pose) => dressed::mannequin(&wish, &pose),
+            DressJob::Shopper(source) => dressed::shopper(&source.session(), &attire),
+            DressJob::Mannequin(pose) => dressed::mannequin_in(&attire, &pose),
         })
     }
 

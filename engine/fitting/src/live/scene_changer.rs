@@ -51,6 +51,8 @@ pub struct SceneChanger<S, O> {
     /// Whether the mannequin is shown or was handed over, and whether it is to be.
     is_still: bool,
     wants_still: bool,
+    /// Whether the mannequin that is shown, or was handed over, wears what is worn no more.
+    stale: bool,
     /// Which of scene and view have yet to come back from a change.
     under_way: [bool; 2],
     /// The last scene that was handed over; the first is 0.
@@ -72,6 +74,7 @@ impl<S: Scene, O> SceneChanger<S, O> {
             mannequin: None,
             is_still,
             wants_still: is_still,
+            stale: false,
             under_way: [false; 2],
             number: 0,
             changes: 0,
@@ -97,7 +100,12 @@ impl<S: Scene, O> SceneChanger<S, O> {
     /// Whether a mannequin has to be made, for the next time that nobody is there. One is dressed anew each time, so that a
     /// recording that begins with it can be replayed.
     pub fn lacks_mannequin(&self) -> bool {
-        !self.is_still && self.mannequin.is_none()
+        (!self.is_still || self.stale) && self.mannequin.is_none()
+    }
+
+    /// Another mannequin takes the place of the one that is shown, and of one that was kept.
+    pub fn renew(&mut self, mannequin: DressedScene<S, O>) {
+        (self.mannequin, self.stale) = (Some(mannequin), self.is_still);
     }
 
     /// Keeps a mannequin for the next time that nobody is there.
@@ -120,7 +128,7 @@ impl<S: Scene, O> SceneChanger<S, O> {
             if let Some((scene, afresh)) = self.waiting.take() {
                 self.hand_over(scene, afresh);
             }
-        } else if !self.is_still
+        } else if (!self.is_still || self.stale)
             && let Some(mannequin) = self.mannequin.take()
         {
             self.hand_over(mannequin, true);
@@ -129,7 +137,7 @@ impl<S: Scene, O> SceneChanger<S, O> {
 
     fn hand_over(&mut self, dressed: DressedScene<S, O>, afresh: bool) {
         let DressedScene { scene, reader, outfit, still, note, number } = dressed;
-        self.is_still = still.is_some();
+        (self.is_still, self.stale) = (still.is_some(), false);
         self.changes += 1;
         self.number = number.unwrap_or(self.number + 1);
         let number = self.number;
@@ -278,6 +286,26 @@ mod tests {
         changing.wipe();
         turns(&mut changing, &mut threads);
         assert!(threads.shown() == [0; 2] && changing.is_wiped());
+    }
+
+    #[test]
+    fn a_mannequin_in_other_clothes_takes_the_place_of_the_one_that_is_shown() {
+        let (mut changing, mut threads) = set();
+        let other = || DressedScene { scene: Nth(5), outfit: 5, ..scene(0) };
+        changing.renew(other());
+        turns(&mut changing, &mut threads);
+        assert_eq!(threads.shown(), [5; 2]);
+        assert!(changing.is_wiped() && !changing.lacks_mannequin());
+        // Somebody steps in before it was shown: it is there when they have left.
+        changing.show(scene(7), true);
+        turns(&mut changing, &mut threads);
+        changing.stand_by(scene(0));
+        changing.renew(other());
+        turns(&mut changing, &mut threads);
+        assert_eq!(threads.shown(), [7; 2], "who is there keeps what they see");
+        changing.wipe();
+        turns(&mut changing, &mut threads);
+        assert_eq!(threads.shown(), [5; 2]);
     }
 
     #[test]

@@ -13,7 +13,6 @@ use toile_engine::workers::SHARES;
 use super::config_keys;
 use super::session::SessionTimes;
 use crate::error::KioskError;
-use toile_assets::catalogue::{Catalogue, CatalogueItem};
 use toile_fitting::dress::measured::ShopperFacts;
 use toile_fitting::dress::wish::Wish;
 use toile_track::tape_readings::TapeReadings;
@@ -66,6 +65,9 @@ pub struct WearConfig {
     pub size: Option<String>,
     /// Tested settings of the cloth.
     pub quality: String,
+    /// Whether the file says what is worn first.
+    #[serde(skip)]
+    pub is_named: bool,
 }
 
 /// What is known of every shopper before they are measured.
@@ -209,6 +211,7 @@ impl Default for WearConfig {
             catalogue: None,
             size: None,
             quality: Quality::default().name().into(),
+            is_named: false,
         }
     }
 }
@@ -286,33 +289,7 @@ impl Config {
     pub fn open(path: Option<&Path>) -> Result<Self, KioskError> {
         let Some(path) = path else { return Ok(Self::default()) };
         let text = file::read_text(path, &CONFIGURATION).map_err(KioskError::input)?;
-        let mut config = Self::parse(&path.display().to_string(), &text)?;
-        config.find_articles(names_garments(&text))?;
-        Ok(config)
-    }
-
-    /// Puts packages in place of the catalogue's article numbers; where nothing is named, its first garment is worn.
-    fn find_articles(&mut self, named: bool) -> Result<(), KioskError> {
-        let Some(folder) = &self.wear.catalogue else { return Ok(()) };
-        let catalogue = Catalogue::read(folder).map_err(KioskError::input)?;
-        let shown = |item: &CatalogueItem| item.path.display().to_string();
-        if !named {
-            let first = catalogue.items.first().map(shown);
-            let none = || {
-                KioskError::Input(format!(
-                    "{}: no garment in it can be used; see toile catalogue check",
-                    folder.display()
-                ))
-            };
-            self.wear.garments = vec![first.ok_or_else(none)?];
-            return Ok(());
-        }
-        for name in &mut self.wear.garments {
-            if let Some(item) = catalogue.items.iter().find(|item| item.manifest.article == *name) {
-                *name = shown(item);
-            }
-        }
-        Ok(())
+        Self::parse(&path.display().to_string(), &text)
     }
 
     /// Reads a text; `file` is its name in errors.
@@ -321,7 +298,8 @@ impl Config {
     /// As [`Config::open`].
     pub fn parse(file: &str, text: &str) -> Result<Self, KioskError> {
         config_keys::check(file, text)?;
-        let config: Self = toml::from_str(text).map_err(|e| config_keys::parse_error(file, text, &e))?;
+        let mut config: Self = toml::from_str(text).map_err(|e| config_keys::parse_error(file, text, &e))?;
+        config.wear.is_named = names_garments(text);
         match config.fault() {
             Some(fault) => Err(KioskError::Input(format!("{file}: {fault}"))),
             None => Ok(config),
@@ -390,7 +368,9 @@ mod tests {
 
     #[test]
     fn the_example_is_the_default_and_explains_every_key() {
-        assert_eq!(Config::parse("kiosk.toml", EXAMPLE).unwrap(), Config::default());
+        let mut usual = Config::default();
+        usual.wear.is_named = true;
+        assert_eq!(Config::parse("kiosk.toml", EXAMPLE).unwrap(), usual);
         for (table, names) in config_keys::KEYS {
             assert!(EXAMPLE.contains(&format!("\n[{table}]\n")), "{table}");
             for name in names {

@@ -1,9 +1,12 @@
 //! The controller of a session: decides when to measure and dress whoever stands there. Without a window that is the state
 //! machine of the session alone.
 
+use std::sync::Arc;
+
 use toile_engine::frame::Frame;
 use toile_engine::frame_loop::physics_thread::Scene;
 use toile_engine::frame_loop::sensor_thread::ObservedFrame;
+use toile_fitting::dress::attire::Attire;
 use toile_fitting::dress::dressed::Dressed;
 use toile_fitting::dress::session;
 use toile_fitting::live::dresser::{DressJob, DressOutcome, Dresser, ShopperSource};
@@ -11,6 +14,7 @@ use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
 use toile_sensors::frame::Joints;
 
 use super::session::{SessionInput, SessionMachine, SessionState, SessionTimes, StateChange};
+use super::stock_watch::{StockChange, StockFigures, StockWatch};
 use crate::error::KioskError;
 
 /// A sensor frame older than this says nothing about who is there at the moment (ns).
@@ -53,6 +57,20 @@ impl<S: Scene, O> ControllerContext<S, O> {
         }
         self.dresser.begin(DressJob::Mannequin(Box::new(self.pose))).map_err(KioskError::internal)
     }
+
+    /// Whether nobody is shown but the mannequin, and nobody is being dressed.
+    pub fn is_at_rest(&self) -> bool {
+        self.changer.is_wiped() && !self.dresser.is_busy()
+    }
+
+    /// From now on everybody wears something else first, the mannequin too, where there is another one.
+    pub fn restock(&mut self, first: Arc<Attire>, mannequin: Option<Box<Dressed>>) {
+        self.dresser.change(first);
+        if let Some(mannequin) = mannequin {
+            let scene = self.scene(*mannequin);
+            self.changer.renew(scene);
+        }
+    }
 }
 
 /// Decides what happens in a session.
@@ -71,6 +89,16 @@ pub trait SessionController<S, O> {
     /// # Errors
     /// What ends the service.
     fn poll(&mut self, now_ns: u64, context: &mut ControllerContext<S, O>) -> Result<Option<StateChange>, KioskError>;
+
+    /// Lines for whoever looks after the kiosk, each once.
+    fn lines(&mut self) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// What the health line says of the stock, where it is watched.
+    fn stock(&self) -> Option<&StockFigures> {
+        None
+    }
 }
 
 /// The session alone: everybody who steps in is measured and dressed in the same.
@@ -86,13 +114,41 @@ pub struct HeadlessController {
     model: Vec<Joints>,
     fitted: Option<Box<Dressed>>,
     dressed: bool,
+    watch: Option<StockWatch<()>>,
 }
 
 impl HeadlessController {
     /// Nobody is there, at this time (ns).
     pub fn new(times: SessionTimes, measure_ns: u64, played: Option<ShopperSource>, now_ns: u64) -> Self {
         let session = SessionMachine::new(times, now_ns);
-        Self { session, measure_ns, played, seen: (0, false), model: Vec::new(), fitted: None, dressed: false }
+        Self {
+            session,
+            measure_ns,
+            played,
+            seen: (0, false),
+            model: Vec::new(),
+            fitted: None,
+            dressed: false,
+            watch: None,
+        }
+    }
+
+    /// The same with a stock that is watched.
+    #[must_use]
+    pub fn watching(self, watch: Option<StockWatch<()>>) -> Self {
+        Self { watch, ..self }
+    }
+
+    /// Takes a stock that was read again, when nobody is there.
+    fn restock<S: Scene, O>(&mut self, context: &mut ControllerContext<S, O>) {
+        let Some(watch) = &mut self.watch else { return };
+        watch.poll();
+        if self.session.state() == SessionState::Attract
+            && context.is_at_rest()
+            && let Some(StockChange { stock, mannequin, .. }) = watch.take()
+        {
+            context.restock(stock.first, mannequin);
+        }
     }
 
     /// What a change of state brings about.
@@ -143,6 +199,7 @@ impl<S: Scene, O> SessionController<S, O> for HeadlessController {
         if let Some(change) = change {
             self.change(change, context);
         }
+        self.restock(context);
         let enough = self.session.lasted_ns(now) >= self.measure_ns && self.model.len() >= FEWEST_FRAMES;
         let wanted = self.session.state() == SessionState::Measuring && !self.dressed && !context.dresser.is_busy();
         if enough && wanted {
@@ -151,5 +208,13 @@ impl<S: Scene, O> SessionController<S, O> for HeadlessController {
             context.dresser.begin(DressJob::Shopper(model)).map_err(KioskError::internal)?;
         }
         Ok(change)
+    }
+
+    fn lines(&mut self) -> Vec<String> {
+        self.watch.as_mut().map(StockWatch::lines).unwrap_or_default()
+    }
+
+    fn stock(&self) -> Option<&StockFigures> {
+        self.watch.as_ref().map(StockWatch::figures)
     }
 }

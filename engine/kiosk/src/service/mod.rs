@@ -1,8 +1,9 @@
 //! The service: the whole loop, unattended, from shopper to shopper, until it is asked to end.
 //!
-//! Reads: a configuration, frames of a sensor. Writes: a health line, figures of the machine; nothing about a person.
+//! Reads: a configuration, a shop's catalogue, frames of a sensor. Writes: a health line, figures of the machine; nothing about a person.
 //! Budget: ready within 5 s of its start; a round of the service each 20 ms, under 100 us of the first core.
-//! Thread: the loop's own; a service thread, a dressing thread while somebody is measured, one for metrics.
+//! Thread: the loop's own; a service thread, a dressing thread while somebody is measured, one that watches the catalogue, one for
+//! metrics.
 //!
 //! [`session`] is the state machine that a window drives too, [`controller`] decides by it, and [`runner`] polls the loop. How the
 //! loop's threads are joined, and how one dressed body takes another's place in them, is `toile_fitting::live`.
@@ -19,6 +20,8 @@ pub mod report;
 pub mod runner;
 pub mod service_manager;
 pub mod session;
+pub mod stock;
+pub mod stock_watch;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -40,16 +43,20 @@ use toile_fitting::live::report::ThreadPlacement;
 use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
 use toile_fitting::live::source::{Feed, Visits};
 use toile_fitting::live::{crash, recording};
+use toile_sensors::frame::Joints;
 use toile_sensors::source::Session;
 
 use crate::error::KioskError;
 use config::{Config, SensorSource};
-use controller::{SessionController, ToScene};
+use controller::{HeadlessController, SessionController, ToScene};
 use health::HealthFigures;
 use instance::InstanceLock;
 use report::KioskReport;
 use runner::{Service, ServiceEnvironment, ServiceOptions};
 use service_manager::{StopSignal, Systemd};
+use session::SessionTimes;
+use stock::Stock;
+use stock_watch::{Hang, LOOK_EVERY, StockWatch, WatchStart};
 
 /// What is asked of a run, beside its configuration.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -93,12 +100,21 @@ pub fn run(
     }
     let _lock = InstanceLock::take(options.instance.as_deref())?;
     let figures = figures(&config)?;
+    let stock = Stock::read(&config)?;
     let clock = RealClock::default();
-    let run = KioskRun { options, config: &config, begun, clock, stop: &stop, print_line, figures };
+    let run = KioskRun { options, config: &config, stock: &stock, begun, clock, stop: &stop, print_line, figures };
     if options.headless {
+        stock.left_out.iter().for_each(|left| print_line(&stock_watch::line(left)));
         let renderer = |_: &Frame| Ok(HeadlessRenderer::default());
-        let frontend =
-            Frontend { renderer, to_scene: Box::new(|frame| (FrameScene::new(frame), ())), controller: |_| None };
+        let controller = |start: ControllerStart| -> Result<BoxedController<'_, ()>, KioskError> {
+            let ControllerStart { played, pose, times, measure_ns, now_ns } = start;
+            let hang: Hang<()> = Box::new(|_, _| Ok(()));
+            let (config, stock) = (config.clone(), stock.clone());
+            let left_out = stock.left_out.clone();
+            let watch = StockWatch::start(WatchStart { config, stock, left_out, pose, every: LOOK_EVERY, hang })?;
+            Ok(Box::new(HeadlessController::new(times, measure_ns, played, now_ns).watching(watch)))
+        };
+        let frontend = Frontend { renderer, to_scene: Box::new(|frame| (FrameScene::new(frame), ())), controller };
         Ok(serve(run, frontend)?.0)
     } else {
         windowed(run)
@@ -120,6 +136,8 @@ pub struct KioskRun<'a> {
     pub options: &'a KioskOptions,
     /// The configuration that was read.
     pub config: &'a Config,
+    /// What it names to wear.
+    pub stock: &'a Stock,
     /// When the program was started.
     pub begun: Instant,
     /// The loop's clock.
@@ -137,12 +155,26 @@ pub struct Frontend<F, H, O> {
     pub renderer: F,
     /// A dressed frame as a scene of the loop, and what the renderer has to know of it.
     pub to_scene: ToScene<FrameScene, O>,
-    /// Makes the controller, given the recording that shoppers are measured from, if one is played.
+    /// Makes the controller, once the loop runs.
     pub controller: H,
 }
 
-/// A controller; `None` is that of the session alone.
-pub type BoxedController<'a, O> = Option<Box<dyn SessionController<FrameScene, O> + 'a>>;
+/// What a controller begins with.
+pub struct ControllerStart {
+    /// The recording that shoppers are measured from, where one is played.
+    pub played: Option<ShopperSource>,
+    /// How the mannequin stands.
+    pub pose: Joints,
+    /// The session's times, and that of measuring (ns).
+    pub times: SessionTimes,
+    /// Time over which a shopper is measured (ns).
+    pub measure_ns: u64,
+    /// The loop's time (ns).
+    pub now_ns: u64,
+}
+
+/// A controller.
+pub type BoxedController<'a, O> = Box<dyn SessionController<FrameScene, O> + 'a>;
 
 /// Sets everything up and runs until the end; returns the report, and the renderer.
 ///
@@ -155,14 +187,13 @@ pub fn serve<'a, E, F, H>(
 where
     E: Renderer<Outfit: Default> + 'static,
     F: FnOnce(&Frame) -> Result<E, KioskError>,
-    H: FnOnce(Option<ShopperSource>) -> BoxedController<'a, E::Outfit>,
+    H: FnOnce(ControllerStart) -> Result<BoxedController<'a, E::Outfit>, KioskError>,
 {
-    let KioskRun { options, config, begun, clock, stop, print_line, figures } = run;
-    let wish = config.wish();
+    let KioskRun { options, config, stock, begun, clock, stop, print_line, figures } = run;
     let session = played_session(config)?;
     // The mannequin stands as somebody does in the recording: a pose, and no body.
     let pose = sessions::standing(&session)?[0];
-    let dressed = dressed::mannequin(&wish, &pose)?;
+    let dressed = dressed::mannequin_in(&stock.first, &pose)?;
     let (feed, played) = feed(config, session, clock)?;
     let workers = config.machine.workers.unwrap_or_else(workers);
     let (crew, worker) = threads::worker_pool(workers).map_err(KioskError::input)?;
@@ -194,17 +225,20 @@ where
         stop,
         print_line,
         figures,
-        dresser: Dresser::new(wish),
+        dresser: Dresser::new(stock.first.clone()),
         to_scene: frontend.to_scene,
         pose,
         flight_recorder,
     };
-    let controller = (frontend.controller)(service_options.played.clone());
-    let service = Service::new(live, changer, service_options, environment);
-    let ran = match controller {
-        Some(controller) => service.controlled_by(controller).run(),
-        None => service.run(),
+    let start = ControllerStart {
+        played: service_options.played.clone(),
+        pose,
+        times: service_options.times,
+        measure_ns: service_options.measure_ns,
+        now_ns: clock.now_ns(),
     };
+    let controller = (frontend.controller)(start)?;
+    let ran = Service::new(live, changer, service_options, environment).controlled_by(controller).run();
     crash::forget();
     let (ended, capacities, mut record) = ran?;
     record.threads.extend(worker.map(ThreadPlacement::from));

@@ -230,6 +230,7 @@ impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
                 self.counter.stepped_in(change.from == SessionState::Attract);
             }
         }
+        self.controller.lines().iter().for_each(|line| (self.print_line)(line));
         self.context.dress_mannequin()?;
         self.context.changer.update();
         Ok(())
@@ -258,7 +259,8 @@ impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
     fn health(&mut self, now: u64) {
         if self.every_ns > 0 && now >= self.health_ns {
             self.health_ns += self.every_ns;
-            (self.print_line)(&self.record.figures.to_string());
+            let stock = self.controller.stock().map_or_else(String::new, |stock| format!("; {stock}"));
+            (self.print_line)(&format!("{}{stock}", self.record.figures));
             self.counter.reported();
         }
     }

@@ -1,5 +1,7 @@
 //! Actions: what can be pressed on a page, in the order of the Tab key; first what most will want next.
 
+use std::ops::Range;
+
 use super::measure_entry;
 use super::model::VisitModel;
 use super::screen::{Action, Page};
@@ -8,8 +10,11 @@ use super::texts;
 use super::visit::MeasureProgress;
 use crate::service::session::SessionState;
 
-/// Actions of a page, at most.
+/// Actions of a page, at most: a shelf of garments with the colours of one, or a keypad.
 const MOST: usize = 24;
+
+/// Garments that are shown at once: two rows of three, which leaves room for the body behind.
+pub(super) const SHELF: usize = 6;
 
 /// Actions that can be pressed, in the order of the Tab key.
 pub(super) type Actions = heapless::Vec<Action, MOST>;
@@ -75,7 +80,12 @@ impl VisitModel {
             Page::Unmeasured => add(&[Back, Open(Page::OwnMeasures), Measure, Seated, Leave]),
             Page::Fitting => self.fitting(&mut add),
             Page::Garments => {
-                (0..self.wardrobe.items.len()).for_each(|i| add(&[Garment(i)]));
+                self.shelf().for_each(|i| add(&[Garment(i)]));
+                match self.shelves() {
+                    0 | 1 => {}
+                    2 => add(&[Shelf(1)]),
+                    _ => add(&[Shelf(-1), Shelf(1)]),
+                }
                 let colours = self.wardrobe.items.get(self.visit.in_hand).map_or(0, |item| item.colours.len());
                 (0..colours).for_each(|i| add(&[Colour(i)]));
                 add(&[Back]);
@@ -122,6 +132,17 @@ impl VisitModel {
             Page::Leaving => add(&[Stay, Leave]),
         }
         list
+    }
+
+    /// How many shelves the garments take.
+    pub(super) fn shelves(&self) -> usize {
+        self.wardrobe.items.len().div_ceil(SHELF)
+    }
+
+    /// Places of the garments that are shown.
+    pub(super) fn shelf(&self) -> Range<usize> {
+        let first = self.visit.shelf * SHELF;
+        first..(first + SHELF).min(self.wardrobe.items.len())
     }
 
     /// Who stands dressed need not be measured again.

@@ -1,5 +1,7 @@
 //! The controller of a visit: feeds the visitor's model with what the sensor and the window report, and carries out its effects.
 
+use std::sync::Arc;
+
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::frame_loop::physics_thread::Scene;
 use toile_engine::frame_loop::queue::Sender;
@@ -12,14 +14,16 @@ use toile_track::gesture::Gestures;
 
 use super::dressing_worker::{DressingContext, DressingJob, DressingWorker, JobResult, MeasuredVisitor, MeasuringJob};
 use super::model::{Effect, Input, VisitModel};
+use super::photographs::Photographs;
 use super::presence::{Presence, PresenceTracker};
 use super::reach::DisplayMount;
 use super::screen::Screen;
 use super::texts::Texts;
-use super::wardrobe::Outfit;
+use super::wardrobe::{Outfit, Wardrobe};
 use crate::error::KioskError;
 use crate::service::controller::{ControllerContext, FEWEST_FRAMES, MOST_FRAMES, STALE_NS, SessionController};
 use crate::service::session::{SessionState, StateChange};
+use crate::service::stock_watch::{StockChange, StockFigures, StockWatch};
 
 /// Two outfits, draped, as the renderer draws them: left and right.
 pub type OutfitPair<O> = Box<[O; 2]>;
@@ -83,6 +87,10 @@ pub struct VisitController<'a, O> {
     /// Whether the next who is dressed is another one than is shown.
     afresh: bool,
     shown: Option<Screen>,
+    photographs: Photographs,
+    watch: Option<StockWatch<Arc<Wardrobe>>>,
+    /// Lines for whoever looks after the kiosk.
+    lines: Vec<String>,
 }
 
 impl<'a, O> VisitController<'a, O> {
@@ -112,6 +120,30 @@ impl<'a, O> VisitController<'a, O> {
             jobs: PendingJobs::default(),
             afresh: true,
             shown: None,
+            photographs: Photographs::default(),
+            watch: None,
+            lines: Vec::new(),
+        }
+    }
+
+    /// The same with a stock that is watched.
+    #[must_use]
+    pub fn watching(self, watch: Option<StockWatch<Arc<Wardrobe>>>) -> Self {
+        Self { watch, ..self }
+    }
+
+    /// Takes a stock that was read again, when nobody is there: a visitor keeps what they see.
+    fn restock<S: Scene>(&mut self, context: &mut ControllerContext<S, O>) {
+        let Some(watch) = &mut self.watch else { return };
+        watch.poll();
+        if self.model.is_idle()
+            && !self.worker.is_busy()
+            && context.is_at_rest()
+            && let Some(StockChange { stock, hung, mannequin }) = watch.take()
+        {
+            self.model.restock(hung.clone(), stock.first.wish.garments.clone());
+            self.worker.restock(hung, stock.first.clone());
+            context.restock(stock.first, mannequin);
         }
     }
 
@@ -225,7 +257,9 @@ impl<'a, O> VisitController<'a, O> {
 
     /// Shows what has changed.
     fn show(&mut self) {
-        let screen = Screen::of(&self.model, &self.texts, &self.mount);
+        let mut screen = Screen::of(&self.model, &self.texts, &self.mount);
+        let failed = self.photographs.show(&mut screen, self.model.wardrobe());
+        self.lines.extend(failed.map(|left| format!("a photograph is not shown: {}", left.why)));
         if self.shown.as_ref() != Some(&screen) {
             self.window.screens.publish(screen.clone());
             self.shown = Some(screen);
@@ -278,8 +312,19 @@ impl<S: Scene, O> SessionController<S, O> for VisitController<'_, O> {
         }
         self.measure(now, context);
         self.start_next_job()?;
+        self.restock(context);
         self.show();
         let to = self.model.state();
         Ok((from != to).then_some(StateChange { from, to }))
+    }
+
+    fn lines(&mut self) -> Vec<String> {
+        let mut lines = std::mem::take(&mut self.lines);
+        lines.extend(self.watch.iter_mut().flat_map(StockWatch::lines));
+        lines
+    }
+
+    fn stock(&self) -> Option<&StockFigures> {
+        self.watch.as_ref().map(StockWatch::figures)
     }
 }

@@ -1,11 +1,16 @@
 //! The dressing worker: measures a shopper, dresses them, drapes two sizes and takes a picture, one after the other, on a thread of its own that
 //! nothing waits for.
 
-use std::sync::Arc;
+use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
 
+use toile_assets::file;
 use toile_assets::sizes::Population;
 use toile_engine::cloth::Quality;
 use toile_engine::frame::{Frame, Snapshot};
+use toile_fitting::FittingError;
+use toile_fitting::dress::attire::Attire;
+use toile_fitting::dress::choice::Choice;
 use toile_fitting::dress::dressed::Dressed;
 use toile_fitting::dress::measured::{self, ShopperFacts};
 use toile_fitting::dress::recipe::Recipe;
@@ -24,6 +29,9 @@ use crate::error::KioskError;
 
 /// Size at which a picture is drawn, to be made smaller: twice the largest that a code holds.
 const DRAWN: Size = Size::new(192, 320);
+
+/// Garments of a visit that stay open: a package of a shop's own takes a few megabytes.
+const WORN_OPEN: usize = 8;
 
 /// A frame that was dressed, and the snapshot of it.
 pub type DrapedFrame = (Frame, Snapshot);
@@ -80,12 +88,16 @@ pub enum JobResult {
 pub struct DressingContext {
     /// The garments that can be chosen.
     pub wardrobe: Arc<Wardrobe>,
+    /// What everybody wears first, open.
+    first: Arc<Attire>,
     /// How their cloth is stepped.
-    pub quality: Quality,
+    quality: Quality,
     /// What is known of every shopper.
-    pub facts: ShopperFacts,
+    facts: ShopperFacts,
     /// How their body looks in pictures.
-    pub appearance: Appearance,
+    appearance: Appearance,
+    /// What this shopper has put on, open, the last one last: they keep it, whatever becomes of its file.
+    worn: Mutex<Vec<Arc<Choice>>>,
 }
 
 /// Runs one job at a time on a thread of its own, beside the live loop.
@@ -114,9 +126,15 @@ impl DressingWorker {
         self.job.start("toile-visitor", move || (number, context.work(job)))
     }
 
-    /// The shopper has left: what comes of the job is thrown away.
+    /// The shopper has left: what comes of the job is thrown away, and what they wore is closed.
     pub fn forget(&mut self) {
         self.job.abandon();
+        self.context = Arc::new(self.context.anew());
+    }
+
+    /// Other garments hang from now on.
+    pub fn restock(&mut self, wardrobe: Arc<Wardrobe>, first: Arc<Attire>) {
+        self.context = Arc::new(DressingContext { wardrobe, first, ..self.context.anew() });
     }
 
     /// What has come of a job, once, when it has ended.
@@ -137,12 +155,52 @@ impl DressingWorker {
 }
 
 impl DressingContext {
+    /// Nobody has worn anything yet.
+    pub fn new(
+        wardrobe: Arc<Wardrobe>,
+        first: Arc<Attire>,
+        quality: Quality,
+        facts: ShopperFacts,
+        appearance: Appearance,
+    ) -> Self {
+        Self { wardrobe, first, quality, facts, appearance, worn: Mutex::default() }
+    }
+
+    /// The same for the next shopper.
+    fn anew(&self) -> Self {
+        Self::new(self.wardrobe.clone(), self.first.clone(), self.quality, self.facts, self.appearance)
+    }
+
+    /// A garment as it hangs: one whose file is another one by now is not what the shopper has seen.
+    fn find(&self, name: &str) -> Result<Arc<Choice>, FittingError> {
+        if let Some(first) = self.first.choices.iter().find(|choice| choice.name == name) {
+            return Ok(first.clone());
+        }
+        let mut worn = self.worn.lock().unwrap_or_else(PoisonError::into_inner);
+        let found = match worn.iter().position(|choice| choice.name == name) {
+            Some(place) => worn.remove(place),
+            None => {
+                let found = Choice::find(name).map(Arc::new)?;
+                let hung = self.wardrobe.items.iter().find(|item| item.name == name).and_then(|item| item.stamp);
+                if hung.is_some() && hung != file::stamp(Path::new(name)) {
+                    return Err(FittingError::Input(format!(
+                        "{name}: it was changed since it hangs; it hangs anew soon"
+                    )));
+                }
+                found
+            }
+        };
+        if worn.len() >= WORN_OPEN {
+            worn.remove(0);
+        }
+        worn.push(found.clone());
+        Ok(found)
+    }
+
     fn work(&self, job: DressingJob) -> Result<JobResult, KioskError> {
         Ok(match job {
             DressingJob::Measure(job) => JobResult::Measured(Box::new(self.measure(job)?)),
-            DressingJob::Dress(client, outfit) => {
-                JobResult::Dressed(Box::new(Dressed::make(self.recipe(&client, &outfit)?, &client.pose, false)?))
-            }
+            DressingJob::Dress(client, outfit) => JobResult::Dressed(Box::new(self.dressed(&client, &outfit)?)),
             DressingJob::Two(client, outfits) => {
                 let [left, right] = &*outfits;
                 JobResult::Two(Box::new([self.draped(&client, left)?, self.draped(&client, right)?]))
@@ -180,8 +238,12 @@ impl DressingContext {
         Recipe::of("shopper", &client.known.measured, sex, garments, self.quality)
     }
 
+    fn dressed(&self, client: &MeasuredVisitor, worn: &Outfit) -> Result<Dressed, KioskError> {
+        Dressed::make_of(self.recipe(client, worn)?, &client.pose, false, &|name| self.find(name))
+    }
+
     fn draped(&self, client: &MeasuredVisitor, worn: &Outfit) -> Result<DrapedFrame, KioskError> {
-        let Dressed { mut frame, mut reader, .. } = Dressed::make(self.recipe(client, worn)?, &client.pose, false)?;
+        let Dressed { mut frame, mut reader, .. } = self.dressed(client, worn)?;
         frame.step(&client.pose);
         let snapshot = reader.latest().clone();
         Ok((frame, snapshot))
@@ -205,16 +267,20 @@ mod tests {
     use crate::visitor::wardrobe::WornItem;
     use toile_assets::sizes::Girth;
     use toile_fitting::dress::session;
+    use toile_fitting::dress::wish::Wish;
     use toile_sensors::source::Session;
     use toile_track::measures::Measures;
 
     fn context() -> DressingContext {
-        DressingContext {
-            wardrobe: Arc::new(Wardrobe::stock().unwrap()),
-            quality: Quality::Draft,
-            facts: ShopperFacts::default(),
-            appearance: Appearance::default(),
-        }
+        let first = Attire { wish: Wish::default(), choices: Vec::new() };
+        let facts = ShopperFacts::default();
+        DressingContext::new(
+            Arc::new(Wardrobe::stock().unwrap()),
+            Arc::new(first),
+            Quality::Draft,
+            facts,
+            Appearance::default(),
+        )
     }
 
     fn job(source: ShopperSource, seated: bool) -> MeasuringJob {

@@ -1,6 +1,6 @@
 //! The visitor's part of the kiosk, without drawing: pages, texts, controls, what is known of them.
 //!
-//! Reads: what is seen, pressed and gestured; what was measured and dressed. Writes: one `Screen` for the renderer,
+//! Reads: what is seen, pressed and gestured; what was measured and dressed; photographs of garments. Writes: one `Screen` for the renderer,
 //! jobs for the dressing worker; nothing to a disk or a network, and nothing of a shopper once they have left.
 //! Budget: 0.5 ms a poll, 10 ms where a size is judged. Thread: the service's.
 //!
@@ -19,6 +19,7 @@ pub mod model;
 mod navigation;
 mod own_measures;
 pub mod pages;
+pub mod photographs;
 pub mod picture;
 pub mod presence;
 pub mod reach;

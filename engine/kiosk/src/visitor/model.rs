@@ -50,6 +50,22 @@ impl VisitModel {
         }
     }
 
+    /// Whether nobody is there and nobody looks: then another stock may hang.
+    pub fn is_idle(&self) -> bool {
+        self.page() == Page::Attract && self.visit.touched_ns.is_none()
+    }
+
+    /// Other garments hang from now on, of which everybody wears these first.
+    pub fn restock(&mut self, wardrobe: Arc<Wardrobe>, wear: Vec<String>) {
+        (self.wardrobe, self.defaults.wear) = (wardrobe, wear);
+        self.visit = Visit::new(&self.defaults);
+    }
+
+    /// The garments to choose from.
+    pub fn wardrobe(&self) -> &Wardrobe {
+        &self.wardrobe
+    }
+
     /// The state of the session.
     pub fn state(&self) -> SessionState {
         self.session.state()

@@ -2,6 +2,7 @@
 
 use toile_track::gesture::Gesture;
 
+use super::actions::SHELF;
 use super::measure_entry::MeasureEntry;
 use super::model::{Effect, Effects, NavigationKey, VisitModel};
 use super::screen::{Action, Page};
@@ -115,7 +116,11 @@ impl VisitModel {
             Action::Begin => self.begin(effects),
             Action::Measure => self.measure_again(walk_ns),
             Action::Open(Page::Compare) => self.open_compare(effects),
-            Action::Open(page) => self.open(page),
+            Action::Open(page) => {
+                self.visit.shelf = self.visit.in_hand / SHELF;
+                self.open(page);
+            }
+            Action::Shelf(step) => self.turn_shelf(step),
             Action::Back => self.back(),
             Action::Garment(item) => self.garment(item, effects),
             Action::Size(step) => self.size(step, effects),
@@ -176,6 +181,14 @@ impl VisitModel {
                 self.dress(effects);
             }
         }
+    }
+
+    /// The shelf before or after, round and round; the focus stays on what was pressed.
+    fn turn_shelf(&mut self, step: i8) {
+        let count = self.shelves().max(1) as isize;
+        self.visit.shelf = (self.visit.shelf as isize + isize::from(step)).rem_euclid(count) as usize;
+        let pressed = self.actions().iter().position(|action| *action == Action::Shelf(step));
+        self.focus = pressed.unwrap_or(self.focus);
     }
 
     /// The size before or after: of what is worn, or on the page of two sizes of the other one.

@@ -12,7 +12,9 @@ mod visit;
 use super::measure_entry::{LengthUnit, OwnMeasure};
 use super::model::VisitModel;
 use super::reach::DisplayMount;
-use super::screen::{Action, Block, BodyView, Control, ControlStyle, JudgedGarment, Page, Screen};
+use super::screen::{
+    Action, Block, BodyView, Control, ControlStyle, JudgedGarment, Page, Screen, ScreenPicture, ScreenTheme,
+};
 use super::size_fit::{BodyPart, VisitorMeasures};
 use super::texts::{Language, TextKey, TextValue, Texts, Translation};
 use super::visit::MeasureProgress;
@@ -29,6 +31,8 @@ impl Screen {
         let writer = PageWriter { model, texts, translation: texts.of(model.language()) };
         let band = mount.band(model.visit.head_mm);
         let page = model.page();
+        let theme = ScreenTheme(model.wardrobe.theme.clone());
+        let has_logo = matches!(page, Page::Attract | Page::Garments);
         Self {
             page,
             heading: writer.heading(page),
@@ -41,6 +45,8 @@ impl Screen {
             reach_low: band.low,
             colours: model.colours(),
             language: model.language().tag(),
+            logo: theme.0.as_ref().and_then(|theme| theme.logo.clone()).filter(|_| has_logo).map(ScreenPicture),
+            theme,
         }
     }
 }
@@ -184,7 +190,14 @@ impl PageWriter<'_> {
 
     fn control(&self, page: Page, action: Action) -> Control {
         let (label, detail) = self.label(page, action);
-        Control { action, label, detail, style: self.style(page, action), chosen: self.is_chosen(action) }
+        Control {
+            action,
+            label,
+            detail,
+            style: self.style(page, action),
+            chosen: self.is_chosen(action),
+            picture: None,
+        }
     }
 
     fn label(&self, page: Page, action: Action) -> (String, Option<String>) {
@@ -192,6 +205,7 @@ impl PageWriter<'_> {
             Action::Garment(item) => return self.garment_label(item),
             Action::Colour(colour) => return (self.colour_name(colour), None),
             Action::Zone(zone) => return self.zone_label(zone),
+            Action::Shelf(step) => return self.shelf_label(step),
             Action::Size(step) => return self.size_label(page, step),
             Action::Wear => return self.wear_label(),
             Action::Language(place) => return self.language_label(place),
@@ -253,6 +267,8 @@ impl PageWriter<'_> {
             (_, Action::Back | Action::Leave | Action::Open(Page::Settings) | Action::LargeType | Action::Unit) => {
                 ControlStyle::Quiet
             }
+            (_, Action::Garment(item)) => self.garment_style(item),
+            (_, Action::Shelf(_)) => ControlStyle::Quiet,
             (Page::Attract, Action::Language(_)) => ControlStyle::Quiet,
             _ => ControlStyle::Plain,
         }

@@ -1,6 +1,11 @@
 //! Screen: everything that the display shows at a moment, as data. The window paints it, a test reads it; the painter decides neither
 //! the words nor their order.
 
+use std::fmt::{self, Debug, Formatter};
+use std::sync::Arc;
+
+use toile_assets::catalogue::{Picture, ShopTheme};
+
 use super::body_turn::SIDES;
 
 /// Pages of the kiosk.
@@ -83,6 +88,8 @@ pub enum Action {
     Back,
     /// Wear a garment of the wardrobe, or take it off.
     Garment(usize),
+    /// The garments before or after those that are shown (-1, 1).
+    Shelf(i8),
     /// The size before or after (-1, 1).
     Size(i8),
     /// A colour of the garment in hand.
@@ -125,6 +132,36 @@ pub enum Action {
     RemoveMeasure,
 }
 
+/// A picture that is shown, shared by all screens that show it; two are the same where they are one.
+#[derive(Clone)]
+pub struct ScreenPicture(pub Arc<Picture>);
+
+impl PartialEq for ScreenPicture {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+impl Debug for ScreenPicture {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        Debug::fmt(&self.0, f)
+    }
+}
+
+/// The theme of a shop; none is the kiosk's own. Two are the same where they are one.
+#[derive(Debug, Clone, Default)]
+pub struct ScreenTheme(pub Option<Arc<ShopTheme>>);
+
+impl PartialEq for ScreenTheme {
+    fn eq(&self, other: &Self) -> bool {
+        match (&self.0, &other.0) {
+            (Some(one), Some(other)) => Arc::ptr_eq(one, other),
+            (None, None) => true,
+            _ => false,
+        }
+    }
+}
+
 /// How much a control stands out.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ControlStyle {
@@ -138,6 +175,8 @@ pub enum ControlStyle {
     Key,
     /// A colour, linear RGB.
     Swatch([f32; 3]),
+    /// A garment with its photograph above its words; while there is none, its colour, linear RGB.
+    Tile([f32; 3]),
 }
 
 /// Something that can be pressed, by finger, mouse, key or gesture.
@@ -153,6 +192,8 @@ pub struct Control {
     pub style: ControlStyle,
     /// Whether it is what is chosen.
     pub chosen: bool,
+    /// Its picture, once it is read.
+    pub picture: Option<ScreenPicture>,
 }
 
 /// What stands between the heading and the controls.
@@ -239,4 +280,8 @@ pub struct Screen {
     pub colours: Vec<[f32; 3]>,
     /// Language, as BCP 47 (`en`, `de`, `fr`, `es`, `tr`, `ja`).
     pub language: &'static str,
+    /// Colours and font of a shop.
+    pub theme: ScreenTheme,
+    /// A shop's logo, on the pages that show it.
+    pub logo: Option<ScreenPicture>,
 }

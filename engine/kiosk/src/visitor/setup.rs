@@ -11,6 +11,8 @@ use super::texts::{Language, Texts};
 use super::wardrobe::Wardrobe;
 use crate::error::KioskError;
 use crate::service::config::{self, Config};
+use crate::service::stock::{LeftOut, Stock};
+use crate::service::stock_watch::Hang;
 use toile_fitting::live::dresser::ShopperSource;
 
 /// A minute (s).
@@ -23,6 +25,8 @@ pub struct VisitorSetup {
     mount: DisplayMount,
     context: DressingContext,
     mark: Option<[f32; 2]>,
+    /// What cannot be used.
+    pub left_out: Vec<LeftOut>,
 }
 
 impl VisitorSetup {
@@ -30,14 +34,14 @@ impl VisitorSetup {
     ///
     /// # Errors
     /// A display whose controls nobody reaches, a garment that is not in the wardrobe or cannot be used.
-    pub fn new(config: &Config, now_ns: u64) -> Result<Self, KioskError> {
+    pub fn new(config: &Config, stock: &Stock, now_ns: u64) -> Result<Self, KioskError> {
         let display = &config.display;
         let mount = DisplayMount { lower_edge_mm: display.lower_edge_mm, height_mm: display.height_mm };
         if let Some(fault) = mount.fault() {
             return Err(KioskError::Input(fault));
         }
-        let tell = |why: &str| eprintln!("toile: left out of the catalogue: {why}");
-        let wardrobe = Arc::new(Wardrobe::shop(config.wear.catalogue.as_deref(), &config.wear.garments, tell)?);
+        let mut left_out = stock.left_out.clone();
+        let wardrobe = Arc::new(Wardrobe::of(stock, None, &mut left_out)?);
         // Measures by tape are the visit's: they are listed, and can be removed.
         let mut facts = config.shopper.facts().map_err(KioskError::Input)?;
         let tape = std::mem::take(&mut facts.tape);
@@ -46,15 +50,16 @@ impl VisitorSetup {
             times: VisitTimes::usual(config.times(), measure_ns, config::ns(display.picture_minutes * MINUTE_S)),
             language: Language::of(&display.language).unwrap_or_default(),
             large: display.large_type,
-            wear: config.wear.garments.clone(),
+            wear: stock.first.wish.garments.clone(),
             size: config.wear.size.clone(),
             tape,
             motion: display.motion,
         };
+        let first = stock.first.clone();
         let (quality, appearance) = (config.wish().quality, display.appearance());
-        let context = DressingContext { wardrobe: wardrobe.clone(), quality, facts, appearance };
+        let context = DressingContext::new(wardrobe.clone(), first, quality, facts, appearance);
         let model = VisitModel::new(defaults, wardrobe, now_ns);
-        Ok(Self { model, texts: Texts::load()?, mount, context, mark: display.mark_m })
+        Ok(Self { model, texts: Texts::load()?, mount, context, mark: display.mark_m, left_out })
     }
 
     /// The screen that is shown first.
@@ -66,6 +71,15 @@ impl VisitorSetup {
     pub fn controller<O>(self, window: WindowChannels<'_, O>, played: Option<ShopperSource>) -> VisitController<'_, O> {
         VisitController::new((self.model, self.texts, self.mount), window, self.context, played, self.mark)
     }
+
+    /// What hangs of a stock that is read again, beginning with what hangs now.
+    pub fn hang(&self) -> Hang<Arc<Wardrobe>> {
+        let mut before = self.context.wardrobe.clone();
+        Box::new(move |stock, left_out| {
+            before = Arc::new(Wardrobe::of(stock, Some(&before), left_out)?);
+            Ok(before.clone())
+        })
+    }
 }
 
 #[cfg(test)]
@@ -73,10 +87,15 @@ mod tests {
     use super::*;
     use crate::visitor::screen::Page;
 
+    fn set_up(text: &str) -> Result<VisitorSetup, KioskError> {
+        let config = Config::parse("k.toml", text)?;
+        VisitorSetup::new(&config, &Stock::read(&config)?, 0)
+    }
+
     #[test]
     fn what_is_configured_is_what_is_shown_first() {
         let text = "[display]\nlanguage = \"tr\"\nlarge_type = true\nlower_edge_mm = 300.0\nheight_mm = 1500.0\n";
-        let setup = VisitorSetup::new(&Config::parse("k.toml", text).unwrap(), 0).unwrap();
+        let setup = set_up(text).unwrap();
         let first = setup.first();
         assert_eq!((first.page, first.language), (Page::Attract, "tr"));
         assert!(first.type_scale > 1.0);
@@ -97,7 +116,7 @@ mod tests {
         for (text, word) in
             [("[display]\nlower_edge_mm = 1000.0", "within reach"), ("[wear]\ngarments = [\"tent\"]", "tent")]
         {
-            let refused = VisitorSetup::new(&Config::parse("k.toml", text).unwrap(), 0).err().unwrap();
+            let refused = set_up(text).err().unwrap();
             assert!(matches!(&refused, KioskError::Input(message) if message.contains(word)), "{refused}");
         }
     }

@@ -87,6 +87,8 @@ pub(super) struct Visit {
     pub outfit: Outfit,
     pub worn: Outfit,
     pub in_hand: usize,
+    /// Which garments are shown: the place of their shelf.
+    pub shelf: usize,
     /// How the garment in hand fits.
     pub fit: Option<SizeFit>,
     /// Whether a body of theirs stands dressed, what it is asked to wear, whether that failed, and whether it is hidden.
@@ -134,6 +136,7 @@ impl Visit {
             outfit: Outfit::new(),
             worn: Outfit::new(),
             in_hand: 0,
+            shelf: 0,
             fit: None,
             dressed: false,
             dressing: None,

@@ -2,20 +2,40 @@
 //!
 //! The eight layers, and where a garment is held on the body, are those of Ugur 2008, sections 6.1 and 6.2.
 
+use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
 use toile_assets::body::{Body, Measures, Sex};
-use toile_assets::catalogue::{Catalogue, CatalogueItem, ManifestColour, Words, word};
+use toile_assets::catalogue::{CatalogueItem, ManifestColour, Price, ShopTheme, Words, word};
 use toile_assets::drafting::{self, DraftStyle};
+use toile_assets::file::{self, FileStamp};
 use toile_assets::sizes::{GarmentKind, Population};
-use toile_assets::wardrobe;
 use toile_assets::wardrobe::own;
+use toile_fitting::dress::attire;
 use toile_fitting::dress::choice::{Choice, ChoiceSource};
 use toile_fitting::dress::offer::GarmentOffer;
 
 use super::colours::{Colour, palette};
 use super::texts::TextKey;
 use crate::error::KioskError;
+use crate::service::stock::{LeftOut, Stock};
+
+/// The garments that hang where no shop brings its own, some of them in a print, each with its name in the pages' texts.
+const STOCK: [(&str, TextKey); 12] = [
+    ("sun-dress", TextKey::GarmentSunDress),
+    ("t-shirt", TextKey::GarmentTShirt),
+    ("wide-trousers", TextKey::GarmentWideTrousers),
+    ("jacket", TextKey::GarmentJacket),
+    ("circle-skirt:lawn-flowers", TextKey::GarmentCircleSkirt),
+    ("slim-trousers", TextKey::GarmentSlimTrousers),
+    ("shirt:lawn-gingham", TextKey::GarmentShirt),
+    ("jumper:jersey-breton", TextKey::GarmentJumper),
+    ("mens-shirt", TextKey::GarmentMensShirt),
+    ("mens-trousers", TextKey::GarmentMensTrousers),
+    ("blazer", TextKey::GarmentBlazer),
+    ("coat", TextKey::GarmentCoat),
+];
 
 /// Garments that are worn at once, at most: one over each half of the body, in each of eight layers.
 pub const MOST_WORN: usize = 16;
@@ -99,8 +119,12 @@ pub struct WardrobeItem {
     pub name: String,
     /// A shop's article number.
     pub article: Option<String>,
-    /// What it costs, as it is shown.
-    pub price: Option<String>,
+    /// What it costs.
+    pub price: Option<Price>,
+    /// The photograph of its package that is shown.
+    pub photograph: Option<String>,
+    /// Its file as it was read; none of what is built in.
+    pub stamp: Option<FileStamp>,
     title: ItemName,
     /// Its sizes, as one is chosen by; none where it is shown as it was made, its size unknown.
     pub offer: Option<GarmentOffer>,
@@ -150,31 +174,32 @@ impl WardrobeItem {
     /// # Errors
     /// A garment that there is not, a file, sizes or a fabric that cannot be used.
     pub fn new(name: &str) -> Result<Self, KioskError> {
-        Self::of(&Choice::find(name)?)
+        Self::of(&Choice::find(name)?, &average()?)
     }
 
-    /// A garment of a shop's catalogue.
+    /// A garment of a shop's catalogue, as it is judged on `average`.
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub fn of_package(item: &CatalogueItem) -> Result<Self, KioskError> {
+    pub fn of_package(item: &CatalogueItem, average: &Body) -> Result<Self, KioskError> {
         let choice = Choice::open(&item.path)?;
         let manifest = &item.manifest;
-        let mut hung = Self::of(&choice)?;
+        let mut hung = Self::of(&choice, average)?;
         let own = |c: &ManifestColour| Colour { word: TextKey::ColourOwn, words: Some(c.name.clone()), srgb: c.srgb };
         if !manifest.colours.is_empty() {
             hung.colours = manifest.colours.iter().map(own).collect();
         }
         hung.title = ItemName::Words(manifest.names.clone());
         hung.article = Some(manifest.article.clone());
-        hung.price = manifest.price.as_ref().map(ToString::to_string);
+        hung.price.clone_from(&manifest.price);
+        hung.photograph = manifest.photographs.first().cloned();
+        hung.stamp = Some(item.stamp);
         hung.layer = manifest.layer.map_or(hung.layer, Layer::of);
         Ok(hung)
     }
 
-    fn of(choice: &Choice) -> Result<Self, KioskError> {
-        let average = Body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(KioskError::internal)?;
-        let offer = choice.offer(&average)?;
+    fn of(choice: &Choice, average: &Body) -> Result<Self, KioskError> {
+        let offer = choice.offer(average)?;
         let kind = match &choice.source {
             ChoiceSource::Mesh(own) => own.measures.kind,
             ChoiceSource::Style(_) | ChoiceSource::Pattern(_) => offer.as_ref().map(|offer| offer.kind),
@@ -191,6 +216,8 @@ impl WardrobeItem {
             name: choice.name.clone(),
             article: None,
             price: None,
+            photograph: None,
+            stamp: file::stamp(Path::new(&choice.name)),
             title: title(choice),
             offer,
             population: choice.population()?,
@@ -231,14 +258,13 @@ impl WardrobeItem {
     }
 }
 
+/// The body on which what is made for nobody in particular is judged.
+fn average() -> Result<Body, KioskError> {
+    Body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(KioskError::internal)
+}
+
 fn title(choice: &Choice) -> ItemName {
-    let key = match choice.name.as_str() {
-        "sun-dress" => Some(TextKey::GarmentSunDress),
-        "t-shirt" => Some(TextKey::GarmentTShirt),
-        "jacket" => Some(TextKey::GarmentJacket),
-        "wide-trousers" => Some(TextKey::GarmentWideTrousers),
-        _ => None,
-    };
+    let key = STOCK.iter().find(|(name, _)| *name == choice.name).map(|(_, key)| *key);
     match (key, &choice.source) {
         (Some(key), _) => ItemName::Word(key),
         (None, ChoiceSource::Style(style)) => ItemName::Title(style.title.clone()),
@@ -272,6 +298,8 @@ pub type Outfit = heapless::Vec<WornItem, MOST_WORN>;
 pub struct Wardrobe {
     /// Garments in the order of dressing.
     pub items: Vec<WardrobeItem>,
+    /// How a shop's screens look.
+    pub theme: Option<Arc<ShopTheme>>,
 }
 
 impl Wardrobe {
@@ -280,41 +308,45 @@ impl Wardrobe {
     /// # Errors
     /// A garment whose file, sizes or fabric cannot be used.
     pub fn stock() -> Result<Self, KioskError> {
-        Ok(Self::hung(wardrobe::names().into_iter().map(WardrobeItem::new).collect::<Result<_, _>>()?))
+        let average = average()?;
+        let hung = |(name, _): &(&str, TextKey)| WardrobeItem::of(&*attire::find_now(name)?, &average);
+        Ok(Self::hung(STOCK.iter().map(hung).collect::<Result<_, KioskError>>()?, None))
     }
 
-    /// A shop's own garments, and those that are named besides; what cannot be used is left out and told.
+    /// What hangs of a stock: a shop's own garments, or those that are built in, and what is worn first besides. What cannot be used
+    /// is left out and added to the list; what hung before and has not changed is taken over.
     ///
     /// # Errors
-    /// A catalogue that cannot be read, nothing in it that can be worn, a named garment that cannot be used.
-    pub fn shop(folder: Option<&Path>, named: &[String], mut tell: impl FnMut(&str)) -> Result<Self, KioskError> {
-        let Some(folder) = folder else {
-            let mut stock = Self::stock()?.items;
-            for name in named.iter().filter(|name| !wardrobe::names().contains(&name.as_str())) {
-                stock.push(WardrobeItem::new(name)?);
+    /// A garment that is worn first and cannot hang.
+    pub fn of(stock: &Stock, before: Option<&Self>, left_out: &mut Vec<LeftOut>) -> Result<Self, KioskError> {
+        let average = average()?;
+        let mut items = Vec::new();
+        match &stock.catalogue {
+            Some(catalogue) => {
+                let known: BTreeMap<&str, &WardrobeItem> =
+                    before.into_iter().flat_map(|before| &before.items).map(|item| (&*item.name, item)).collect();
+                for item in &catalogue.items {
+                    let name = item.path.display().to_string();
+                    let same = known.get(&*name).filter(|hung| hung.stamp == Some(item.stamp));
+                    match same.map_or_else(|| WardrobeItem::of_package(item, &average), |hung| Ok((*hung).clone())) {
+                        Ok(hung) => items.push(hung),
+                        Err(why) => left_out.push(LeftOut::new(&name, &why)),
+                    }
+                }
             }
-            return Ok(Self::hung(stock));
-        };
-        let catalogue = Catalogue::read(folder).map_err(KioskError::input)?;
-        catalogue.refused.iter().for_each(|refused| tell(&refused.why));
-        let mut items = Vec::with_capacity(catalogue.items.len());
-        for item in &catalogue.items {
-            match WardrobeItem::of_package(item) {
-                Ok(hung) => items.push(hung),
-                Err(why) => tell(&why.to_string()),
+            None => items = Self::stock()?.items,
+        }
+        for choice in &stock.first.choices {
+            if !items.iter().any(|item| item.is(&choice.name)) {
+                items.push(WardrobeItem::of(choice, &average)?);
             }
         }
-        for name in named {
-            if !items.iter().any(|item| item.is(name)) {
-                items.push(WardrobeItem::new(name)?);
-            }
-        }
-        Ok(Self::hung(items))
+        Ok(Self::hung(items, stock.catalogue.as_ref().and_then(|catalogue| catalogue.theme.clone())))
     }
 
-    fn hung(mut items: Vec<WardrobeItem>) -> Self {
+    fn hung(mut items: Vec<WardrobeItem>, theme: Option<Arc<ShopTheme>>) -> Self {
         items.sort_by_key(|item| (item.layer, item.place));
-        Self { items }
+        Self { items, theme }
     }
 
     /// The place of a garment by its name or article number.
@@ -336,6 +368,7 @@ impl Wardrobe {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::service::config::Config;
 
     fn wardrobe() -> Wardrobe {
         Wardrobe::stock().unwrap()
@@ -382,9 +415,11 @@ mod tests {
         for item in wardrobe().items {
             assert!(item.word().is_some() && item.sizes.len() >= 3, "{}", item.name);
             assert!((4..=5).contains(&item.colours.len()));
-            let own = Choice::find(&item.name).unwrap().fabric().unwrap().colour;
-            assert_eq!(item.colours[0].srgb, own, "the first is the fabric's");
-            for (i, colour) in item.colours.iter().enumerate() {
+            let fabric = Choice::find(&item.name).unwrap().fabric().unwrap();
+            assert_eq!(item.colours[0].srgb, fabric.colour, "the first is the fabric's");
+            let woven = usize::from(item.colours[0].word == TextKey::ColourOwn);
+            assert!(woven == 0 || fabric.print.is_some(), "only a print is told by no colour's name");
+            for (i, colour) in item.colours.iter().enumerate().skip(woven) {
                 assert_ne!(colour.word, TextKey::ColourOwn, "{} has a colour without a name", item.name);
                 assert!(item.colours[..i].iter().all(|c| c.word != colour.word));
             }
@@ -422,20 +457,30 @@ mod tests {
     #[test]
     fn a_shops_own_garments_hang_in_place_of_the_stock() {
         let folder = shop("own");
-        let mut told = Vec::new();
-        let hung = Wardrobe::shop(Some(&folder), &["DR-1".into()], |why| told.push(why.to_owned())).unwrap();
-        assert_eq!((hung.items.len(), told.len()), (2, 1), "{told:?}");
-        assert!(told[0].contains("broken.toile"));
+        let stock = |named: &[&str]| {
+            let mut config = Config::default();
+            config.wear.catalogue = Some(folder.clone());
+            config.wear.garments = named.iter().map(|name| (*name).to_owned()).collect();
+            config.wear.is_named = true;
+            Stock::read(&config)
+        };
+        let own = stock(&["DR-1"]).unwrap();
+        let hung = Wardrobe::of(&own, None, &mut Vec::new()).unwrap();
+        assert_eq!((hung.items.len(), own.left_out.len()), (2, 1), "{:?}", own.left_out);
+        assert_eq!(own.left_out[0].name, "broken.toile");
         let [dress, coat] = ["DR-1", "JA-2"].map(|article| &hung.items[hung.find(article).unwrap()]);
         assert_eq!((dress.title("de"), dress.title("tr"), dress.word()), ("Unser", "Ours", None));
-        assert_eq!((dress.price.as_deref(), dress.layer), (Some("99.00 EUR"), Layer::Shirt));
+        assert_eq!(
+            (dress.price.as_ref().map(ToString::to_string).as_deref(), dress.layer),
+            (Some("99.00 EUR"), Layer::Shirt)
+        );
         assert_eq!((coat.layer, coat.colours.len()), (Layer::Coat, 1));
         assert_eq!(coat.colours[0].words.as_ref().map(|words| word(words, "de")), Some("Moos"));
         assert!(dress.sizes.len() > 3 && dress.name.ends_with("DR-1.toile"));
         // What is named besides hangs there as well; what there is not is refused.
-        let more = Wardrobe::shop(Some(&folder), &["t-shirt".into()], |_| ()).unwrap();
+        let more = Wardrobe::of(&stock(&["t-shirt"]).unwrap(), Some(&hung), &mut Vec::new()).unwrap();
         assert_eq!(more.items.len(), 3);
-        assert!(Wardrobe::shop(Some(&folder), &["DR-9".into()], |_| ()).is_err());
+        assert!(stock(&["DR-9"]).is_err());
         std::fs::remove_dir_all(&folder).unwrap();
     }
 }

@@ -12,7 +12,8 @@ use super::{UserEvent, WindowRenderer};
 use crate::error::KioskError;
 use crate::service::controller::ToScene;
 use crate::service::report::KioskReport;
-use crate::service::{BoxedController, Frontend, KioskRun, serve};
+use crate::service::stock_watch::{self, LOOK_EVERY, StockWatch, WatchStart};
+use crate::service::{BoxedController, ControllerStart, Frontend, KioskRun, serve};
 use crate::visitor::controller;
 use crate::visitor::model::Input;
 use crate::visitor::setup::VisitorSetup;
@@ -23,7 +24,9 @@ use crate::visitor::setup::VisitorSetup;
 /// As without a window; where there is no display, or nothing that can draw on it.
 pub fn run(kiosk: KioskRun<'_>) -> Result<KioskReport, KioskError> {
     let display = &kiosk.config.display;
-    let setup = VisitorSetup::new(kiosk.config, kiosk.clock.now_ns())?;
+    let setup = VisitorSetup::new(kiosk.config, kiosk.stock, kiosk.clock.now_ns())?;
+    setup.left_out.iter().for_each(|left| (kiosk.print_line)(&stock_watch::line(left)));
+    let (config, stock) = (kiosk.config.clone(), kiosk.stock.clone());
     let options = WindowOptions {
         windowed: kiosk.options.windowed,
         height_mm: display.height_mm,
@@ -39,8 +42,11 @@ pub fn run(kiosk: KioskRun<'_>) -> Result<KioskReport, KioskError> {
         let next_input = Box::new(move || user_events.pop().map(input));
         let draped = Box::new(move |frame: &Frame, snapshot: &Snapshot| BodyModel::draped(frame, snapshot, appearance));
         let channels = controller::WindowChannels { screens, next_input, pairs, draped };
-        let controller =
-            move |played| -> BoxedController<'_, BodyModel> { Some(Box::new(setup.controller(channels, played))) };
+        let controller = move |start: ControllerStart| -> Result<BoxedController<'_, BodyModel>, KioskError> {
+            let (left_out, hang, pose) = (setup.left_out.clone(), setup.hang(), start.pose);
+            let watch = StockWatch::start(WatchStart { config, stock, left_out, pose, every: LOOK_EVERY, hang })?;
+            Ok(Box::new(setup.controller(channels, start.played).watching(watch)))
+        };
         let print_line = kiosk.print_line;
         let renderer = |mannequin: &Frame| {
             let renderer = opening.finish()?;

@@ -1,11 +1,12 @@
 //! The fitted body and the garments to choose from.
 
 use super::super::colours::Colour;
-use super::super::screen::{Block, Page};
+use super::super::screen::{Block, ControlStyle, Page};
 use super::super::size_fit::{OutOfRange, SizeChoice};
 use super::super::texts::{TextKey, TextValue};
 use super::PageWriter;
-use toile_assets::catalogue::word;
+use toile_assets::catalogue::{Price, word};
+use toile_view::image::linear;
 
 /// As sure as this, a size is simply the best.
 const SURE: f32 = toile_track::recommend::SURE;
@@ -104,9 +105,34 @@ impl PageWriter<'_> {
             let names: Vec<String> = off.map(|other| self.garment(other)).collect();
             let others = self.translation.list(&names);
             let instead = || self.format(TextKey::GarmentsInstead, &[("others", TextValue::Text(&others))]);
-            if names.is_empty() { item.price.clone() } else { Some(instead()) }
+            (!names.is_empty()).then(instead)
         };
-        (self.garment(item), detail)
+        let price = item.price.as_ref().map(|price| self.price(price));
+        let both: Vec<String> = price.into_iter().chain(detail).collect();
+        (self.garment(item), (!both.is_empty()).then(|| both.join(" \u{b7} ")))
+    }
+
+    /// Garments are tiles where one of those that are shown has a photograph.
+    pub(super) fn garment_style(&self, place: usize) -> ControlStyle {
+        let items = &self.model.wardrobe.items;
+        let shown = || self.model.shelf().filter_map(|place| items.get(place));
+        let colour = items.get(place).and_then(|item| item.colours.first()).map(|colour| colour.srgb.map(linear));
+        match colour {
+            Some(colour) if shown().any(|item| item.photograph.is_some()) => ControlStyle::Tile(colour),
+            _ => ControlStyle::Plain,
+        }
+    }
+
+    /// The garments before or after, and which of all those are.
+    pub(super) fn shelf_label(&self, step: i8) -> (String, Option<String>) {
+        let key = if step < 0 { TextKey::DoGarmentsBefore } else { TextKey::DoGarmentsMore };
+        let place = format!("{} / {}", self.model.visit.shelf + 1, self.model.shelves());
+        (self.words(key), (step > 0).then_some(place))
+    }
+
+    /// A price as the language writes it.
+    pub(super) fn price(&self, price: &Price) -> String {
+        price.to_string().replace('.', &self.translation.language().decimal_mark().to_string())
     }
 
     /// The size before or after, and which that is.

@@ -5,7 +5,7 @@ use std::ops::Range;
 use egui::{FontId, Painter, Pos2, Rect, Vec2, pos2, vec2};
 
 use super::text::{SetText, centred, left_aligned};
-use super::theme::{self, Sizes};
+use super::theme::Look;
 use crate::visitor::screen::{Control, ControlStyle};
 
 /// Most columns of a grid.
@@ -13,6 +13,9 @@ const MOST_COLUMNS: usize = 6;
 
 /// Columns of a keypad, as those of a telephone.
 const KEY_COLUMNS: usize = 3;
+
+/// Height of the photograph on a tile, in lines of the body's type.
+const TILE_LINES: f32 = 6.4;
 
 /// A button with its place.
 #[derive(Debug, Clone)]
@@ -38,17 +41,17 @@ impl ButtonBox {
 struct Column<'a> {
     controls: &'a [Control],
     width: f32,
-    sizes: Sizes,
+    look: Look,
     painter: &'a Painter,
 }
 
 /// Buttons in a column of this width, from the origin down, and how high they are together.
-pub fn lay(controls: &[Control], width: f32, sizes: Sizes, painter: &Painter) -> (Vec<ButtonBox>, f32) {
-    let column = Column { controls, width, sizes, painter };
+pub fn lay(controls: &[Control], width: f32, look: Look, painter: &Painter) -> (Vec<ButtonBox>, f32) {
+    let column = Column { controls, width, look, painter };
     let (mut buttons, mut y) = (Vec::with_capacity(controls.len()), 0.0);
     for run in runs(controls) {
         if y > 0.0 {
-            y += sizes.gap();
+            y += look.gap();
         }
         y = column.grid(run, y, &mut buttons);
     }
@@ -86,16 +89,16 @@ impl Column<'_> {
 
     /// So many columns that every word still stands unbroken in its button.
     fn most_columns(&self, run: &Range<usize>) -> usize {
-        let Self { controls, width, sizes, painter } = *self;
-        let gap = sizes.gap();
-        let wide = run.clone().map(|i| natural(&controls[i], sizes, painter)).fold(sizes.target, f32::max).min(width);
+        let Self { controls, width, look, painter } = *self;
+        let gap = look.gap();
+        let wide = run.clone().map(|i| natural(&controls[i], look, painter)).fold(look.target, f32::max).min(width);
         (((width + gap) / (wide + gap)) as usize).clamp(1, MOST_COLUMNS.min(run.len().max(1)))
     }
 
     /// A run in so many columns, and where it ends.
     fn rows(&self, run: &Range<usize>, columns: usize, mut y: f32) -> (Vec<ButtonBox>, f32) {
-        let Self { controls, width, sizes, painter } = *self;
-        let gap = sizes.gap();
+        let Self { controls, width, look, painter } = *self;
+        let gap = look.gap();
         // The same number of rows with fewer, wider columns looks calmer.
         let rows = run.len().div_ceil(columns).max(1);
         let columns = run.len().div_ceil(rows).max(1);
@@ -105,7 +108,7 @@ impl Column<'_> {
             let first = run.start + row * columns;
             let of_row = first.min(run.end)..(first + columns).min(run.end);
             let begun = placed.len();
-            placed.extend(of_row.map(|i| button(&controls[i], i, cell, sizes, painter)));
+            placed.extend(of_row.map(|i| button(&controls[i], i, cell, look, painter)));
             let of_row: &mut [ButtonBox] = &mut placed[begun..];
             let tall = of_row.iter().map(|b| b.rect.height()).fold(0.0, f32::max);
             for (column, button) in of_row.iter_mut().enumerate() {
@@ -118,54 +121,65 @@ impl Column<'_> {
 }
 
 /// Least width at which a control looks well: its longest word in one piece, and its label in two lines.
-fn natural(control: &Control, sizes: Sizes, painter: &Painter) -> f32 {
-    let font = font(control, sizes);
-    let wide = |text: &str, font: FontId| left_aligned(painter, text, font, theme::INK, f32::INFINITY).size().x;
+fn natural(control: &Control, look: Look, painter: &Painter) -> f32 {
+    let font = font(control, look);
+    let wide = |text: &str, font: FontId| left_aligned(painter, text, font, look.palette.ink, f32::INFINITY).size().x;
     let longest = |text: &str, font: &FontId| text.split(' ').map(|w| wide(w, font.clone())).fold(0.0, f32::max);
     let label = longest(&control.label, &font).max(wide(&control.label, font) * 0.62);
-    let detail = control.detail.as_ref().map_or(0.0, |d| longest(d, &sizes.small()).max(wide(d, sizes.small()) * 0.5));
-    (label.max(detail) + aside(control, sizes) + 2.0 * pad(sizes)).ceil() + 1.0
+    let detail = control.detail.as_ref().map_or(0.0, |d| longest(d, &look.small()).max(wide(d, look.small()) * 0.5));
+    (label.max(detail) + aside(control, look) + 2.0 * pad(look)).ceil() + 1.0
 }
 
 /// Type of a control's words.
-fn font(control: &Control, sizes: Sizes) -> FontId {
+fn font(control: &Control, look: Look) -> FontId {
     match control.style {
-        ControlStyle::Swatch(_) => sizes.small(),
-        ControlStyle::Quiet => sizes.text(),
-        ControlStyle::Key => FontId { size: (sizes.body * 1.3).round(), ..sizes.label() },
-        _ => sizes.label(),
+        ControlStyle::Swatch(_) | ControlStyle::Tile(_) => look.small(),
+        ControlStyle::Quiet => look.text(),
+        ControlStyle::Key => FontId { size: (look.body * 1.3).round(), ..look.label() },
+        _ => look.label(),
     }
 }
 
 /// What the mark of a choice takes beside the words.
-pub fn aside(control: &Control, sizes: Sizes) -> f32 {
-    if matches!(control.style, ControlStyle::Swatch(_)) || !control.chosen { 0.0 } else { (sizes.body * 1.5).round() }
+pub fn aside(control: &Control, look: Look) -> f32 {
+    if matches!(control.style, ControlStyle::Swatch(_) | ControlStyle::Tile(_)) || !control.chosen {
+        0.0
+    } else {
+        (look.body * 1.5).round()
+    }
 }
 
 /// Diameter of the disc that shows a colour.
-pub fn disc(sizes: Sizes) -> f32 {
-    (sizes.body * 1.7 * sizes.squeeze).max(sizes.target * 0.6).round()
+pub fn disc(look: Look) -> f32 {
+    (look.body * 1.7 * look.squeeze).max(look.target * 0.6).round()
+}
+
+/// Height of the photograph on a tile.
+pub fn picture_height(look: Look) -> f32 {
+    (look.body * TILE_LINES * look.squeeze * look.squeeze).max(look.target).round()
 }
 
 /// Air within a button, left and right.
-pub fn pad(sizes: Sizes) -> f32 {
-    (sizes.body * 0.7 * sizes.squeeze).round()
+pub fn pad(look: Look) -> f32 {
+    (look.body * 0.7 * look.squeeze).round()
 }
 
-fn button(control: &Control, index: usize, width: f32, sizes: Sizes, painter: &Painter) -> ButtonBox {
-    let room = width - aside(control, sizes) - 2.0 * pad(sizes);
+fn button(control: &Control, index: usize, width: f32, look: Look, painter: &Painter) -> ButtonBox {
+    let room = width - aside(control, look) - 2.0 * pad(look);
     let dark = matches!(control.style, ControlStyle::Primary);
-    let (ink, soft) = if dark { (theme::DARK, theme::DARK) } else { (theme::INK, theme::SOFT) };
-    let label = centred(painter, &control.label, font(control, sizes), ink, room);
-    let detail = control.detail.as_ref().map(|d| centred(painter, d, sizes.small(), soft, room));
+    let (ink, soft) =
+        if dark { (look.palette.on_accent, look.palette.on_accent) } else { (look.palette.ink, look.palette.soft) };
+    let label = centred(painter, &control.label, font(control, look), ink, room);
+    let detail = control.detail.as_ref().map(|d| centred(painter, d, look.small(), soft, room));
     let words = label.size().y + detail.as_ref().map_or(0.0, |d| d.size().y);
-    let disc = if matches!(control.style, ControlStyle::Swatch(_)) { disc(sizes) + sizes.gap() * 0.4 } else { 0.0 };
+    let picture = if matches!(control.style, ControlStyle::Tile(_)) { picture_height(look) + pad(look) } else { 0.0 };
+    let disc = if matches!(control.style, ControlStyle::Swatch(_)) { disc(look) + look.gap() * 0.4 } else { 0.0 };
     let air = match control.style {
         ControlStyle::Primary => 1.9,
         ControlStyle::Plain => 1.35,
         ControlStyle::Key => 1.1,
-        ControlStyle::Quiet | ControlStyle::Swatch(_) => 0.9,
+        ControlStyle::Quiet | ControlStyle::Swatch(_) | ControlStyle::Tile(_) => 0.9,
     };
-    let tall = (words + disc + sizes.body * air * sizes.squeeze).max(sizes.target).round();
+    let tall = (words + disc + picture + look.body * air * look.squeeze).max(look.target).round();
     ButtonBox { index, rect: Rect::from_min_size(Pos2::ZERO, vec2(width, tall)), label, detail }
 }

@@ -5,7 +5,7 @@ use std::f32::consts::{PI, TAU};
 
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, pos2, vec2};
 
-use super::theme;
+use super::palette::Palette;
 
 /// How far arms are lifted from the sides in the end (rad): 30 degrees, so that sleeves and sides are seen apart.
 const ARMS: f32 = 0.52;
@@ -28,19 +28,20 @@ impl Ground {
 }
 
 /// Paints it at a phase of its round, 0 .. 1.
-pub fn paint(painter: &Painter, rect: Rect, phase: f32, seated: bool) {
+pub fn paint(painter: &Painter, rect: Rect, phase: f32, seated: bool, palette: &Palette) {
     let phase = phase.rem_euclid(1.0);
     let tall = rect.height() * 0.86;
     let floor = pos2(rect.center().x, rect.bottom() - rect.height() * 0.07);
     let arrived = ease(phase / ARRIVED);
-    mark(painter, floor, tall, arrived);
+    mark((painter, palette), floor, tall, arrived);
     // From one side and from a little farther away.
     let from = vec2(-rect.width().min(tall * 1.6) * 0.42, -tall * 0.05);
     let near = 0.88 + 0.12 * arrived;
     let ground = Ground { at: floor + from * (1.0 - arrived), tall: tall * near };
     let stride = if arrived < 1.0 { (phase / ARRIVED * TAU * 2.0).sin() } else { 0.0 };
     let arms = 0.1 + (ARMS - 0.1) * ease((phase - ARRIVED) / (LIFTED - ARRIVED));
-    if seated { sit(painter, &ground, arms) } else { stand(painter, &ground, arms, stride) }
+    let on = (painter, palette);
+    if seated { sit(on, &ground, arms) } else { stand(on, &ground, arms, stride) }
 }
 
 /// From 0 to 1, slow at both ends.
@@ -50,12 +51,12 @@ fn ease(t: f32) -> f32 {
 }
 
 /// The mark on the floor, brighter when somebody stands on it.
-fn mark(painter: &Painter, floor: Pos2, tall: f32, arrived: f32) {
+fn mark((painter, palette): (&Painter, &Palette), floor: Pos2, tall: f32, arrived: f32) {
     let size = vec2(0.3, 0.062) * tall;
     let line = (tall * 0.014).max(2.0);
-    let glow = theme::FOCUS.gamma_multiply(0.1 + 0.25 * arrived);
+    let glow = palette.focus.gamma_multiply(0.1 + 0.25 * arrived);
     painter.add(Shape::ellipse_filled(floor, size, glow));
-    painter.add(Shape::ellipse_stroke(floor, size, Stroke::new(line, theme::FOCUS)));
+    painter.add(Shape::ellipse_stroke(floor, size, Stroke::new(line, palette.focus)));
 }
 
 /// A limb with round ends.
@@ -77,8 +78,8 @@ fn arm(ground: &Ground, side: f32, shoulder: Vec2, angle: f32) -> [Pos2; 3] {
 }
 
 /// Head, trunk and arms over a hip of this height.
-fn trunk(painter: &Painter, ground: &Ground, hip: f32, arms: f32) {
-    let (t, ink) = (ground.tall, theme::PRIMARY);
+fn trunk((painter, palette): (&Painter, &Palette), ground: &Ground, hip: f32, arms: f32) {
+    let (t, ink) = (ground.tall, palette.mark);
     let shoulder = hip + 0.29;
     for side in [-1.0, 1.0] {
         limb(painter, &arm(ground, side, vec2(0.112 * side, shoulder), arms), 0.05 * t, ink);
@@ -94,30 +95,30 @@ fn trunk(painter: &Painter, ground: &Ground, hip: f32, arms: f32) {
     painter.add(Shape::ellipse_filled(ground.point(0.0, shoulder + 0.128), vec2(0.054, 0.066) * t, ink));
 }
 
-fn stand(painter: &Painter, ground: &Ground, arms: f32, stride: f32) {
+fn stand((painter, palette): (&Painter, &Palette), ground: &Ground, arms: f32, stride: f32) {
     let (t, hip) = (ground.tall, 0.52);
     for side in [-1.0, 1.0] {
         let lift = (stride * side).max(0.0) * 0.05;
         let knee = ground.point(0.062 * side, 0.28 + lift);
         let foot = ground.point(0.066 * side, 0.035 + lift);
-        limb(painter, &[ground.point(0.048 * side, hip - 0.01), knee, foot], 0.072 * t, theme::PRIMARY);
-        limb(painter, &[foot, ground.point(0.082 * side, 0.012 + lift)], 0.04 * t, theme::PRIMARY);
+        limb(painter, &[ground.point(0.048 * side, hip - 0.01), knee, foot], 0.072 * t, palette.mark);
+        limb(painter, &[foot, ground.point(0.082 * side, 0.012 + lift)], 0.04 * t, palette.mark);
     }
-    trunk(painter, ground, hip, arms);
+    trunk((painter, palette), ground, hip, arms);
 }
 
 /// From before, in a wheelchair: big wheels edge-on beside, thighs towards the viewer.
-fn sit(painter: &Painter, ground: &Ground, arms: f32) {
+fn sit((painter, palette): (&Painter, &Palette), ground: &Ground, arms: f32) {
     let (t, hip) = (ground.tall, 0.3);
-    let wheel = Stroke::new((0.018 * t).max(2.0), theme::SOFT);
+    let wheel = Stroke::new((0.018 * t).max(2.0), palette.soft);
     for side in [-1.0, 1.0] {
         painter.add(Shape::ellipse_stroke(ground.point(0.2 * side, 0.17), vec2(0.03, 0.17) * t, wheel));
     }
-    trunk(painter, ground, hip, arms.max(PI * 0.08));
+    trunk((painter, palette), ground, hip, arms.max(PI * 0.08));
     for side in [-1.0, 1.0] {
         let knee = ground.point(0.078 * side, hip - 0.035);
-        limb(painter, &[ground.point(0.055 * side, hip), knee], 0.085 * t, theme::PRIMARY);
-        limb(painter, &[knee, ground.point(0.078 * side, 0.06)], 0.066 * t, theme::PRIMARY);
-        limb(painter, &[ground.point(0.07 * side, 0.035), ground.point(0.1 * side, 0.03)], 0.04 * t, theme::PRIMARY);
+        limb(painter, &[ground.point(0.055 * side, hip), knee], 0.085 * t, palette.mark);
+        limb(painter, &[knee, ground.point(0.078 * side, 0.06)], 0.066 * t, palette.mark);
+        limb(painter, &[ground.point(0.07 * side, 0.035), ground.point(0.1 * side, 0.03)], 0.04 * t, palette.mark);
     }
 }

@@ -16,14 +16,23 @@ const FONTS: [(&str, &[u8]); 4] = [
 /// The family of headings and buttons.
 pub const BOLD: &str = "bold";
 
-/// The families, Latin letters first: Japanese text takes its Latin letters and figures from the same font as any other.
-pub fn definitions() -> FontDefinitions {
+/// Name of a shop's own font.
+const SHOP: &str = "shop";
+
+/// The families, Latin letters first: Japanese text takes its Latin letters and figures from the same font as any other. A shop's own
+/// font comes before them, in both weights; characters that it lacks are theirs.
+pub fn definitions(shop: Option<&Arc<[u8]>>) -> FontDefinitions {
     let data = |(name, bytes): (&str, &'static [u8])| (name.to_owned(), Arc::new(FontData::from_static(bytes)));
     let names = |names: [&str; 2]| names.map(str::to_owned).to_vec();
-    let families = BTreeMap::from([
+    let mut families = BTreeMap::from([
         (FontFamily::Proportional, names(["latin", "japanese"])),
         (FontFamily::Monospace, names(["latin", "japanese"])),
         (FontFamily::Name(BOLD.into()), names(["latin bold", "japanese bold"])),
     ]);
-    FontDefinitions { font_data: FONTS.into_iter().map(data).collect(), families }
+    let mut font_data: BTreeMap<String, Arc<FontData>> = FONTS.into_iter().map(data).collect();
+    if let Some(bytes) = shop {
+        font_data.insert(SHOP.to_owned(), Arc::new(FontData::from_owned(bytes.to_vec())));
+        families.values_mut().for_each(|names| names.insert(0, SHOP.to_owned()));
+    }
+    FontDefinitions { font_data, families }
 }

@@ -5,8 +5,8 @@ use egui::{FontId, Painter, Pos2, Rect, Vec2, pos2, vec2};
 use super::controls::{self, ButtonBox};
 use super::qr_code;
 use super::text::{SetText, left_aligned};
-use super::theme::{self, Sizes};
-use crate::visitor::screen::{Block, BodyView, Screen};
+use super::theme::Look;
+use crate::visitor::screen::{Block, BodyView, Screen, ScreenPicture};
 
 /// How tight the panel may get, in the order of trying.
 const SQUEEZES: [f32; 6] = [1.0, 0.92, 0.84, 0.76, 0.68, 0.6];
@@ -26,6 +26,9 @@ const READ_WITH_EASE: f32 = 0.8;
 /// Share of a lying display's width that the panel takes.
 const SIDE: f32 = 0.42;
 
+/// Most of the panel's width that a logo takes.
+const LOGO_WIDTH: f32 = 0.4;
+
 /// A block with its place.
 #[derive(Debug, Clone)]
 pub struct PlacedBlock {
@@ -40,12 +43,14 @@ pub struct PlacedBlock {
 /// A screen that has been laid out.
 #[derive(Debug, Clone)]
 pub struct ScreenLayout {
-    /// The sizes that it came to.
-    pub sizes: Sizes,
+    /// The sizes that it came to, and its colours.
+    pub look: Look,
     /// Rectangle of the panel (pixels).
     pub panel: Rect,
     /// What the panel leaves of the display.
     pub free: Rect,
+    /// Rectangle of the shop's logo, where it is shown.
+    pub logo: Option<Rect>,
     /// The heading and its upper left corner.
     pub heading: (Pos2, SetText),
     /// Blocks below the heading.
@@ -61,16 +66,16 @@ pub struct ScreenLayout {
 }
 
 /// Lays a screen out on a display.
-pub fn lay(screen: &Screen, sizes: Sizes, painter: &Painter) -> ScreenLayout {
+pub fn lay(screen: &Screen, look: Look, painter: &Painter) -> ScreenLayout {
     let mut last = None;
     // A code is scanned from where one stands: it has all the room there is.
     let code = screen.blocks.iter().any(|block| matches!(block, Block::Code { .. }));
     let beside = !code && !matches!(screen.body_view, BodyView::Mannequin);
-    let most = sizes.display[1] * if beside { BESIDE_BODY } else { MOST_PANEL };
+    let most = look.display[1] * if beside { BESIDE_BODY } else { MOST_PANEL };
     for squeeze in SQUEEZES {
-        let laid = lay_at(screen, sizes.squeezed(squeeze), painter);
+        let laid = lay_at(screen, look.squeezed(squeeze), painter);
         let whole = laid.fits && laid.scrolls == 0.0;
-        let small = sizes.landscape || laid.panel.height() <= most;
+        let small = look.landscape || laid.panel.height() <= most;
         // Type is made smaller for the sake of the body only as long as it is read with ease.
         if whole && (small || squeeze <= READ_WITH_EASE) {
             return laid;
@@ -83,52 +88,64 @@ pub fn lay(screen: &Screen, sizes: Sizes, painter: &Painter) -> ScreenLayout {
             last = Some(laid);
         }
     }
-    last.unwrap_or_else(|| lay_at(screen, sizes, painter))
+    last.unwrap_or_else(|| lay_at(screen, look, painter))
 }
 
-fn lay_at(screen: &Screen, sizes: Sizes, painter: &Painter) -> ScreenLayout {
-    let [w, h] = sizes.display;
-    let (margin, gap, air) = (sizes.margin(), sizes.gap(), sizes.air());
-    let column = if sizes.landscape { (w * SIDE).round() } else { w - 2.0 * air };
+fn lay_at(screen: &Screen, look: Look, painter: &Painter) -> ScreenLayout {
+    let [w, h] = look.display;
+    let (margin, gap, air) = (look.margin(), look.gap(), look.air());
+    let column = if look.landscape { (w * SIDE).round() } else { w - 2.0 * air };
     let inner = column - 2.0 * margin;
     let left = w - air - column + margin;
     // What can be pressed: from the lower edge of what is reached up, and never above the reach.
-    let (mut buttons, wanted) = controls::lay(&screen.controls, inner, sizes, painter);
+    let (mut buttons, wanted) = controls::lay(&screen.controls, inner, look, painter);
     let high = h * screen.reach.clamp(0.2, 1.0);
-    let low = (h * screen.reach_low).clamp(air + margin, (high - sizes.target).max(air + margin)).ceil();
-    let tall = wanted.min((high - low).max(sizes.target).floor());
+    let low = (h * screen.reach_low).clamp(air + margin, (high - look.target).max(air + margin)).ceil();
+    let tall = wanted.min((high - low).max(look.target).floor());
     let window = Rect::from_min_size(pos2(left, h - low - tall), vec2(inner, tall));
     buttons.iter_mut().for_each(|b| b.shift(window.min.to_vec2()));
     // What is read stands above it.
-    let heading = head(painter, &screen.heading, sizes, inner);
+    let heading = head(painter, &screen.heading, look, inner);
     let mut blocks: Vec<PlacedBlock> =
-        screen.blocks.iter().enumerate().map(|(i, b)| block(i, b, inner, sizes, painter)).collect();
-    let read = heading.size().y + blocks.iter().map(|b| b.rect.height() + gap).sum::<f32>();
+        screen.blocks.iter().enumerate().map(|(i, b)| block(i, b, inner, look, painter)).collect();
+    let logo = screen.logo.as_ref().map(|logo| logo_size(logo, inner, look));
+    let above = logo.map_or(0.0, |size| size.y + gap);
+    let read = above + heading.size().y + blocks.iter().map(|b| b.rect.height() + gap).sum::<f32>();
     let space = if buttons.is_empty() { 0.0 } else { gap * 1.6 };
     let top = (window.top() - space - read).round();
-    let ceiling = if sizes.landscape { air + margin } else { h * (1.0 - MOST_PANEL) };
+    let ceiling = if look.landscape { air + margin } else { h * (1.0 - MOST_PANEL) };
     let panel = Rect::from_min_max(pos2(left - margin, (top - margin).max(0.0)), pos2(w - air, h - low + margin));
+    let logo = logo.map(|size| Rect::from_min_size(pos2(left, top), size));
+    let top = top + above;
     let mut y = top + heading.size().y;
     for placed in &mut blocks {
         y += gap;
         placed.rect = placed.rect.translate(vec2(left, y));
         y += placed.rect.height();
     }
-    let fits = top >= ceiling - 0.5 && y + space <= window.top() + 0.5;
-    let free = if sizes.landscape {
+    let fits = top - above >= ceiling - 0.5 && y + space <= window.top() + 0.5;
+    let free = if look.landscape {
         Rect::from_min_max(Pos2::ZERO, pos2(panel.left(), h))
     } else {
         Rect::from_min_max(Pos2::ZERO, pos2(w, panel.top()))
     };
     let scrolls = (wanted - tall).max(0.0);
-    ScreenLayout { sizes, panel, free, heading: (pos2(left, top), heading), blocks, buttons, window, scrolls, fits }
+    let heading = (pos2(left, top), heading);
+    ScreenLayout { look, panel, free, logo, heading, blocks, buttons, window, scrolls, fits }
+}
+
+/// Width and height of a logo: two lines of the heading high, and no wider than part of the panel.
+fn logo_size(logo: &ScreenPicture, width: f32, look: Look) -> Vec2 {
+    let [w, h] = [logo.0.width.max(1) as f32, logo.0.height.max(1) as f32];
+    let share = (look.body * 3.4 * look.squeeze / h).min(width * LOGO_WIDTH / w);
+    vec2(w * share, h * share).round()
 }
 
 /// The heading, a little smaller where that saves it a second line.
-fn head(painter: &Painter, text: &str, sizes: Sizes, width: f32) -> SetText {
+fn head(painter: &Painter, text: &str, look: Look, width: f32) -> SetText {
     let set = |share: f32| {
-        let font = sizes.heading();
-        left_aligned(painter, text, FontId { size: (font.size * share).round(), ..font }, theme::INK, width)
+        let font = look.heading();
+        left_aligned(painter, text, FontId { size: (font.size * share).round(), ..font }, look.palette.ink, width)
     };
     let large = set(1.0);
     if large.rows.len() == 1 {
@@ -138,38 +155,38 @@ fn head(painter: &Painter, text: &str, sizes: Sizes, width: f32) -> SetText {
 }
 
 /// A block at the origin.
-fn block(index: usize, block: &Block, width: f32, sizes: Sizes, painter: &Painter) -> PlacedBlock {
-    let text = |text: &str, room: f32| left_aligned(painter, text, sizes.text(), theme::INK, room);
+fn block(index: usize, block: &Block, width: f32, look: Look, painter: &Painter) -> PlacedBlock {
+    let text = |text: &str, room: f32| left_aligned(painter, text, look.text(), look.palette.ink, room);
     let (height, set) = match block {
         Block::Text(paragraph) => {
             let paragraph = text(paragraph, width);
             (paragraph.size().y, vec![paragraph])
         }
-        Block::PoseGuide { .. } => ((sizes.body * 13.0 * sizes.squeeze * sizes.squeeze).round(), vec![]),
-        Block::TurnGuide { .. } => ((sizes.body * 9.0 * sizes.squeeze * sizes.squeeze).round(), vec![]),
+        Block::PoseGuide { .. } => ((look.body * 13.0 * look.squeeze * look.squeeze).round(), vec![]),
+        Block::TurnGuide { .. } => ((look.body * 9.0 * look.squeeze * look.squeeze).round(), vec![]),
         Block::Entry { text } => {
-            let length = left_aligned(painter, text, big(sizes), theme::INK, width);
+            let length = left_aligned(painter, text, big(look), look.palette.ink, width);
             ((length.size().y * 1.3).round(), vec![length])
         }
         Block::Progress { share, label } => {
             let percent = text(&format!("{:.0} %", share.clamp(0.0, 1.0) * 100.0), width);
-            let label = text(label, width - percent.size().x - sizes.gap());
-            (label.size().y + sizes.body * 1.1, vec![label, percent])
+            let label = text(label, width - percent.size().x - look.gap());
+            (label.size().y + look.body * 1.1, vec![label, percent])
         }
         Block::Fit { text: paragraph, .. } => {
-            let paragraph = text(paragraph, width - gauge_width(sizes) - sizes.gap());
-            (paragraph.size().y.max(sizes.body * 1.1), vec![paragraph])
+            let paragraph = text(paragraph, width - gauge_width(look) - look.gap());
+            (paragraph.size().y.max(look.body * 1.1), vec![paragraph])
         }
         Block::Legend { ends } => {
             let ends: Vec<SetText> =
-                ends.iter().map(|e| left_aligned(painter, e, sizes.small(), theme::SOFT, width * 0.48)).collect();
-            (sizes.body * 0.9 + ends.iter().map(|e| e.size().y).fold(0.0, f32::max), ends)
+                ends.iter().map(|e| left_aligned(painter, e, look.small(), look.palette.soft, width * 0.48)).collect();
+            (look.body * 0.9 + ends.iter().map(|e| e.size().y).fold(0.0, f32::max), ends)
         }
         Block::Code { side, .. } => {
-            (qr_code::side(*side, width.min(sizes.display[1] * MOST_CODE * sizes.squeeze)), vec![])
+            (qr_code::side(*side, width.min(look.display[1] * MOST_CODE * look.squeeze)), vec![])
         }
         Block::Countdown { seconds } => {
-            let number = left_aligned(painter, &clock(*seconds), big(sizes), theme::INK, width);
+            let number = left_aligned(painter, &clock(*seconds), big(look), look.palette.ink, width);
             ((number.size().y * 1.3).round(), vec![number])
         }
     };
@@ -182,13 +199,13 @@ fn clock(seconds: u32) -> String {
 }
 
 /// Width of the scale before a zone's fit.
-pub fn gauge_width(sizes: Sizes) -> f32 {
-    (sizes.body * 4.0).round()
+pub fn gauge_width(look: Look) -> f32 {
+    (look.body * 4.0).round()
 }
 
 /// Type of the seconds that are left.
-fn big(sizes: Sizes) -> FontId {
-    FontId { size: (sizes.body * 2.4).round(), ..sizes.heading() }
+fn big(look: Look) -> FontId {
+    FontId { size: (look.body * 2.4).round(), ..look.heading() }
 }
 
 impl ScreenLayout {
@@ -196,7 +213,7 @@ impl ScreenLayout {
     pub fn hit(&self, at: Pos2, scrolled: f32) -> Option<usize> {
         let inside = |b: &&ButtonBox| b.rect.translate(Vec2::new(0.0, -scrolled)).contains(at);
         self.window
-            .expand(self.sizes.gap() * 0.5)
+            .expand(self.look.gap() * 0.5)
             .contains(at)
             .then(|| self.buttons.iter().find(inside))?
             .map(|b| b.index)
@@ -205,7 +222,7 @@ impl ScreenLayout {
     /// The scroll nearest to this one at which a control is whole.
     pub fn scroll_to(&self, index: usize, scrolled: f32) -> f32 {
         let Some(button) = self.buttons.iter().find(|b| b.index == index) else { return 0.0 };
-        let air = self.sizes.gap();
+        let air = self.look.gap();
         let most = button.rect.top() - air - self.window.top();
         let least = button.rect.bottom() + air - self.window.bottom();
         scrolled.max(least).min(most).clamp(0.0, self.scrolls)

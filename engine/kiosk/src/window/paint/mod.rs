@@ -1,16 +1,18 @@
 //! Paint: a screen as shapes.
 //!
-//! Reads: a [`Screen`], the display's size, what a finger does. Writes: triangles and changes of textures; what was pressed.
+//! Reads: a [`Screen`] with its theme and its photographs, the display's size, what a finger does. Writes: triangles and changes of textures; what was pressed.
 //! Budget: 2 ms a picture of the render thread's core; no picture waits for it, nor does physics.
 //! Thread: render.
 //!
-//! [`layout`] finds places, `shapes` fills them, [`touch`] finds what was pressed in the same places. Sizes follow the
+//! [`layout`] finds places, `shapes` fills them, [`touch`] finds what was pressed in the same places. Look follow the
 //! display: type from its height, touch targets from its millimetres.
 
 mod controls;
 mod figure;
 pub mod fonts;
 pub mod layout;
+mod palette;
+mod pictures;
 mod qr_code;
 mod shapes;
 mod text;
@@ -21,9 +23,11 @@ mod turn_guide;
 use egui::epaint::{ClippedPrimitive, Primitive};
 use egui::{Color32, Context, LayerId, Mesh, RawInput, Rect, TextureId, TexturesDelta, pos2, vec2};
 
-use crate::visitor::screen::{Action, Screen};
+use crate::visitor::screen::{Action, Screen, ScreenTheme};
 use layout::ScreenLayout;
-use theme::Sizes;
+use palette::Palette;
+use pictures::PictureTextures;
+use theme::Look;
 use touch::{TouchEvent, TouchTracker};
 
 /// A display: its pixels, and the size of one (mm).
@@ -61,6 +65,10 @@ impl PaintedScreen {
 pub struct ScreenPainter {
     context: Context,
     finger: TouchTracker,
+    textures: PictureTextures,
+    /// The theme that colours and fonts are of.
+    theme: ScreenTheme,
+    palette: Palette,
     laid: Option<ScreenLayout>,
     begun: std::time::Instant,
 }
@@ -68,23 +76,44 @@ pub struct ScreenPainter {
 impl Default for ScreenPainter {
     fn default() -> Self {
         let context = Context::default();
-        context.set_fonts(fonts::definitions());
-        Self { context, finger: TouchTracker::default(), laid: None, begun: std::time::Instant::now() }
+        context.set_fonts(fonts::definitions(None));
+        Self {
+            context,
+            finger: TouchTracker::default(),
+            textures: PictureTextures::default(),
+            theme: ScreenTheme::default(),
+            palette: Palette::OWN,
+            laid: None,
+            begun: std::time::Instant::now(),
+        }
     }
 }
 
 impl ScreenPainter {
+    /// Takes over the theme of a screen, where it is another one.
+    fn set_theme(&mut self, theme: &ScreenTheme) {
+        if self.theme == *theme {
+            return;
+        }
+        self.theme = theme.clone();
+        let theme = theme.0.as_deref();
+        self.palette = theme.map_or(Palette::OWN, |theme| Palette::of(&theme.colours));
+        self.context.set_fonts(fonts::definitions(theme.and_then(|theme| theme.font.as_ref())));
+    }
+
     /// Paints a screen.
     pub fn paint(&mut self, screen: &Screen, display: DisplayMetrics) -> PaintedScreen {
+        self.set_theme(&screen.theme);
         let [w, h] = display.size.map(|n| n.max(1) as f32);
         let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(w, h));
         let time = Some(self.begun.elapsed().as_secs_f64());
         self.context.begin_pass(RawInput { screen_rect: Some(whole), time, ..RawInput::default() });
         let painter = self.context.layer_painter(LayerId::background());
-        let sizes = Sizes::of([w, h], display.pixel_mm, screen.type_scale);
-        let laid = layout::lay(screen, sizes, &painter);
+        let look = Look::of([w, h], display.pixel_mm, screen.type_scale, self.palette);
+        self.textures.hold(&self.context, screen);
+        let laid = layout::lay(screen, look, &painter);
         self.finger.follow(&laid, screen);
-        shapes::paint(&laid, screen, self.finger.feedback(), &painter);
+        shapes::paint(&laid, screen, self.finger.feedback(), (&painter, &self.textures));
         let free = [laid.free.left() / w, laid.free.top() / h, laid.free.right() / w, laid.free.bottom() / h];
         self.laid = Some(laid);
         let output = self.context.end_pass();

@@ -1,7 +1,12 @@
-use super::theme::{INK, LEAST_LINE, PANEL, Sizes, TARGET_MM};
+use std::sync::Arc;
+
+use super::theme::{LEAST_LINE, Look, TARGET_MM};
 use super::*;
-use crate::visitor::screen::{Block, BodyView, Control, ControlStyle, Page};
+use crate::visitor::screen::{Block, BodyView, Control, ControlStyle, Page, ScreenPicture};
 use egui::{Color32, FontFamily, FontId, Rgba};
+use toile_assets::catalogue::{Picture, ShopTheme, ThemeColours};
+
+const OWN: Palette = Palette::OWN;
 
 /// Displays that the screens are made for: standing and lying, large and small, with the size of a pixel (mm).
 pub const DISPLAYS: [DisplayMetrics; 4] = [
@@ -12,7 +17,7 @@ pub const DISPLAYS: [DisplayMetrics; 4] = [
 ];
 
 fn control(action: Action, label: &str, style: ControlStyle) -> Control {
-    Control { action, label: label.into(), detail: None, style, chosen: false }
+    Control { action, label: label.into(), detail: None, style, chosen: false, picture: None }
 }
 
 /// One of everything.
@@ -38,6 +43,8 @@ fn full() -> Screen {
         reach_low: 0.1,
         colours: vec![],
         language: "en",
+        theme: ScreenTheme::default(),
+        logo: None,
     }
 }
 
@@ -90,8 +97,8 @@ fn no_line_is_smaller_than_a_sixtieth_of_the_display() {
     for display in DISPLAYS {
         let size = display.size.map(|n| n as f32);
         for squeeze in [1.0, 0.8, 0.6] {
-            let sizes = Sizes::of(size, display.pixel_mm, 1.0).squeezed(squeeze);
-            for font in [sizes.text(), sizes.label(), sizes.small(), sizes.heading()] {
+            let look = Look::of(size, display.pixel_mm, 1.0, OWN).squeezed(squeeze);
+            for font in [look.text(), look.label(), look.small(), look.heading()] {
                 assert!(font.size >= (size[1] * LEAST_LINE).floor(), "{display:?} at {squeeze}: {}", font.size);
             }
         }
@@ -101,7 +108,7 @@ fn no_line_is_smaller_than_a_sixtieth_of_the_display() {
 #[test]
 fn larger_type_is_larger() {
     let large = Screen { type_scale: 1.4, ..full() };
-    let body = |screen: &Screen| laid(screen, DISPLAYS[0]).0.laid().unwrap().sizes.body;
+    let body = |screen: &Screen| laid(screen, DISPLAYS[0]).0.laid().unwrap().look.body;
     assert!(body(&large) > body(&full()));
 }
 
@@ -178,14 +185,17 @@ fn contrast(a: Color32, b: Color32) -> f32 {
 #[test]
 fn words_have_contrast_whatever_stands_behind_the_panel() {
     for behind in [Color32::WHITE, Color32::BLACK, Color32::from_rgb(200, 30, 30)] {
-        let share = 1.0 - f32::from(PANEL.a()) / 255.0;
+        let share = 1.0 - f32::from(OWN.panel.a()) / 255.0;
         let over = |c: u8, behind: u8| (f32::from(c) + share * f32::from(behind)) as u8;
-        let panel =
-            Color32::from_rgb(over(PANEL.r(), behind.r()), over(PANEL.g(), behind.g()), over(PANEL.b(), behind.b()));
-        assert!(contrast(INK, panel) > 7.0 && contrast(theme::SOFT, panel) > 4.5, "{behind:?}");
-        assert!(contrast(theme::FOCUS, panel) > 4.5);
+        let panel = Color32::from_rgb(
+            over(OWN.panel.r(), behind.r()),
+            over(OWN.panel.g(), behind.g()),
+            over(OWN.panel.b(), behind.b()),
+        );
+        assert!(contrast(OWN.ink, panel) > 7.0 && contrast(OWN.soft, panel) > 4.5, "{behind:?}");
+        assert!(contrast(OWN.focus, panel) > 4.5);
     }
-    assert!(contrast(theme::DARK, theme::PRIMARY) > 7.0);
+    assert!(contrast(OWN.on_accent, OWN.accent) > 7.0);
 }
 
 #[test]
@@ -212,6 +222,79 @@ fn every_character_of_every_text_has_a_glyph_in_both_weights() {
 
 #[test]
 fn fonts_are_small() {
-    let all: usize = fonts::definitions().font_data.values().map(|f| f.bytes().len()).sum();
+    let all: usize = fonts::definitions(None).font_data.values().map(|f| f.bytes().len()).sum();
     assert!(all < 600_000, "{all} bytes");
+}
+
+fn picture(width: u32, height: u32) -> ScreenPicture {
+    ScreenPicture(Arc::new(Picture {
+        width,
+        height,
+        pixels: vec![[90, 60, 30, 255]; (width * height) as usize].into(),
+    }))
+}
+
+/// The shop's font of these tests: Latin letters, and no kana.
+fn theme(colours: ThemeColours) -> ScreenTheme {
+    let font: Arc<[u8]> = Arc::from(&include_bytes!("../../../fonts/NotoSans-Bold.ttf")[..]);
+    ScreenTheme(Some(Arc::new(ShopTheme { logo: Some(picture(200, 80).0), colours, font: Some(font) })))
+}
+
+/// A page with six tiles, all of them in a shop's theme.
+fn tiles() -> Screen {
+    let tile = |i: usize| Control {
+        picture: (i != 3).then(|| picture(120 + 10 * i as u32, 200)),
+        detail: Some("49.90 EUR \u{b7} You are wearing it".into()),
+        chosen: i == 1,
+        ..control(Action::Garment(i), "Circle skirt", ControlStyle::Tile([0.2, 0.3, 0.1]))
+    };
+    let mut controls: Vec<Control> = (0..6).map(tile).collect();
+    controls.extend((0..8).map(|i| control(Action::Colour(i), "Bottle green", ControlStyle::Swatch([0.1, 0.2, 0.3]))));
+    controls.push(control(Action::Shelf(1), "More clothes", ControlStyle::Quiet));
+    controls.push(control(Action::Back, "Back", ControlStyle::Quiet));
+    let colours = ThemeColours { accent: [0.7, 0.2, 0.2], ground: [0.97, 0.95, 0.9], text: [0.1, 0.12, 0.1] };
+    let theme = theme(colours);
+    let logo = theme.0.as_ref().and_then(|theme| theme.logo.clone()).map(ScreenPicture);
+    Screen { controls, theme, logo, blocks: full().blocks[..1].to_vec(), ..full() }
+}
+
+#[test]
+fn photographs_and_logo_stand_within_their_tiles_and_the_panel_and_are_freed_with_the_page() {
+    for display in DISPLAYS {
+        let (mut painter, painted) = laid(&tiles(), display);
+        let laid_out = painter.laid().unwrap();
+        assert!(laid_out.fits, "{display:?}");
+        let logo = laid_out.logo.unwrap();
+        assert!(laid_out.panel.contains_rect(logo) && logo.bottom() <= laid_out.heading.0.y, "{display:?}");
+        assert!((logo.width() / logo.height() - 2.5).abs() < 0.1, "a logo keeps its shape: {logo:?}");
+        for button in &laid_out.buttons {
+            assert!(laid_out.panel.contains_rect(button.rect) || laid_out.scrolls > 0.0, "{display:?}");
+        }
+        // The letters, the logo and five photographs.
+        let uploaded = painted.textures.set.iter().filter(|(_, deltas)| deltas.iter().any(|d| d.is_whole())).count();
+        assert!(uploaded >= 7 && painter.textures.len() == 6, "{uploaded}");
+        let after = painter.paint(&full(), display);
+        assert_eq!((painter.textures.len(), after.textures.free.len() >= 6), (0, true));
+    }
+}
+
+#[test]
+fn a_shops_colours_are_painted_and_its_font_leaves_what_it_lacks_to_ours() {
+    let screen = tiles();
+    let (mut painter, _) = laid(&screen, DISPLAYS[0]);
+    assert_eq!(painter.palette.ink, Color32::from_rgb(26, 31, 26));
+    for c in "A\u{df}\u{11f}7\u{30ab}\u{524d}".chars() {
+        let font = FontId::new(20.0, FontFamily::Proportional);
+        assert!(painter.context.fonts_mut(|f| f.has_glyph(&font, c)), "{c}");
+    }
+    let wide = |painter: &ScreenPainter, text: &str| {
+        painter
+            .context
+            .fonts_mut(|f| f.layout_no_wrap(text.into(), FontId::new(20.0, FontFamily::Proportional), OWN.ink).size().x)
+    };
+    let (shops, kana) = (wide(&painter, "Fitting room"), wide(&painter, "\u{30ab}\u{30ab}"));
+    painter.paint(&full(), DISPLAYS[0]);
+    assert_eq!(painter.palette, OWN, "without a theme everything is as it was");
+    assert_ne!(wide(&painter, "Fitting room"), shops, "its letters are its own");
+    assert_eq!(wide(&painter, "\u{30ab}\u{30ab}"), kana);
 }

@@ -1,37 +1,14 @@
-//! Theme: the colours and the sizes of everything that is painted, from the display's size alone.
+//! Theme: the sizes of everything that is painted, from the display's size alone, and its colours.
 
 use egui::{Color32, FontFamily, FontId};
 
-/// The panel that all words stand on, over the picture: dark enough that white on it has a contrast of more than 7:1 even
-/// where the picture behind is white (WCAG 2.2, success criterion 1.4.6).
-pub const PANEL: Color32 = Color32::from_rgba_premultiplied(14, 16, 19, 210);
+use super::palette::Palette;
 
-/// Colour of text.
-pub const INK: Color32 = Color32::from_rgb(250, 248, 244);
+/// White and black as marks have them on any colour.
+pub const LIGHT: Color32 = Color32::from_rgb(250, 248, 244);
 
-/// Colour of second lines.
-pub const SOFT: Color32 = Color32::from_rgb(208, 205, 199);
-
-/// What most will want next, and the words on it.
-pub const PRIMARY: Color32 = Color32::from_rgb(246, 237, 222);
-
-/// Words on light ground.
+/// The same, dark.
 pub const DARK: Color32 = Color32::from_rgb(24, 25, 28);
-
-/// A plain button, its edge, and one that is chosen.
-pub const PLAIN: Color32 = Color32::from_rgba_premultiplied(30, 30, 30, 30);
-
-/// The edge of a plain button.
-pub const EDGE: Color32 = Color32::from_rgba_premultiplied(92, 92, 92, 92);
-
-/// A plain button that is chosen.
-pub const CHOSEN: Color32 = Color32::from_rgba_premultiplied(58, 58, 56, 58);
-
-/// A button under a finger.
-pub const PRESSED: Color32 = Color32::from_rgba_premultiplied(84, 84, 82, 84);
-
-/// The ring around what has the focus: a colour that nothing else has.
-pub const FOCUS: Color32 = Color32::from_rgb(255, 205, 96);
 
 /// Least size of a touch target (mm).
 pub const TARGET_MM: f32 = 20.0;
@@ -42,9 +19,9 @@ pub const LEAST_LINE: f32 = 1.0 / 60.0;
 /// The family of the words, and of headings.
 pub const BODY: FontFamily = FontFamily::Proportional;
 
-/// Sizes in pixels.
+/// Sizes in pixels, and colours.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sizes {
+pub struct Look {
     /// The display's width and height.
     pub display: [f32; 2],
     /// Type of a paragraph.
@@ -55,11 +32,13 @@ pub struct Sizes {
     pub landscape: bool,
     /// How much tighter than it likes to be everything stands, 0.6 .. 1.
     pub squeeze: f32,
+    /// Its colours.
+    pub palette: Palette,
 }
 
-impl Sizes {
+impl Look {
     /// Of a display of so many pixels, of which one measures so much (mm), with type so much larger than ordinary.
-    pub fn of(display: [f32; 2], pixel_mm: f32, type_scale: f32) -> Self {
+    pub fn of(display: [f32; 2], pixel_mm: f32, type_scale: f32, palette: Palette) -> Self {
         let [w, h] = display;
         let landscape = w > h;
         let ordinary = (h / 42.0).min(w / 30.0).max(h * LEAST_LINE);
@@ -69,6 +48,7 @@ impl Sizes {
             target: (TARGET_MM / pixel_mm.max(1e-3)).min(h * 0.1).ceil(),
             landscape,
             squeeze: 1.0,
+            palette,
         }
     }
 

@@ -99,7 +99,7 @@ impl TouchTracker {
         down.at = at;
         let on_panel = laid.panel.contains(down.began);
         // On a button that cannot scroll away a finger may wander as it likes.
-        down.drags |= way.length() > laid.sizes.body * STILL && (laid.scrolls > 0.0 || !on_panel);
+        down.drags |= way.length() > laid.look.body * STILL && (laid.scrolls > 0.0 || !on_panel);
         if !down.drags {
             return None;
         }
@@ -108,7 +108,7 @@ impl TouchTracker {
             return None;
         }
         let turns = matches!(screen.body_view, BodyView::Shopper { .. } | BodyView::Two { .. });
-        let eighths = (way.x / laid.sizes.display[0] * EIGHTHS).trunc() as i32;
+        let eighths = (way.x / laid.look.display[0] * EIGHTHS).trunc() as i32;
         let by = (eighths - down.turned).clamp(-1, 1);
         down.turned += by;
         (turns && by != 0).then_some(Action::Turn(by as i8))

@@ -1,0 +1,199 @@
+//! A visit at a real window in a made-up shop, whose catalogue changes meanwhile: the shop that the example `shop` writes.
+//!
+//! `TOILE_SHOP_PICTURES=docs/pictures` keeps a picture of each screen there, for the documents.
+
+#![cfg(all(feature = "kiosk", target_os = "linux"))]
+
+mod common;
+#[path = "../examples/shop/main.rs"]
+#[expect(dead_code, reason = "of the example only what writes the shop is used")]
+mod shop;
+mod xvfb;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use common::Scratch;
+use xvfb::{Display, Picture};
+
+const SIZE: [u32; 2] = [540, 960];
+
+/// Longest that a screen is waited for, on a machine that may have other work.
+const LONGEST: Duration = Duration::from_secs(120);
+
+/// Time in which a picture for the documents comes to rest, cloth and all.
+const REST: Duration = Duration::from_secs(6);
+
+/// The ring around what has the focus, on a light ground.
+const FOCUS: [u8; 3] = [0, 89, 179];
+
+/// The shop's ground, and the one that it changes to, sRGB of 255.
+const PAPER: [u8; 3] = [246, 241, 232];
+const NIGHT: [u8; 3] = [20, 26, 46];
+
+const CONFIG: &str =
+    "[wear]\ncatalogue = \"shop\"\n[sensor]\npause_s = 5.0\n[session]\nstep_out_s = 8.0\n[display]\nmotion = false\n";
+
+/// The program at a window of its own.
+struct Kiosk {
+    display: Display,
+    program: Child,
+    pictures: Option<PathBuf>,
+}
+
+impl Kiosk {
+    fn start(scratch: &Scratch) -> Self {
+        let display = Display::start(SIZE);
+        fs::write(scratch.path().join("kiosk.toml"), CONFIG).unwrap();
+        let program = Command::new(env!("CARGO_BIN_EXE_toile"))
+            .args(["kiosk", "--windowed", &format!("{}x{}", SIZE[0], SIZE[1]), "--json", "--config", "kiosk.toml"])
+            .current_dir(scratch.path())
+            .env("DISPLAY", display.name())
+            .env_remove("WAYLAND_DISPLAY")
+            .env("XDG_RUNTIME_DIR", scratch.path())
+            .env("LP_NUM_THREADS", "1")
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(fs::File::create(scratch.path().join("lines")).unwrap())
+            .spawn()
+            .expect("the built program starts");
+        let pictures = std::env::var_os("TOILE_SHOP_PICTURES").map(PathBuf::from);
+        // Tests run in the folder of their crate.
+        let pictures = pictures.map(|path| Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(path));
+        Self { display, program, pictures }
+    }
+
+    /// Waits until something is seen.
+    fn wait(&self, what: &str, is_seen: impl Fn(&Picture) -> bool) -> Picture {
+        self.display.wait(LONGEST, is_seen).unwrap_or_else(|last| {
+            let shot = Path::new(env!("CARGO_TARGET_TMPDIR")).join("shop.png");
+            last.write(&shot);
+            panic!("{what} is not seen; see {}", shot.display())
+        })
+    }
+
+    /// Keeps a picture of what is on the display, where pictures are asked for.
+    fn keep(&self, name: &str) {
+        if let Some(folder) = &self.pictures {
+            std::thread::sleep(REST);
+            self.display.look().write(&folder.join(format!("shop-{name}.png")));
+        }
+    }
+
+    /// Goes so many controls on with the Tab key.
+    fn tab(&self, times: usize) {
+        let mut before = self.focus(None);
+        for _ in 0..times {
+            self.display.key("Tab");
+            before = self.focus(Some(before));
+        }
+    }
+
+    fn focus(&self, before: Option<[i32; 2]>) -> [i32; 2] {
+        let moved = |seen: &Picture| seen.middle_of(FOCUS).is_some_and(|now| Some(now) != before);
+        self.wait("another focus", moved).middle_of(FOCUS).unwrap()
+    }
+
+    fn enter(&self, places: usize) {
+        self.tab(places);
+        self.display.key("Return");
+    }
+}
+
+impl Drop for Kiosk {
+    fn drop(&mut self) {
+        let _ = self.program.kill();
+        let _ = self.program.wait();
+    }
+}
+
+/// Share of a picture's lower two fifths that has about a colour.
+fn share(picture: &Picture, colour: [u8; 3]) -> f64 {
+    let lower = &picture.rgb[picture.rgb.len() * 3 / 5 / 3 * 3..];
+    let close = |p: &&[u8]| p.iter().zip(colour).all(|(a, b)| a.abs_diff(b) < 16);
+    lower.chunks_exact(3).filter(close).count() as f64 / (lower.len() / 3) as f64
+}
+
+/// How much two pictures differ below the head.
+fn differs(a: &Picture, b: &Picture) -> f64 {
+    a.differs(b, [0.3, 1.0])
+}
+
+#[test]
+fn a_shop_shows_its_own_screens_and_a_change_is_seen_when_the_visitor_has_left() {
+    if xvfb::missing().is_some() {
+        return;
+    }
+    let scratch = Scratch::new("shop-window");
+    let folder = scratch.path().join("shop");
+    shop::write(&folder).unwrap();
+    let kiosk = Kiosk::start(&scratch);
+    let attract = kiosk.wait("the shop's ground", |seen| share(seen, PAPER) > 0.4);
+    kiosk.display.give_keys("Toile");
+    if kiosk.pictures.is_some() {
+        std::thread::sleep(Duration::from_secs(2));
+        kiosk.display.look().write(&kiosk.pictures.as_ref().unwrap().join("shop-attract.png"));
+    }
+    // The page of a body that stands dressed has more to press than the one that measures.
+    kiosk.wait("a dressed visitor", |seen| differs(seen, &attract) > 4.0);
+    std::thread::sleep(Duration::from_secs(12));
+    kiosk.keep("fitting");
+    let fitting = kiosk.display.look();
+    kiosk.enter(0);
+    // Photographs are neither ground nor words: what is left of the ground is less.
+    kiosk.wait("photographs", |seen| differs(seen, &fitting) > 6.0 && share(seen, PAPER) < share(&fitting, PAPER));
+    kiosk.keep("garments");
+    // The shop changes while somebody looks: they keep what they see.
+    let text = fs::read_to_string(folder.join("catalogue.toml")).unwrap();
+    let night = text
+        .replace("ground = [0.965, 0.945, 0.910]", "ground = [0.08, 0.10, 0.18]")
+        .replace("text = [0.13, 0.16, 0.19]", "text = [0.97, 0.96, 0.92]");
+    assert_ne!(text, night);
+    fs::write(folder.join("new"), night).unwrap();
+    fs::rename(folder.join("new"), folder.join("catalogue.toml")).unwrap();
+    fs::write(folder.join("half.toile"), b"PK\x03\x04").unwrap();
+    let begun = Instant::now();
+    let lines = || fs::read_to_string(scratch.path().join("lines")).unwrap();
+    while !lines().contains("left out of the catalogue: ") {
+        assert!(begun.elapsed() < LONGEST, "{}", lines());
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    assert!(lines().contains("half.toile") && lines().contains("stock: catalogue of 6 garments"), "{}", lines());
+    assert!(share(&kiosk.display.look(), PAPER) > 0.1, "the visitor keeps what they see");
+    kiosk.display.key("Escape");
+    kiosk.wait("the fitting page again", |seen| differs(seen, &fitting) < 6.0);
+    if kiosk.pictures.is_some() {
+        rest_of_the_visit(&kiosk, &fitting);
+    }
+    // The last control forgets them.
+    kiosk.display.key("shift+Tab");
+    kiosk.focus(None);
+    kiosk.display.key("Return");
+    let after = kiosk.wait("the shop's new ground", |seen| share(seen, NIGHT) > 0.25);
+    assert!(share(&after, PAPER) < 0.05);
+}
+
+/// The other screens, for the documents.
+fn rest_of_the_visit(kiosk: &Kiosk, fitting: &Picture) {
+    let back = || {
+        kiosk.display.key("Escape");
+        kiosk.wait("the fitting page", |seen| differs(seen, fitting) < 8.0);
+    };
+    // The skirt and the shirt in place of the dress.
+    kiosk.enter(0);
+    std::thread::sleep(REST);
+    kiosk.enter(0);
+    std::thread::sleep(2 * REST);
+    kiosk.keep("skirt");
+    back();
+    kiosk.enter(3);
+    kiosk.keep("zones");
+    kiosk.display.key("Escape");
+    std::thread::sleep(REST);
+    kiosk.enter(4);
+    kiosk.keep("compare");
+    kiosk.display.key("Escape");
+    std::thread::sleep(REST);
+}
