@@ -38,8 +38,8 @@ fn tones_and_hair_that_are_none_are_refused_with_the_nearest() {
         assert_eq!(refused.status.code(), Some(2), "{said}");
         assert!(said.contains("--skin") && said.contains("'sand'") && said.lines().count() == 1, "{said}");
     }
-    let hair = scratch.toile(&["try-on", "--hair", "bbo"]);
-    assert!(hair.status.code() == Some(2) && stderr_of(&hair).contains("'bob'"), "{}", stderr_of(&hair));
+    let hair = scratch.toile(&["try-on", "--hair", "shrot"]);
+    assert!(hair.status.code() == Some(2) && stderr_of(&hair).contains("'short'"), "{}", stderr_of(&hair));
     let own = scratch.toile(&["try-on", "--hair", "bob", "--body", "someone.glb"]);
     assert_eq!(own.status.code(), Some(2), "{}", stderr_of(&own));
     assert!(stderr_of(&own).contains("someone.glb keeps its own head"), "{}", stderr_of(&own));

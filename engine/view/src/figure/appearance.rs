@@ -96,7 +96,7 @@ impl SkinTone {
         let srgb = |bytes: [u8; 3]| Vec3::from_array(bytes.map(|b| linear(f32::from(b) / 255.0)));
         match self {
             Self::Mannequin => crate::scene::MANNEQUIN,
-            Self::Porcelain => srgb([229, 206, 194]),
+            Self::Porcelain => srgb([230, 210, 194]),
             Self::Sand => srgb([206, 174, 152]),
             Self::Honey => srgb([176, 136, 109]),
             Self::Umber => srgb([117, 85, 68]),
