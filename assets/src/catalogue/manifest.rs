@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 
 use super::limits::{MAX_ARTICLE, MAX_COLOURS, MAX_NAME};
+use super::photographed::PhotographedGarment;
 use super::price::Price;
 use crate::drafting;
 use crate::draping;
@@ -35,6 +36,8 @@ pub struct GarmentManifest {
     pub colours: Vec<ManifestColour>,
     /// The package's photographs of it.
     pub photographs: Vec<String>,
+    /// Its pictures that are laid on the cloth.
+    pub image: Option<PhotographedGarment>,
 }
 
 /// A colour with its names.
@@ -61,6 +64,7 @@ struct RawManifest {
     colours: Vec<ManifestColour>,
     #[serde(default)]
     photographs: Vec<String>,
+    image: Option<PhotographedGarment>,
 }
 
 /// What a mesh's file is called by its ending; what goes by its name comes with it, a `.mhclo` too.
@@ -86,6 +90,7 @@ impl GarmentManifest {
             layer: raw.layer,
             colours: raw.colours,
             photographs: raw.photographs,
+            image: raw.image,
         };
         manifest.check()?;
         Ok(manifest)
@@ -111,6 +116,13 @@ impl GarmentManifest {
             if !colour.srgb.iter().all(|c| (0.0..=1.0).contains(c)) {
                 return Err("a colour's srgb must be three numbers from 0 to 1; correct it".into());
             }
+        }
+        self.image.as_ref().map_or(Ok(()), PhotographedGarment::check)?;
+        if self.image.is_some() && self.is_mesh() {
+            return Err(
+                "image lays photographs on a cut, and a mesh has its own picture; name a pattern or a built-in garment"
+                    .into(),
+            );
         }
         if !self.is_built_in() && !self.is_pattern() && !self.is_mesh() {
             return Err(format!(
@@ -143,7 +155,8 @@ impl GarmentManifest {
         let own = (!self.is_built_in()).then_some(self.garment.as_str());
         let fabric = self.fabric.as_deref().filter(|name| name.ends_with(".toml"));
         let others = own.into_iter().chain(self.seams.as_deref()).chain(fabric);
-        others.chain(self.photographs.iter().map(String::as_str))
+        let laid_on = self.image.iter().flat_map(PhotographedGarment::files);
+        others.chain(self.photographs.iter().map(String::as_str)).chain(laid_on)
     }
 }
 

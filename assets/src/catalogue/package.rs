@@ -87,7 +87,8 @@ impl GarmentPackage {
         if let Some(missing) = missing {
             return Err(self.content(missing, "it is named in garment.toml and not in the package; add it".into()));
         }
-        for photograph in &manifest.photographs {
+        let laid_on = manifest.image.iter().flat_map(|image| image.files());
+        for photograph in manifest.photographs.iter().map(String::as_str).chain(laid_on) {
             self.check_picture(photograph)?;
         }
         Ok(manifest)

@@ -2,12 +2,13 @@
 
 use std::fmt::Display;
 use std::path::Path;
+use std::sync::Arc;
 
 use toile_assets::adapt::{AdaptError, MeshReport, OwnMesh, source};
 use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::catalogue::limits::{MAX_PACKAGE_BYTES, MAX_TOML_BYTES};
 use toile_assets::catalogue::package::ENDING;
-use toile_assets::catalogue::{GarmentPackage, word};
+use toile_assets::catalogue::{GarmentPackage, GarmentPhotographs, word};
 use toile_assets::drafting;
 use toile_assets::draping::{self, AS_DRAFTED, PatternPackage, TO_MEASURE};
 use toile_assets::fabric::Fabric;
@@ -40,6 +41,8 @@ pub struct ShopChoice {
     pub fabric: Option<Fabric>,
     /// The layer in which it is worn.
     pub layer: Option<u8>,
+    /// Photographs that are laid on its cloth.
+    pub photographs: Option<Arc<GarmentPhotographs>>,
 }
 
 /// What a garment is made from.
@@ -162,7 +165,10 @@ impl Choice {
             }
             false => Fabric::built_in(fabric).map_err(|e| inside(&e)),
         });
-        let own = ShopChoice { fabric: fabric.transpose()?, layer: manifest.layer };
+        let fabric = fabric.transpose()?;
+        let picture = |name: &str| package.bytes(name, MAX_PACKAGE_BYTES).map_err(|e| e.to_string());
+        let photographs = manifest.image.as_ref().map(|image| image.read(picture).map(Arc::new)).transpose();
+        let own = ShopChoice { fabric, layer: manifest.layer, photographs: photographs.map_err(|e| inside(&e))? };
         Ok(Self { name: shown.to_owned(), source, own })
     }
 
@@ -308,6 +314,9 @@ impl Choice {
         }
         for garment in &mut worn.garments {
             garment.layer = self.own.layer.unwrap_or(garment.layer);
+            if let Some(photographs) = &self.own.photographs {
+                photographs.lay_on(garment, wearer).map_err(|e| FittingError::Input(format!("{}: {e}", self.name)))?;
+            }
         }
         Ok(worn)
     }
@@ -323,6 +332,10 @@ impl Choice {
         wearer: &Body,
         beneath: &[GarmentOffer],
     ) -> Result<Worn, FittingError> {
+        if let Some(photographs) = &self.own.photographs {
+            let refused = |e| FittingError::Input(format!("{} cannot be worn: {e}; choose another garment", self.name));
+            photographs.manifest().worn_by(&wearer.measures).map_err(refused)?;
+        }
         let fit = self.judge(size, measured, wearer, beneath)?;
         let worn = self.dress(fit.as_ref().map(|fit| fit.size.as_str()).or(size), wearer)?;
         Ok(Worn { fit, ..worn })
