@@ -31,6 +31,9 @@ pub type OutfitPair<O> = Box<[O; 2]>;
 /// The next input from the display since the last poll, if any.
 pub type NextInput<'a> = Box<dyn FnMut() -> Option<Input> + 'a>;
 
+/// What the renderer has to know of a frame as it lies in a snapshot.
+pub type ToOutfit<O> = Box<dyn Fn(&Frame, &Snapshot) -> O>;
+
 /// The ends of the window's channels.
 pub struct WindowChannels<'a, O> {
     /// Where screens go: the latest is shown.
@@ -40,7 +43,7 @@ pub struct WindowChannels<'a, O> {
     /// Where two outfits go, and none when they are to be seen no more.
     pub pairs: Sender<Option<OutfitPair<O>>>,
     /// What the renderer has to know of a frame as it lies in a snapshot.
-    pub draped: Box<dyn Fn(&Frame, &Snapshot) -> O>,
+    pub draped: ToOutfit<O>,
 }
 
 /// Measuring that takes longer than this many times its own time has found nobody.
