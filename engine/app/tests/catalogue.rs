@@ -90,6 +90,40 @@ fn a_kiosk_wears_what_its_catalogue_has() {
 }
 
 #[test]
+fn a_kiosk_reads_again_what_changes_while_it_runs() {
+    let scratch = Scratch::new("catalogue-watched");
+    shop(&scratch);
+    let port = std::net::UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let config = format!(
+        "[wear]\ncatalogue = \"shop\"\nquality = \"draft\"\n[sensor]\nsource = \"vmc\"\nvmc = \"127.0.0.1:{port}\"\n[health]\nevery_s = 0.5\n"
+    );
+    fs::write(scratch.path().join("kiosk.toml"), config).unwrap();
+    let line = ["kiosk", "--headless", "--seconds", "24", "--config", "kiosk.toml", "--instance", "watched", "--json"];
+    let running = std::thread::scope(|scope| {
+        let running = scope.spawn(|| scratch.toile(&line));
+        std::thread::sleep(std::time::Duration::from_secs(5));
+        // Half of a package in place, the one that is worn first gone, and then a catalogue that is none.
+        let folder = scratch.path().join("shop");
+        let skirt = fs::read(folder.join("skirt.toile")).unwrap();
+        fs::write(folder.join("half.toile"), &skirt[..skirt.len() / 2]).unwrap();
+        fs::remove_file(folder.join("dress.toile")).unwrap();
+        std::thread::sleep(std::time::Duration::from_secs(11));
+        fs::write(folder.join("catalogue.toml"), "shop = 3\n").unwrap();
+        running.join().unwrap()
+    });
+    let lines = String::from_utf8_lossy(&running.stderr).into_owned();
+    assert_eq!(running.status.code(), Some(0), "{lines}");
+    let said = |words: &str| lines.lines().filter(|line| line.contains(words)).count();
+    assert_eq!(said("left out of the catalogue: "), 1, "{lines}");
+    assert!(said("catalogue of 2 garments, read again 0 times") > 0, "{lines}");
+    assert!(said("catalogue of 1 garments, read again 1 times, left out: half.toile") > 0, "{lines}");
+    assert_eq!(said("the catalogue stays as it was: "), 1, "{lines}");
+    assert!(said("as it was before a change that cannot be used") > 0, "{lines}");
+    let report: Value = serde_json::from_slice(&running.stdout).unwrap();
+    assert_eq!((&report["nonfinite"], &report["states"]), (&0.into(), &serde_json::json!(["attract"])));
+}
+
+#[test]
 fn a_theme_is_checked_and_one_that_cannot_be_read_is_refused() {
     let scratch = Scratch::new("catalogue-theme");
     fs::create_dir_all(scratch.path().join("shop")).unwrap();

@@ -65,8 +65,12 @@ fn png(side: [u32; 2], seed: u32) -> Vec<u8> {
 fn shop(folder: &Path) {
     let source = folder.join("source");
     fs::create_dir_all(&source).unwrap();
-    let patterns =
-        ["tee", "straight-skirt", "shorts"].map(|name| drafting::style(name).unwrap().package().unwrap().text());
+    let patterns = ["tee", "straight-skirt", "shorts"].map(|name| {
+        let mut package = drafting::style(name).unwrap().package().unwrap();
+        // Coarse, so that thirty of them are soon on.
+        package.spacing_mm = 36.0;
+        package.text()
+    });
     let fabric = "name = \"ours\"\ntitle = \"Ours\"\nbase = \"cotton-lawn\"\ncolour = [0.9, 0.9, 0.85]\n[print]\n\
                   pattern = \"picture\"\ncolours = []\nrepeat_mm = [120, 120]\nshare = 1.0\npicture = \"tile.png\"\n";
     fs::write(source.join("ours.toml"), fabric).unwrap();

@@ -1,5 +1,7 @@
 //! A display of a test's own: Xvfb, driven by xdotool, looked at through the memory that Xvfb draws in.
 
+#![allow(dead_code, reason = "each test file uses its part")]
+
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};

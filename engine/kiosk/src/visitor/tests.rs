@@ -2,6 +2,7 @@
 
 mod own_measures;
 mod privacy;
+mod shelves;
 mod texts;
 mod turns;
 mod visits;

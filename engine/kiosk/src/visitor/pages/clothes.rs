@@ -108,6 +108,9 @@ impl PageWriter<'_> {
             (!names.is_empty()).then(instead)
         };
         let price = item.price.as_ref().map(|price| self.price(price));
+        // A tile has no room for what its check mark says, nor for what comes off.
+        let is_tile = matches!(self.garment_style(place), ControlStyle::Tile(_));
+        let detail = detail.filter(|_| !is_tile || price.is_none() || (worn && visit.in_hand == place));
         let both: Vec<String> = price.into_iter().chain(detail).collect();
         (self.garment(item), (!both.is_empty()).then(|| both.join(" \u{b7} ")))
     }

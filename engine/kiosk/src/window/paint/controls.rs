@@ -15,7 +15,7 @@ const MOST_COLUMNS: usize = 6;
 const KEY_COLUMNS: usize = 3;
 
 /// Height of the photograph on a tile, in lines of the body's type.
-const TILE_LINES: f32 = 6.4;
+const TILE_LINES: f32 = 5.6;
 
 /// A button with its place.
 #[derive(Debug, Clone)]
@@ -156,7 +156,7 @@ pub fn disc(look: Look) -> f32 {
 
 /// Height of the photograph on a tile.
 pub fn picture_height(look: Look) -> f32 {
-    (look.body * TILE_LINES * look.squeeze * look.squeeze).max(look.target).round()
+    (look.body * TILE_LINES * look.squeeze).max(look.target).round()
 }
 
 /// Air within a button, left and right.
