@@ -39,7 +39,8 @@ fn one(place: &str, value: &Value, unit: f64) -> Result<Trim, Fault> {
     let names = TrimKind::ALL.map(TrimKind::name);
     let said = value["kind"].as_str().unwrap_or_default();
     let kind = TrimKind::ALL.into_iter().find(|k| k.name() == said).ok_or_else(|| {
-        let cure = meant(said, names.into_iter(), &format!("give one of {}", names.join(", ")));
+        let known = names.into_iter().filter(|_| !said.is_empty());
+        let cure = meant(said, known, &format!("give one of {}", names.join(", ")));
         wrong(format!("its kind is \"{}\"; {cure}", name(said)))
     })?;
     let end = |key: &str| {
