@@ -48,7 +48,8 @@ fn seen_live(name: &str, options: &CameraOptions, count: usize) -> Vec<DepthFram
     let (name, options) = (name.parse().unwrap(), options.clone());
     let begun = Instant::now();
     let now = move || begun.elapsed().as_nanos() as u64;
-    let mut depth = LiveDepth::open(Box::new(move || live::open(&name, &options)), 0).unwrap_or_else(|e| panic!("{e}"));
+    let mut depth =
+        LiveDepth::open(Box::new(move || live::open(&name, &options)), 0, 0).unwrap_or_else(|e| panic!("{e}"));
     let mut frames: Vec<DepthFrame> = Vec::new();
     while frames.len() < count && begun.elapsed() < LONGEST {
         let update = depth.poll(&now, Duration::from_millis(50));

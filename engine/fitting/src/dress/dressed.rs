@@ -56,8 +56,20 @@ impl Dressed {
 /// # Errors
 /// A session that nobody can be measured or dressed in, a garment or a size that there is not.
 pub fn shopper(session: &Session, wish: &Wish) -> Result<Dressed, FittingError> {
+    if session.joints.is_empty() {
+        return seen_in_depth(session, wish);
+    }
     let track = session::standing(session)?;
     let measured = measured::measure(session, wish.facts())?;
+    Dressed::make(Recipe::choose(&session.name, &measured, wish)?, &track[0], false)
+}
+
+/// The same of a session without joints: the body is followed through its depth.
+fn seen_in_depth(session: &Session, wish: &Wish) -> Result<Dressed, FittingError> {
+    let measured = measured::measure(session, wish.facts())?;
+    let mut followed = session.clone();
+    measured::add_joints(&mut followed, &measured)?;
+    let track = session::standing(&followed)?;
     Dressed::make(Recipe::choose(&session.name, &measured, wish)?, &track[0], false)
 }
 

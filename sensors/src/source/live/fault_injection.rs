@@ -3,9 +3,14 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use glam::Affine3A;
+use toile_assets::numeric::random::SplitMix64;
+
 use super::error::CameraError;
 use super::live_camera::{Arrival, CameraFrame, CameraInfo, LiveCamera};
 use crate::clock::SECOND_NS;
+use crate::frame::{Intrinsics, Joints};
+use crate::source::camera::Camera;
 
 toile_assets::named! {
     /// What may be wrong with a camera.
@@ -130,5 +135,68 @@ impl<C: LiveCamera> LiveCamera for FaultyCamera<C> {
             self.last.clone_from(&frame.depth);
         }
         Ok(if comes { Arrival::Frame } else { Arrival::Nothing })
+    }
+}
+
+/// Images of a simulated camera (px): small, for hours of them are looked at.
+const SIMULATED: Intrinsics = Intrinsics { width: 40, height: 30, fx: 36.0, fy: 36.0, cx: 19.5, cy: 14.5 };
+
+/// Frames a second of a simulated camera (Hz).
+const SIMULATED_HZ: u64 = 30;
+
+/// From when a frame is taken until it arrives (ns).
+const DELAY_NS: u64 = 15_000_000;
+
+/// A camera that looks at a wall, on a clock that is moved by hand: each frame has noise of its own.
+pub struct SimulatedCamera {
+    info: CameraInfo,
+    clock: FaultClock,
+    /// The next frame, by its number since the clock's begin.
+    next: u64,
+    /// What it is to see of people at a time (ns), in its own axes.
+    people: Option<Box<dyn FnMut(u64) -> Option<Joints> + Send>>,
+}
+
+impl SimulatedCamera {
+    /// At this place in our world; its first frame is that of now.
+    pub fn new(clock: FaultClock, pose: Affine3A) -> Self {
+        let info = CameraInfo {
+            device: "simulated camera".to_owned(),
+            camera: Camera::pinhole(SIMULATED),
+            rate_hz: SIMULATED_HZ as f32,
+            placed: Some(pose),
+        };
+        let next = clock() * SIMULATED_HZ / SECOND_NS + 1;
+        Self { info, clock, next, people: None }
+    }
+
+    /// The same, which tracks joints by itself.
+    #[must_use]
+    pub fn seeing(self, people: Box<dyn FnMut(u64) -> Option<Joints> + Send>) -> Self {
+        Self { people: Some(people), ..self }
+    }
+}
+
+impl LiveCamera for SimulatedCamera {
+    fn info(&self) -> &CameraInfo {
+        &self.info
+    }
+
+    fn read(&mut self, frame: &mut CameraFrame, _: Duration) -> Result<Arrival, CameraError> {
+        frame.clear();
+        let taken_ns = self.next * SECOND_NS / SIMULATED_HZ;
+        let now = (self.clock)();
+        if now < taken_ns + DELAY_NS {
+            return Ok(Arrival::Nothing);
+        }
+        // What nobody read is overwritten, as in any camera.
+        self.next = self.next.max((now - DELAY_NS) * SIMULATED_HZ / SECOND_NS) + 1;
+        frame.device_ns = taken_ns;
+        let noise = SplitMix64::new(taken_ns).next_u64();
+        frame
+            .depth
+            .extend((0..SIMULATED.pixels() as u64).map(|i| 2_000 + ((i * 7).wrapping_add(noise) % 1_009) as u16));
+        frame.people.extend(self.people.as_mut().and_then(|people| people(taken_ns)));
+        Ok(Arrival::Frame)
     }
 }

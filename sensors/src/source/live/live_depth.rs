@@ -59,11 +59,11 @@ pub struct LiveDepth {
 }
 
 impl LiveDepth {
-    /// Opens the camera for the first time. Called at load: it allocates.
+    /// Opens the camera for the first time; so many of its images are kept by somebody at once. Called at load: it allocates.
     ///
     /// # Errors
     /// Those of the opener; a camera whose lens cannot be straightened.
-    pub fn open(mut opener: CameraOpener, now_ns: u64) -> Result<Self, CameraError> {
+    pub fn open(mut opener: CameraOpener, kept: usize, now_ns: u64) -> Result<Self, CameraError> {
         let camera = opener()?;
         let info = camera.info().clone();
         let mut notes = Vec::new();
@@ -72,7 +72,7 @@ impl LiveDepth {
             opener,
             camera: Some(camera),
             check: FrameCheck::new(info.sensor().pixels(), info.rate_hz),
-            pool: FramePool::new(converter.kept()),
+            pool: FramePool::new(converter.kept(), kept),
             placement: Placement::default(),
             pose: info.placed,
             info,
@@ -118,6 +118,11 @@ impl LiveDepth {
     /// Joints of everybody whom the camera itself tracked in the last frame, in our world.
     pub fn people(&self) -> &[Joints] {
         &self.people
+    }
+
+    /// Wipes all images that nobody has: whoever was seen in them has left.
+    pub fn wipe(&mut self) {
+        self.pool.wipe();
     }
 
     /// Waits for the next frame, for about so long; `now_ns` is the loop's clock.
