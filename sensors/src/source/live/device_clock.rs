@@ -25,7 +25,10 @@ impl DeviceClock {
     pub fn stamp(&mut self, device_ns: u64, arrived_ns: u64) -> u64 {
         let seen = arrived_ns.wrapping_sub(device_ns) as i64;
         let back = self.last.is_some_and(|(device, _)| device_ns < device);
+        // A camera without a clock, or one whose clock stands still: its frames count from their arrival.
+        let still = self.last.is_some_and(|(device, _)| device_ns == device);
         let offset = match self.offset {
+            Some(_) if still => seen,
             Some((offset, _)) if back || seen.saturating_sub(offset).abs() > JUMP_NS => {
                 self.jumps += 1;
                 seen
@@ -90,6 +93,14 @@ mod tests {
             off = arrived - clock.stamp(device, arrived);
         }
         assert!(off < MS && clock.jumps == 0, "{off}");
+    }
+
+    #[test]
+    fn frames_of_a_camera_without_a_clock_count_from_their_arrival() {
+        let mut clock = DeviceClock::default();
+        let stamps: Vec<u64> = (0..5).map(|i| clock.stamp(0, (1_000 + i * 33) * MS) / MS).collect();
+        assert_eq!(stamps, [1_000, 1_033, 1_066, 1_099, 1_132]);
+        assert_eq!(clock.jumps, 0);
     }
 
     #[test]

@@ -144,6 +144,9 @@ const SIMULATED: Intrinsics = Intrinsics { width: 40, height: 30, fx: 36.0, fy: 
 /// Frames a second of a simulated camera (Hz).
 const SIMULATED_HZ: u64 = 30;
 
+/// What the simulated device's own clock shows when ours shows nothing (ns): two days.
+const DEVICE_BEGIN_NS: u64 = 2 * 86_400 * SECOND_NS;
+
 /// From when a frame is taken until it arrives (ns).
 const DELAY_NS: u64 = 15_000_000;
 
@@ -191,7 +194,7 @@ impl LiveCamera for SimulatedCamera {
         }
         // What nobody read is overwritten, as in any camera.
         self.next = self.next.max((now - DELAY_NS) * SIMULATED_HZ / SECOND_NS) + 1;
-        frame.device_ns = taken_ns;
+        frame.device_ns = DEVICE_BEGIN_NS + taken_ns;
         let noise = SplitMix64::new(taken_ns).next_u64();
         frame
             .depth
