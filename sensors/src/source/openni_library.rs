@@ -64,7 +64,7 @@ struct OniFrame {
     stride: c_int,
 }
 
-type Handle = *mut c_void;
+type OniHandle = *mut c_void;
 
 functions! {
     /// What is called of OpenNI.
@@ -72,17 +72,17 @@ functions! {
         fn oniInitialize(c_int) -> c_int;
         fn oniShutdown();
         fn oniGetExtendedError() -> *const c_char;
-        fn oniDeviceOpen(*const c_char, *mut Handle) -> c_int;
-        fn oniDeviceClose(Handle) -> c_int;
-        fn oniDeviceSetProperty(Handle, c_int, *const c_void, c_int) -> c_int;
-        fn oniDeviceCreateStream(Handle, c_int, *mut Handle) -> c_int;
-        fn oniStreamDestroy(Handle);
-        fn oniStreamStart(Handle) -> c_int;
-        fn oniStreamStop(Handle);
-        fn oniStreamGetProperty(Handle, c_int, *mut c_void, *mut c_int) -> c_int;
-        fn oniStreamSetProperty(Handle, c_int, *const c_void, c_int) -> c_int;
-        fn oniWaitForAnyStream(*mut Handle, c_int, *mut c_int, c_int) -> c_int;
-        fn oniStreamReadFrame(Handle, *mut *mut OniFrame) -> c_int;
+        fn oniDeviceOpen(*const c_char, *mut OniHandle) -> c_int;
+        fn oniDeviceClose(OniHandle) -> c_int;
+        fn oniDeviceSetProperty(OniHandle, c_int, *const c_void, c_int) -> c_int;
+        fn oniDeviceCreateStream(OniHandle, c_int, *mut OniHandle) -> c_int;
+        fn oniStreamDestroy(OniHandle);
+        fn oniStreamStart(OniHandle) -> c_int;
+        fn oniStreamStop(OniHandle);
+        fn oniStreamGetProperty(OniHandle, c_int, *mut c_void, *mut c_int) -> c_int;
+        fn oniStreamSetProperty(OniHandle, c_int, *const c_void, c_int) -> c_int;
+        fn oniWaitForAnyStream(*mut OniHandle, c_int, *mut c_int, c_int) -> c_int;
+        fn oniStreamReadFrame(OniHandle, *mut *mut OniFrame) -> c_int;
         fn oniFrameRelease(*mut OniFrame);
     }
 }
@@ -97,13 +97,13 @@ pub(super) struct OpenNiLibrary {
 
 /// A device that is open, closed when dropped with its streams.
 pub(super) struct OpenNiDevice {
-    handle: Handle,
+    handle: OniHandle,
     library: Arc<OpenNiLibrary>,
 }
 
 /// A stream of a device, stopped and destroyed when dropped.
 pub(super) struct OpenNiStream {
-    handle: Handle,
+    handle: OniHandle,
     device: Arc<OpenNiDevice>,
 }
 

@@ -71,14 +71,20 @@ pub(super) fn run(args: &CameraRequest<'_>) -> Result<(), AppError> {
     let (mut frame, begun) = (CameraFrame::default(), Instant::now());
     let length = Duration::from_secs(args.seconds.into());
     while begun.elapsed() < length {
-        match camera.read(&mut frame, PATIENCE).map_err(|e| camera::error(&e))? {
-            Arrival::Frame => {
+        match camera.read(&mut frame, PATIENCE) {
+            // What came before the camera was gone is kept.
+            Err(gone) if recorder.frames() > 0 => {
+                words.print_line(&format!("the camera was lost; what came before is kept ({gone})"));
+                break;
+            }
+            Err(gone) => return Err(camera::error(&gone)),
+            Ok(Arrival::Frame) => {
                 let arrived_ns = begun.elapsed().as_nanos() as u64;
                 recorder.take(&frame, arrived_ns).map_err(|e| camera::error(&e))?;
                 bar.set_position(begun.elapsed().as_secs());
             }
-            Arrival::Nothing => {}
-            Arrival::Ended => break,
+            Ok(Arrival::Nothing) => {}
+            Ok(Arrival::Ended) => break,
         }
     }
     bar.finish_and_clear();

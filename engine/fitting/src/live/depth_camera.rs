@@ -390,3 +390,73 @@ impl FrameSource for CameraFeed {
         Some(SourceFrame { joints, depth: Some(depth), others, arrived_ns: Some(arrived_ns) })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Affine3A;
+    use toile_engine::clock::RealClock;
+    use toile_sensors::source::live::fault_injection::{
+        CameraFault, FaultClock, FaultPlan, FaultyCamera, SimulatedCamera, TimedFault,
+    };
+
+    const MS: u64 = 1_000_000;
+
+    /// The loop's end of a simulated camera with one fault, on the system's clock.
+    fn started(clock: RealClock, fault: Option<TimedFault>) -> (CameraFeed, CameraHandle) {
+        let now: FaultClock = Arc::new(move || clock.now_ns());
+        let plan = Arc::new(FaultPlan { faults: fault.into_iter().collect() });
+        let opener = Box::new(move || {
+            let pelvis = |ns: u64| {
+                let mut joints = Joints::absent(ns);
+                joints.joints[0].confidence = 1.0;
+                Some(joints)
+            };
+            let camera = SimulatedCamera::new(now.clone(), Affine3A::IDENTITY).seeing(Box::new(pelvis));
+            Ok(Box::new(FaultyCamera::open(camera, plan.clone(), now.clone())?) as Box<_>)
+        });
+        let depth = LiveDepth::open(opener, GATHERED, clock.now_ns()).unwrap();
+        start(depth, clock, TrackerOptions { zone: Zone::default(), sex: Sex::Female }).unwrap()
+    }
+
+    #[test]
+    fn frames_come_through_both_threads_with_the_cameras_own_joints_and_stamps() {
+        let clock = RealClock::starting_at(1_000 * MS);
+        let (mut feed, handle) = started(clock, None);
+        let (mut stamps, end) = (Vec::new(), clock.now_ns() + 700 * MS);
+        handle.gather_anew();
+        while clock.now_ns() < end {
+            clock.sleep_until(feed.next_ns().unwrap());
+            if let Some(frame) = feed.read() {
+                assert_eq!((frame.joints.joints[0].confidence, frame.depth.is_some()), (1.0, true));
+                assert!(frame.arrived_ns.unwrap() >= frame.joints.time_ns);
+                stamps.push(frame.joints.time_ns);
+            }
+        }
+        assert!(stamps.len() >= 5 && stamps.windows(2).all(|w| w[0] < w[1]), "{stamps:?}");
+        let gathered = handle.gathered();
+        assert!(gathered.len() >= 5 && gathered.len() <= FRAMES, "{}", gathered.len());
+        handle.forget(Sex::Male);
+        assert!(handle.gathered().is_empty());
+        assert_eq!(handle.figures().state, CameraState::Seeing);
+        feed.end();
+    }
+
+    #[test]
+    fn a_camera_that_falls_silent_is_known_to_be_lost_and_to_be_back() {
+        let clock = RealClock::starting_at(1_000 * MS);
+        let (from_ns, until_ns) = (1_400 * MS, 2_000 * MS);
+        let fault = TimedFault { fault: CameraFault::Silent, from_ns, until_ns };
+        let (feed, handle) = started(clock, Some(fault));
+        let seen_at = |ns: u64| {
+            clock.sleep_until(ns);
+            handle.figures().state
+        };
+        assert_eq!(seen_at(from_ns - 20 * MS), CameraState::Seeing);
+        // Beside compilers, threads wake late: the limits themselves are held in simulated time.
+        assert_eq!(seen_at(until_ns - 100 * MS), CameraState::Lost);
+        assert_eq!(seen_at(until_ns + 1_000 * MS), CameraState::Seeing);
+        assert_eq!(handle.figures().counts.lost, 1);
+        feed.end();
+    }
+}

@@ -55,7 +55,7 @@ const MOST_CALIBRATION: usize = 1 << 20;
 /// Images of the narrow mode (px), which is the one for a person before a mirror.
 const NARROW: [u32; 2] = [640, 576];
 
-type Handle = *mut c_void;
+type K4aHandle = *mut c_void;
 
 #[repr(C)]
 struct DeviceConfiguration {
@@ -74,45 +74,45 @@ functions! {
     /// What is called of libk4a.
     K4aApi {
         fn k4a_device_get_installed_count() -> u32;
-        fn k4a_device_open(u32, *mut Handle) -> c_int;
-        fn k4a_device_close(Handle);
-        fn k4a_device_start_cameras(Handle, *const DeviceConfiguration) -> c_int;
-        fn k4a_device_stop_cameras(Handle);
-        fn k4a_device_get_capture(Handle, *mut Handle, i32) -> c_int;
-        fn k4a_device_get_serialnum(Handle, *mut c_char, *mut usize) -> c_int;
-        fn k4a_device_get_raw_calibration(Handle, *mut u8, *mut usize) -> c_int;
-        fn k4a_capture_release(Handle);
-        fn k4a_capture_get_depth_image(Handle) -> Handle;
-        fn k4a_capture_get_color_image(Handle) -> Handle;
-        fn k4a_image_get_buffer(Handle) -> *mut u8;
-        fn k4a_image_get_size(Handle) -> usize;
-        fn k4a_image_get_format(Handle) -> c_int;
-        fn k4a_image_get_width_pixels(Handle) -> c_int;
-        fn k4a_image_get_height_pixels(Handle) -> c_int;
-        fn k4a_image_get_stride_bytes(Handle) -> c_int;
-        fn k4a_image_get_device_timestamp_usec(Handle) -> u64;
-        fn k4a_image_release(Handle);
+        fn k4a_device_open(u32, *mut K4aHandle) -> c_int;
+        fn k4a_device_close(K4aHandle);
+        fn k4a_device_start_cameras(K4aHandle, *const DeviceConfiguration) -> c_int;
+        fn k4a_device_stop_cameras(K4aHandle);
+        fn k4a_device_get_capture(K4aHandle, *mut K4aHandle, i32) -> c_int;
+        fn k4a_device_get_serialnum(K4aHandle, *mut c_char, *mut usize) -> c_int;
+        fn k4a_device_get_raw_calibration(K4aHandle, *mut u8, *mut usize) -> c_int;
+        fn k4a_capture_release(K4aHandle);
+        fn k4a_capture_get_depth_image(K4aHandle) -> K4aHandle;
+        fn k4a_capture_get_color_image(K4aHandle) -> K4aHandle;
+        fn k4a_image_get_buffer(K4aHandle) -> *mut u8;
+        fn k4a_image_get_size(K4aHandle) -> usize;
+        fn k4a_image_get_format(K4aHandle) -> c_int;
+        fn k4a_image_get_width_pixels(K4aHandle) -> c_int;
+        fn k4a_image_get_height_pixels(K4aHandle) -> c_int;
+        fn k4a_image_get_stride_bytes(K4aHandle) -> c_int;
+        fn k4a_image_get_device_timestamp_usec(K4aHandle) -> u64;
+        fn k4a_image_release(K4aHandle);
     }
 }
 
 functions! {
     /// What is called of libk4arecord.
     PlaybackApi {
-        fn k4a_playback_open(*const c_char, *mut Handle) -> c_int;
-        fn k4a_playback_get_raw_calibration(Handle, *mut u8, *mut usize) -> c_int;
-        fn k4a_playback_set_color_conversion(Handle, c_int) -> c_int;
-        fn k4a_playback_get_next_capture(Handle, *mut Handle) -> c_int;
-        fn k4a_playback_close(Handle);
+        fn k4a_playback_open(*const c_char, *mut K4aHandle) -> c_int;
+        fn k4a_playback_get_raw_calibration(K4aHandle, *mut u8, *mut usize) -> c_int;
+        fn k4a_playback_set_color_conversion(K4aHandle, c_int) -> c_int;
+        fn k4a_playback_get_next_capture(K4aHandle, *mut K4aHandle) -> c_int;
+        fn k4a_playback_close(K4aHandle);
     }
 }
 
 /// Where captures come from.
 enum CaptureSource {
-    Device(Handle),
+    Device(K4aHandle),
     /// A recording, and the device's and our time of its first capture.
     Playback {
         api: PlaybackApi,
-        handle: Handle,
+        handle: K4aHandle,
         begun: Option<(u64, Instant)>,
         ahead: Option<Capture>,
     },
@@ -130,10 +130,10 @@ pub(super) struct K4a {
 unsafe impl Send for K4a {}
 
 /// A capture, given back when dropped.
-struct Capture(Handle, unsafe extern "C" fn(Handle));
+struct Capture(K4aHandle, unsafe extern "C" fn(K4aHandle));
 
 /// An image of a capture, given back when dropped.
-struct K4aImage(Handle, K4aApi);
+struct K4aImage(K4aHandle, K4aApi);
 
 impl K4a {
     pub fn open(which: Option<&str>, options: &CameraOptions) -> Result<Self, CameraError> {
@@ -257,7 +257,7 @@ impl K4a {
     }
 
     /// The next capture of a device.
-    fn captured(&self, device: Handle, patience: Duration) -> Result<(Arrival, Option<Capture>), CameraError> {
+    fn captured(&self, device: K4aHandle, patience: Duration) -> Result<(Arrival, Option<Capture>), CameraError> {
         let mut capture = ptr::null_mut();
         let patience = patience.as_millis() as i32;
         // SAFETY: the device is open and started, and `capture` is a place for one pointer.
@@ -273,7 +273,7 @@ fn playback(options: &CameraOptions) -> Result<PlaybackApi, CameraError> {
     PlaybackApi::of(&Library::load(&LIBRARIES[1], &options.libraries)?)
 }
 
-fn opened_recording(path: &str, options: &CameraOptions) -> Result<Handle, CameraError> {
+fn opened_recording(path: &str, options: &CameraOptions) -> Result<K4aHandle, CameraError> {
     let api = playback(options)?;
     let unreadable = || CameraError::Recording(format!("{path}: it is no recording of k4arecorder; record it again"));
     let text = CString::new(path).map_err(|_| unreadable())?;
@@ -290,7 +290,7 @@ fn opened_recording(path: &str, options: &CameraOptions) -> Result<Handle, Camer
 }
 
 /// Opens the first device, or that of a serial number.
-fn opened_device(api: &K4aApi, which: Option<&str>) -> Result<Handle, CameraError> {
+fn opened_device(api: &K4aApi, which: Option<&str>) -> Result<K4aHandle, CameraError> {
     // SAFETY: takes nothing.
     let count = unsafe { (api.k4a_device_get_installed_count)() };
     for index in 0..count {
@@ -309,7 +309,7 @@ fn opened_device(api: &K4aApi, which: Option<&str>) -> Result<Handle, CameraErro
     Err(CameraError::NotConnected { camera: NAME, cure })
 }
 
-fn serial(api: &K4aApi, device: Handle) -> Option<String> {
+fn serial(api: &K4aApi, device: K4aHandle) -> Option<String> {
     let mut text = [0u8; 64];
     let mut size = text.len();
     // SAFETY: the device is open, and the text is a place for `size` bytes.

@@ -42,8 +42,8 @@ const FIRST: Duration = Duration::from_secs(5);
 /// A recording that gives nothing for so long has ended.
 const END: Duration = Duration::from_millis(1_500);
 
-type Handle = *mut c_void;
-type Error = *mut c_void;
+type ObHandle = *mut c_void;
+type ObError = *mut c_void;
 
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
@@ -67,42 +67,42 @@ struct ObDistortion {
 functions! {
     /// What is called of OrbbecSDK.
     OrbbecApi {
-        fn ob_set_logger_severity(c_int, *mut Error);
-        fn ob_create_context(*mut Error) -> Handle;
-        fn ob_delete_context(Handle, *mut Error);
-        fn ob_query_device_list(Handle, *mut Error) -> Handle;
-        fn ob_device_list_get_count(Handle, *mut Error) -> u32;
-        fn ob_device_list_get_device(Handle, u32, *mut Error) -> Handle;
-        fn ob_device_list_get_device_by_serial_number(Handle, *const c_char, *mut Error) -> Handle;
-        fn ob_delete_device_list(Handle, *mut Error);
-        fn ob_create_playback_device(*const c_char, *mut Error) -> Handle;
-        fn ob_delete_device(Handle, *mut Error);
-        fn ob_create_pipeline_with_device(Handle, *mut Error) -> Handle;
-        fn ob_delete_pipeline(Handle, *mut Error);
-        fn ob_create_config(*mut Error) -> Handle;
-        fn ob_delete_config(Handle, *mut Error);
-        fn ob_config_enable_stream(Handle, c_int, *mut Error);
-        fn ob_config_enable_video_stream(Handle, c_int, u32, u32, u32, c_int, *mut Error);
-        fn ob_pipeline_start_with_config(Handle, Handle, *mut Error);
-        fn ob_pipeline_stop(Handle, *mut Error);
-        fn ob_pipeline_wait_for_frameset(Handle, u32, *mut Error) -> Handle;
-        fn ob_frameset_get_depth_frame(Handle, *mut Error) -> Handle;
-        fn ob_frameset_get_color_frame(Handle, *mut Error) -> Handle;
-        fn ob_delete_frame(Handle, *mut Error);
-        fn ob_frame_get_stream_profile(Handle, *mut Error) -> Handle;
-        fn ob_delete_stream_profile(Handle, *mut Error);
-        fn ob_video_stream_profile_get_fps(Handle, *mut Error) -> u32;
-        fn ob_video_stream_profile_get_intrinsic(Handle, *mut Error) -> ObIntrinsic;
-        fn ob_video_stream_profile_get_distortion(Handle, *mut Error) -> ObDistortion;
-        fn ob_depth_frame_get_value_scale(Handle, *mut Error) -> f32;
-        fn ob_frame_get_format(Handle, *mut Error) -> c_int;
-        fn ob_frame_get_timestamp_us(Handle, *mut Error) -> u64;
-        fn ob_frame_get_data(Handle, *mut Error) -> *mut u8;
-        fn ob_frame_get_data_size(Handle, *mut Error) -> u32;
-        fn ob_video_frame_get_width(Handle, *mut Error) -> u32;
-        fn ob_video_frame_get_height(Handle, *mut Error) -> u32;
-        fn ob_error_get_message(Error) -> *const c_char;
-        fn ob_delete_error(Error);
+        fn ob_set_logger_severity(c_int, *mut ObError);
+        fn ob_create_context(*mut ObError) -> ObHandle;
+        fn ob_delete_context(ObHandle, *mut ObError);
+        fn ob_query_device_list(ObHandle, *mut ObError) -> ObHandle;
+        fn ob_device_list_get_count(ObHandle, *mut ObError) -> u32;
+        fn ob_device_list_get_device(ObHandle, u32, *mut ObError) -> ObHandle;
+        fn ob_device_list_get_device_by_serial_number(ObHandle, *const c_char, *mut ObError) -> ObHandle;
+        fn ob_delete_device_list(ObHandle, *mut ObError);
+        fn ob_create_playback_device(*const c_char, *mut ObError) -> ObHandle;
+        fn ob_delete_device(ObHandle, *mut ObError);
+        fn ob_create_pipeline_with_device(ObHandle, *mut ObError) -> ObHandle;
+        fn ob_delete_pipeline(ObHandle, *mut ObError);
+        fn ob_create_config(*mut ObError) -> ObHandle;
+        fn ob_delete_config(ObHandle, *mut ObError);
+        fn ob_config_enable_stream(ObHandle, c_int, *mut ObError);
+        fn ob_config_enable_video_stream(ObHandle, c_int, u32, u32, u32, c_int, *mut ObError);
+        fn ob_pipeline_start_with_config(ObHandle, ObHandle, *mut ObError);
+        fn ob_pipeline_stop(ObHandle, *mut ObError);
+        fn ob_pipeline_wait_for_frameset(ObHandle, u32, *mut ObError) -> ObHandle;
+        fn ob_frameset_get_depth_frame(ObHandle, *mut ObError) -> ObHandle;
+        fn ob_frameset_get_color_frame(ObHandle, *mut ObError) -> ObHandle;
+        fn ob_delete_frame(ObHandle, *mut ObError);
+        fn ob_frame_get_stream_profile(ObHandle, *mut ObError) -> ObHandle;
+        fn ob_delete_stream_profile(ObHandle, *mut ObError);
+        fn ob_video_stream_profile_get_fps(ObHandle, *mut ObError) -> u32;
+        fn ob_video_stream_profile_get_intrinsic(ObHandle, *mut ObError) -> ObIntrinsic;
+        fn ob_video_stream_profile_get_distortion(ObHandle, *mut ObError) -> ObDistortion;
+        fn ob_depth_frame_get_value_scale(ObHandle, *mut ObError) -> f32;
+        fn ob_frame_get_format(ObHandle, *mut ObError) -> c_int;
+        fn ob_frame_get_timestamp_us(ObHandle, *mut ObError) -> u64;
+        fn ob_frame_get_data(ObHandle, *mut ObError) -> *mut u8;
+        fn ob_frame_get_data_size(ObHandle, *mut ObError) -> u32;
+        fn ob_video_frame_get_width(ObHandle, *mut ObError) -> u32;
+        fn ob_video_frame_get_height(ObHandle, *mut ObError) -> u32;
+        fn ob_error_get_message(ObError) -> *const c_char;
+        fn ob_delete_error(ObError);
     }
 }
 
@@ -118,22 +118,22 @@ pub(super) struct Orbbec {
 /// What a pipeline is made of, undone when dropped.
 struct Parts {
     api: OrbbecApi,
-    context: Handle,
-    device: Handle,
-    pipeline: Handle,
-    config: Handle,
+    context: ObHandle,
+    device: ObHandle,
+    pipeline: ObHandle,
+    config: ObHandle,
     started: bool,
 }
 
 /// Frames of one moment, or one frame, given back when dropped.
-struct ObFrame(Handle, OrbbecApi);
+struct ObFrame(ObHandle, OrbbecApi);
 
 // SAFETY: the library may be called from any thread; `&mut self` lets one at a time.
 unsafe impl Send for Orbbec {}
 
 impl OrbbecApi {
     /// Calls a function with a place for its error, which becomes a sentence.
-    fn call<T>(&self, what: &str, call: impl FnOnce(*mut Error) -> T) -> Result<T, CameraError> {
+    fn call<T>(&self, what: &str, call: impl FnOnce(*mut ObError) -> T) -> Result<T, CameraError> {
         let mut error = ptr::null_mut();
         let value = call(&mut error);
         if error.is_null() {
@@ -258,7 +258,7 @@ impl Parts {
 impl Drop for Parts {
     fn drop(&mut self) {
         let api = self.api;
-        let undo = |handle: Handle, f: unsafe extern "C" fn(Handle, *mut Error)| {
+        let undo = |handle: ObHandle, f: unsafe extern "C" fn(ObHandle, *mut ObError)| {
             if !handle.is_null() {
                 // SAFETY: the library made it, and it is undone once, what uses another before that.
                 let _ = api.call("", |e| unsafe { f(handle, e) });
@@ -275,7 +275,7 @@ impl Drop for Parts {
 }
 
 impl ObFrame {
-    fn part(&self, f: unsafe extern "C" fn(Handle, *mut Error) -> Handle) -> Option<ObFrame> {
+    fn part(&self, f: unsafe extern "C" fn(ObHandle, *mut ObError) -> ObHandle) -> Option<ObFrame> {
         // SAFETY: the frames live; what is given is a reference of our own, or nothing.
         let frame = self.1.call("", |e| unsafe { f(self.0, e) }).ok()?;
         (!frame.is_null()).then_some(ObFrame(frame, self.1))
@@ -314,7 +314,8 @@ impl ObFrame {
     fn size(&self) -> Option<[u32; 2]> {
         let api = self.1;
         // SAFETY: a video frame that lives.
-        let side = |f: unsafe extern "C" fn(Handle, *mut Error) -> u32| api.call("", |e| unsafe { f(self.0, e) }).ok();
+        let side =
+            |f: unsafe extern "C" fn(ObHandle, *mut ObError) -> u32| api.call("", |e| unsafe { f(self.0, e) }).ok();
         Some([side(api.ob_video_frame_get_width)?, side(api.ob_video_frame_get_height)?])
     }
 

@@ -53,8 +53,8 @@ const END: Duration = Duration::from_millis(1_500);
 /// Least that is waited for at once (ms).
 const LEAST_MS: u128 = 1;
 
-type Handle = *mut c_void;
-type Error = *mut c_void;
+type RsHandle = *mut c_void;
+type RsError = *mut c_void;
 
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default)]
@@ -72,38 +72,38 @@ struct RsIntrinsics {
 functions! {
     /// What is called of librealsense.
     RealSenseApi {
-        fn rs2_get_api_version(*mut Error) -> c_int;
-        fn rs2_create_context(c_int, *mut Error) -> Handle;
-        fn rs2_delete_context(Handle);
-        fn rs2_query_devices(Handle, *mut Error) -> Handle;
-        fn rs2_get_device_count(Handle, *mut Error) -> c_int;
-        fn rs2_delete_device_list(Handle);
-        fn rs2_create_pipeline(Handle, *mut Error) -> Handle;
-        fn rs2_delete_pipeline(Handle);
-        fn rs2_create_config(*mut Error) -> Handle;
-        fn rs2_delete_config(Handle);
-        fn rs2_config_enable_stream(Handle, c_int, c_int, c_int, c_int, c_int, c_int, *mut Error);
-        fn rs2_config_enable_device(Handle, *const c_char, *mut Error);
-        fn rs2_config_enable_device_from_file_repeat_option(Handle, *const c_char, c_int, *mut Error);
-        fn rs2_pipeline_start_with_config(Handle, Handle, *mut Error) -> Handle;
-        fn rs2_pipeline_stop(Handle, *mut Error);
-        fn rs2_delete_pipeline_profile(Handle);
-        fn rs2_pipeline_try_wait_for_frames(Handle, *mut Handle, c_uint, *mut Error) -> c_int;
-        fn rs2_embedded_frames_count(Handle, *mut Error) -> c_int;
-        fn rs2_extract_frame(Handle, c_int, *mut Error) -> Handle;
-        fn rs2_release_frame(Handle);
-        fn rs2_get_frame_stream_profile(Handle, *mut Error) -> Handle;
-        fn rs2_get_stream_profile_data(Handle, *mut c_int, *mut c_int, *mut c_int, *mut c_int, *mut c_int, *mut Error);
-        fn rs2_get_video_stream_intrinsics(Handle, *mut RsIntrinsics, *mut Error);
-        fn rs2_depth_frame_get_units(Handle, *mut Error) -> f32;
-        fn rs2_get_frame_data(Handle, *mut Error) -> *const c_void;
-        fn rs2_get_frame_data_size(Handle, *mut Error) -> c_int;
-        fn rs2_get_frame_width(Handle, *mut Error) -> c_int;
-        fn rs2_get_frame_height(Handle, *mut Error) -> c_int;
-        fn rs2_get_frame_stride_in_bytes(Handle, *mut Error) -> c_int;
-        fn rs2_get_frame_timestamp(Handle, *mut Error) -> f64;
-        fn rs2_get_error_message(Error) -> *const c_char;
-        fn rs2_free_error(Error);
+        fn rs2_get_api_version(*mut RsError) -> c_int;
+        fn rs2_create_context(c_int, *mut RsError) -> RsHandle;
+        fn rs2_delete_context(RsHandle);
+        fn rs2_query_devices(RsHandle, *mut RsError) -> RsHandle;
+        fn rs2_get_device_count(RsHandle, *mut RsError) -> c_int;
+        fn rs2_delete_device_list(RsHandle);
+        fn rs2_create_pipeline(RsHandle, *mut RsError) -> RsHandle;
+        fn rs2_delete_pipeline(RsHandle);
+        fn rs2_create_config(*mut RsError) -> RsHandle;
+        fn rs2_delete_config(RsHandle);
+        fn rs2_config_enable_stream(RsHandle, c_int, c_int, c_int, c_int, c_int, c_int, *mut RsError);
+        fn rs2_config_enable_device(RsHandle, *const c_char, *mut RsError);
+        fn rs2_config_enable_device_from_file_repeat_option(RsHandle, *const c_char, c_int, *mut RsError);
+        fn rs2_pipeline_start_with_config(RsHandle, RsHandle, *mut RsError) -> RsHandle;
+        fn rs2_pipeline_stop(RsHandle, *mut RsError);
+        fn rs2_delete_pipeline_profile(RsHandle);
+        fn rs2_pipeline_try_wait_for_frames(RsHandle, *mut RsHandle, c_uint, *mut RsError) -> c_int;
+        fn rs2_embedded_frames_count(RsHandle, *mut RsError) -> c_int;
+        fn rs2_extract_frame(RsHandle, c_int, *mut RsError) -> RsHandle;
+        fn rs2_release_frame(RsHandle);
+        fn rs2_get_frame_stream_profile(RsHandle, *mut RsError) -> RsHandle;
+        fn rs2_get_stream_profile_data(RsHandle, *mut c_int, *mut c_int, *mut c_int, *mut c_int, *mut c_int, *mut RsError);
+        fn rs2_get_video_stream_intrinsics(RsHandle, *mut RsIntrinsics, *mut RsError);
+        fn rs2_depth_frame_get_units(RsHandle, *mut RsError) -> f32;
+        fn rs2_get_frame_data(RsHandle, *mut RsError) -> *const c_void;
+        fn rs2_get_frame_data_size(RsHandle, *mut RsError) -> c_int;
+        fn rs2_get_frame_width(RsHandle, *mut RsError) -> c_int;
+        fn rs2_get_frame_height(RsHandle, *mut RsError) -> c_int;
+        fn rs2_get_frame_stride_in_bytes(RsHandle, *mut RsError) -> c_int;
+        fn rs2_get_frame_timestamp(RsHandle, *mut RsError) -> f64;
+        fn rs2_get_error_message(RsError) -> *const c_char;
+        fn rs2_free_error(RsError);
     }
 }
 
@@ -120,14 +120,14 @@ pub(super) struct RealSense {
 /// The pipeline and what it is made of, undone when dropped.
 struct Pipeline {
     api: RealSenseApi,
-    context: Handle,
-    pipeline: Handle,
-    config: Handle,
-    profile: Handle,
+    context: RsHandle,
+    pipeline: RsHandle,
+    config: RsHandle,
+    profile: RsHandle,
 }
 
 /// Frames of one moment, or one frame, given back when dropped.
-struct Frames(Handle, RealSenseApi);
+struct Frames(RsHandle, RealSenseApi);
 
 // SAFETY: the library may be called from any thread; `&mut self` lets one at a time.
 unsafe impl Send for RealSense {}
@@ -141,7 +141,7 @@ struct StreamKind {
 
 impl RealSenseApi {
     /// Calls a function with a place for its error, which becomes a sentence.
-    fn call<T>(&self, what: &str, call: impl FnOnce(*mut Error) -> T) -> Result<T, CameraError> {
+    fn call<T>(&self, what: &str, call: impl FnOnce(*mut RsError) -> T) -> Result<T, CameraError> {
         let mut error = ptr::null_mut();
         let value = call(&mut error);
         if error.is_null() {
@@ -324,7 +324,7 @@ impl Frames {
         self.find(STREAM_DEPTH, FORMAT_Z16)
     }
 
-    fn profile(&self) -> Option<Handle> {
+    fn profile(&self) -> Option<RsHandle> {
         let api = self.1;
         // SAFETY: the frame lives, and so does its profile as long as the pipeline.
         api.call("", |e| unsafe { (api.rs2_get_frame_stream_profile)(self.0, e) }).ok().filter(|p| !p.is_null())
@@ -367,7 +367,7 @@ impl Frames {
     fn rows(&self, bytes: usize) -> Option<([usize; 2], impl Iterator<Item = &[u8]>)> {
         let api = self.1;
         // SAFETY: a video frame that lives, here and below.
-        let number = |f: unsafe extern "C" fn(Handle, *mut Error) -> c_int| {
+        let number = |f: unsafe extern "C" fn(RsHandle, *mut RsError) -> c_int| {
             usize::try_from(api.call("", |e| unsafe { f(self.0, e) }).ok()?).ok()
         };
         let (width, height) = (number(api.rs2_get_frame_width)?, number(api.rs2_get_frame_height)?);
