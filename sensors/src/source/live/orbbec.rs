@@ -231,7 +231,7 @@ impl Parts {
         self.config = api.call(what, |e| unsafe { (api.ob_create_config)(e) })?;
         // SAFETY: the configuration lives, here and below.
         api.call("its depth cannot be chosen", |e| unsafe {
-            (api.ob_config_enable_stream)(self.config, STREAM_DEPTH, e)
+            (api.ob_config_enable_stream)(self.config, STREAM_DEPTH, e);
         })?;
         if colour && !is_recording {
             // SAFETY: as above.
