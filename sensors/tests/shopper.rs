@@ -191,7 +191,7 @@ fn an_empty_room_shows_nobody_and_its_floor() {
 fn somebody_outside_the_zone_is_not_the_shopper() {
     let two = Two::new();
     let view = two.seen(&[(Vec3::new(1.0, 0.0, 0.0), 0.0)]);
-    let mut segmenter = Segmenter::new(Zone { ahead: [0.6, 4.0], half_width: 0.5 });
+    let mut segmenter = Segmenter::new(Zone { half_width: 0.5, ..Zone::default() });
     let found = segmenter.push(&noisy(&view, 0));
     assert!(
         found.shopper.is_none() && found.others == 1 && found.mask.iter().all(|m| *m == 0),

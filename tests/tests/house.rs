@@ -8,7 +8,7 @@ use toile_tests::scan;
 use toile_tests::tree::{self, FLOORS};
 
 /// Files that may hold unsafe code, each with its reason.
-const UNSAFE_FILES: [(&str, &str); 17] = [
+const UNSAFE_FILES: [(&str, &str); 23] = [
     ("engine/app/src/heap.rs", "the program's allocator counts, for which it has to implement an unsafe trait"),
     ("engine/core/src/workers/per_share.rs", "what belongs to a share is lent to whoever works on it"),
     ("engine/core/src/workers/mod.rs", "a job that borrows the caller's stack is handed to another thread"),
@@ -24,7 +24,13 @@ const UNSAFE_FILES: [(&str, &str); 17] = [
     ("tests/models/src/sync.rs", "the same value as the models have it"),
     ("tests/models/src/triple.rs", "the protocol of the triple buffer in a model"),
     ("tests/models/tests/workers.rs", "plain memory that a model watches"),
-    ("sensors/src/source/openni2.rs", "OpenNI's C library is called"),
+    ("sensors/src/source/openni_library.rs", "OpenNI's C library is called"),
+    ("sensors/src/source/live/library.rs", "libraries of cameras are loaded at run time"),
+    ("sensors/src/source/live/kinect.rs", "libfreenect's C interface is called"),
+    ("sensors/src/source/live/k4a.rs", "libk4a's C interface is called"),
+    ("sensors/src/source/live/realsense.rs", "librealsense's C interface is called"),
+    ("sensors/src/source/live/orbbec.rs", "OrbbecSDK's C interface is called"),
+    ("sensors/tests/cameras/realsense_recorder.rs", "librealsense's recorder writes what the test plays"),
     ("tests/tests/allocations.rs", "a counting allocator has to implement an unsafe trait"),
 ];
 

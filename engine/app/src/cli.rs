@@ -16,6 +16,7 @@ use crate::commands::convert::ConvertArgs;
 use crate::commands::doctor::DoctorArgs;
 use crate::commands::kiosk::KioskArgs;
 use crate::commands::latency::LatencyArgs;
+use crate::commands::live::LiveArgs;
 use crate::commands::measure::MeasureArgs;
 use crate::commands::pareto::ParetoArgs;
 use crate::commands::plan::PlanArgs;
@@ -53,6 +54,7 @@ pub(crate) enum Command {
     TryOn(TryOnArgs),
     Measure(MeasureArgs),
     Record(RecordArgs),
+    Live(LiveArgs),
     Convert(ConvertArgs),
     Bake(BakeArgs),
     Tailor(TailorArgs),

@@ -18,6 +18,8 @@ pub mod renderer;
 pub mod terminal;
 
 pub mod arguments;
+pub mod camera;
+
 pub mod pictures;
 pub mod summary;
 pub mod video;
@@ -62,6 +64,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::TryOn(args) => commands::try_on::run(args),
         Command::Measure(args) => commands::measure::run(args),
         Command::Record(args) => commands::record::run(args),
+        Command::Live(args) => commands::live::run(args),
         Command::Convert(args) => commands::convert::run(args),
         Command::Bake(args) => commands::bake::run(args),
         Command::Tailor(args) => commands::tailor::run(args),

@@ -20,6 +20,8 @@ guide-left = Gehen Sie etwas nach links.
 guide-right = Gehen Sie etwas nach rechts.
 guide-alone = Bitte nur eine Person auf einmal.
 guide-unseen = Der Spiegel sieht Sie noch nicht. Treten Sie auf die Markierung.
+camera-lost = Die Kamera antwortet gerade nicht. Bitte warten Sie einen Augenblick.
+camera-covered = Etwas verdeckt die Kamera. Bitte machen Sie sie frei.
 guide-soon = Gleich geht es los.
 
 # Measuring

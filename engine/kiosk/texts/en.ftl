@@ -21,6 +21,8 @@ guide-left = Move a little to your left.
 guide-right = Move a little to your right.
 guide-alone = One person at a time, please.
 guide-unseen = The mirror does not see you yet. Step onto the mark.
+camera-lost = The camera does not answer just now. Please wait a moment.
+camera-covered = Something covers the camera. Please clear the view of it.
 guide-soon = Measuring begins in a moment.
 
 # Measuring

@@ -20,6 +20,8 @@ guide-left = Muévase un poco hacia su izquierda.
 guide-right = Muévase un poco hacia su derecha.
 guide-alone = De uno en uno, por favor.
 guide-unseen = El espejo aún no le ve. Colóquese sobre la marca.
+camera-lost = La cámara no responde en este momento. Espere un instante, por favor.
+camera-covered = Algo tapa la cámara. Despéjela, por favor.
 guide-soon = La medición empieza enseguida.
 
 # Measuring

@@ -20,6 +20,8 @@ guide-left = Décalez-vous un peu vers votre gauche.
 guide-right = Décalez-vous un peu vers votre droite.
 guide-alone = Une personne à la fois, s’il vous plaît.
 guide-unseen = Le miroir ne vous voit pas encore. Placez-vous sur le repère.
+camera-lost = La caméra ne répond pas en ce moment. Veuillez patienter un instant.
+camera-covered = Quelque chose cache la caméra. Veuillez la dégager.
 guide-soon = La mesure commence dans un instant.
 
 # Measuring

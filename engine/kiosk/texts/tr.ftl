@@ -20,6 +20,8 @@ guide-left = Biraz solunuza geçin.
 guide-right = Biraz sağınıza geçin.
 guide-alone = Lütfen teker teker.
 guide-unseen = Ayna sizi henüz görmüyor. İşaretin üzerine geçin.
+camera-lost = Kamera şu anda yanıt vermiyor. Lütfen biraz bekleyin.
+camera-covered = Kameranın önünü bir şey kapatıyor. Lütfen önünü açın.
 guide-soon = Ölçüm birazdan başlıyor.
 
 # Measuring

@@ -79,6 +79,11 @@ impl Image {
         Self { size, bytes: colour.repeat(size.width as usize * size.height as usize) }
     }
 
+    /// Its pixels, row by row from the top left: red, green and blue.
+    pub fn pixels_mut(&mut self) -> impl Iterator<Item = &mut [u8; 3]> {
+        self.bytes.as_chunks_mut().0.iter_mut()
+    }
+
     /// Width and height.
     pub fn size(&self) -> Size {
         self.size

@@ -18,4 +18,4 @@ mod run;
 pub use error::LatencyError;
 pub use html::page;
 pub use report::{Goal, Latency, LatencyStage, QualityFigures};
-pub use run::{LatencyInputs, LatencyOptions, run};
+pub use run::{LatencyInputs, LatencyOptions, LatencySource, run};

@@ -32,11 +32,13 @@ pub struct Zone {
     pub ahead: [f32; 2],
     /// Half of its breadth (m).
     pub half_width: f32,
+    /// Where the mark is on the floor (x and z in our world, m), if it is known: the shopper is whoever stands nearest to it.
+    pub mark: Option<Vec2>,
 }
 
 impl Default for Zone {
     fn default() -> Self {
-        Self { ahead: [0.6, 4.0], half_width: 0.8 }
+        Self { ahead: [0.6, 4.0], half_width: 0.8, mark: None }
     }
 }
 
@@ -53,6 +55,10 @@ const LEAVING: f32 = 0.25;
 
 /// Farthest that a shopper moves between two frames (m): a run of 6 m/s at 10 Hz.
 const LONGEST_STEP: f32 = 0.6;
+
+/// What a difference of a metre in height weighs against a metre between two places (1): of two people who are as near to where the
+/// shopper was, the one of their size is the shopper. Raised arms make anybody taller, so that it weighs little.
+const SIZE_WEIGHT: f32 = 0.5;
 
 /// A shopper not seen for so long has left (ns).
 const FORGOTTEN_NS: u64 = crate::clock::SECOND_NS / 2;
@@ -76,6 +82,8 @@ pub struct Segmentation<'a> {
 #[derive(Debug, Clone, Copy)]
 struct ShopperTrack {
     place: Vec2,
+    /// Their height as it was seen (m).
+    top: f32,
     seen_ns: u64,
 }
 
@@ -122,7 +130,8 @@ impl Segmenter {
         let height = frame.camera_to_world.translation.y;
         self.grid.stand(self.finder.floor().map_or(Floor { up, height }, |f| *f), self.finder.floor().is_some());
         self.people.find(&mut self.grid, self.zone.ahead[1]);
-        let chosen = self.choose(frame.time_ns);
+        let mark = self.zone.mark.map(|mark| on_the_floor(frame, mark));
+        let chosen = self.choose(frame.time_ns, mark);
         self.people.gather(&self.grid, chosen);
         self.mask.clear();
         self.mask.resize(frame.depth_mm.len(), 0);
@@ -135,9 +144,9 @@ impl Segmenter {
         Segmentation { mask: &self.mask, shopper, others, nearest_other, floor: self.finder.floor().copied() }
     }
 
-    /// Which of the people is the shopper: whoever it was, and else, once they have left, the nearest in the zone.
-    /// Whoever hides the shopper for a moment does not take their place.
-    fn choose(&mut self, time_ns: u64) -> Option<usize> {
+    /// Which of the people is the shopper: whoever it was, by place and by size, and else, once they have left, the nearest in the
+    /// zone to the mark, or to the camera where no mark is known. Whoever hides the shopper for a moment does not take their place.
+    fn choose(&mut self, time_ns: u64, mark: Option<Vec2>) -> Option<usize> {
         let people = self.people.all();
         let nearest = |cost: &dyn Fn(&Person) -> Option<f32>| {
             let costs = people.iter().enumerate().filter_map(|(i, p)| Some((i, cost(p)?)));
@@ -146,13 +155,25 @@ impl Segmenter {
         let chosen = match self.track.filter(|t| time_ns.saturating_sub(t.seen_ns) <= FORGOTTEN_NS) {
             Some(track) => nearest(&|p| {
                 let step = p.place.distance(track.place);
-                (step < LONGEST_STEP && self.zone.holds(p.place, LEAVING)).then_some(step)
+                let near = step < LONGEST_STEP && self.zone.holds(p.place, LEAVING);
+                near.then_some(step + SIZE_WEIGHT * (p.top - track.top).abs())
             }),
-            None => nearest(&|p| self.zone.holds(p.place, 0.0).then_some(p.place.length())),
+            None => nearest(&|p| self.zone.holds(p.place, 0.0).then_some(p.place.distance(mark.unwrap_or(Vec2::ZERO)))),
         };
         if let Some(i) = chosen {
-            self.track = Some(ShopperTrack { place: people[i].place, seen_ns: time_ns });
+            self.track = Some(ShopperTrack { place: people[i].place, top: people[i].top, seen_ns: time_ns });
         }
         chosen
     }
+}
+
+/// A place of our world's floor (x, z, m) as people have theirs: to the camera's right, ahead of it.
+fn on_the_floor(frame: &DepthFrame, place: Vec2) -> Vec2 {
+    let pose = frame.camera_to_world;
+    let flat = |v: glam::Vec3A| Vec2::new(v.x, v.z);
+    let ahead = flat(pose.matrix3.z_axis).normalize_or(Vec2::NEG_Y);
+    // Right of who looks along -z is +x.
+    let right = Vec2::new(-ahead.y, ahead.x);
+    let from = place - flat(pose.translation);
+    Vec2::new(from.dot(right), from.dot(ahead))
 }

@@ -1,14 +1,11 @@
 //! Recordings of the Azure Kinect (Matroska): the depth track alone, big-endian millimetres, and the lens from the
 //! attached calibration. Colour, infrared and motion are not read.
 
-use serde::Deserialize;
-
+use super::azure_calibration;
 use super::camera::Camera;
 use super::ebml::{Element, Elements, number};
-use super::lens::BrownConrady;
 use super::sequence::Sequence;
 use crate::error::{Fault, Place};
-use crate::frame::Intrinsics;
 use crate::session::Session;
 
 /// Names of the boxes, as Matroska's specification (RFC 9559) numbers them.
@@ -37,14 +34,6 @@ mod id {
 
 /// Milliseconds, where a recording does not say (ns).
 const DEFAULT_SCALE_NS: u64 = 1_000_000;
-
-/// The modes of the depth camera: image, side of the sensor as binned, corner of the image on it (px).
-const MODES: [([u32; 2], f32, [f32; 2]); 4] = [
-    ([640, 576], 1024.0, [192.0, 180.0]),
-    ([320, 288], 512.0, [96.0, 90.0]),
-    ([512, 512], 512.0, [0.0, 0.0]),
-    ([1024, 1024], 1024.0, [0.0, 0.0]),
-];
 
 const CURE: &str = "record it again with k4arecorder";
 
@@ -125,13 +114,7 @@ impl<'a> Head<'a> {
             Fault::new(Place::Whole, "no calibration.json is attached", cure)
         })?;
         let described = |problem| Fault::new(Place::Byte(file.at as u64), problem, CURE);
-        let json = file.data.strip_suffix(b"\0").unwrap_or(file.data);
-        let calibration: Calibration =
-            serde_json::from_slice(json).map_err(|e| described(format!("the attached calibration is broken: {e}")))?;
-        let cameras = calibration.information.cameras;
-        let depth = cameras.iter().find(|c| c.location.ends_with("LocationD0"));
-        let depth = depth.ok_or_else(|| described("the attached calibration describes no depth camera".to_owned()))?;
-        depth.in_mode(track.size).map_err(described)
+        azure_calibration::read(file.data, track.size).map_err(described)
     }
 }
 
@@ -187,68 +170,4 @@ fn parts<'a>(block: &Element<'a>) -> Option<(u64, i16, &'a [u8])> {
     let (track, length) = number(block.data, 8, false)?;
     let [high, low, flags] = *block.data.get(length..)?.first_chunk()?;
     (flags & LACING == 0).then(|| (track, i16::from_be_bytes([high, low]), &block.data[length + 3..]))
-}
-
-#[derive(Deserialize)]
-struct Calibration {
-    #[serde(rename = "CalibrationInformation")]
-    information: Information,
-}
-
-#[derive(Deserialize)]
-struct Information {
-    #[serde(rename = "Cameras")]
-    cameras: Vec<AzureCamera>,
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "PascalCase")]
-struct AzureCamera {
-    location: String,
-    #[serde(default)]
-    metric_radius: f32,
-    intrinsics: AzureIntrinsics,
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "PascalCase")]
-struct AzureIntrinsics {
-    model_type: String,
-    /// cx, cy, fx, fy over the sensor's side; k1 .. k6; the centre of distortion; p2, p1.
-    model_parameters: Vec<f32>,
-}
-
-impl AzureCamera {
-    /// The camera of one mode, which crops and bins the sensor. Pixels are numbered from their centres.
-    fn in_mode(&self, size: [u32; 2]) -> Result<Camera, String> {
-        let model = &self.intrinsics;
-        if !model.model_type.ends_with("BrownConrady") {
-            return Err(format!(
-                "the depth camera's lens is described as {}, not by Brown and Conrady",
-                model.model_type
-            ));
-        }
-        let Some(&[cx, cy, fx, fy, k1, k2, k3, k4, k5, k6, centre_x, centre_y, p2, p1]) =
-            model.model_parameters.get(..14)
-        else {
-            return Err(format!("the depth camera's lens has {} numbers, not 14", model.model_parameters.len()));
-        };
-        let mode = MODES.iter().find(|(image, ..)| *image == size);
-        let (_, side, corner) =
-            mode.ok_or_else(|| format!("{} x {} pixels are no mode of the depth camera", size[0], size[1]))?;
-        let intrinsics = Intrinsics {
-            width: size[0],
-            height: size[1],
-            fx: fx * side,
-            fy: fy * side,
-            cx: cx * side - corner[0] - 0.5,
-            cy: cy * side - corner[1] - 0.5,
-        };
-        if let Some(fault) = intrinsics.fault() {
-            return Err(fault);
-        }
-        let widest = if self.metric_radius > 0.0 { self.metric_radius } else { f32::INFINITY };
-        let lens = BrownConrady { k: [k1, k2, k3, k4, k5, k6], p: [p1, p2], centre: [centre_x, centre_y], widest };
-        Ok(Camera { distortion: Some(lens), ..Camera::pinhole(intrinsics) })
-    }
 }

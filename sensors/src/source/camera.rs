@@ -18,12 +18,14 @@ pub(super) struct Camera {
     pub pose: Option<Affine3A>,
     /// Millimetres in one unit of the samples.
     pub mm_per_unit: f32,
+    /// Quarters by which its images are turned clockwise to be upright.
+    pub quarter_turns: u8,
 }
 
 impl Camera {
     /// A pinhole of unknown pose that measures in millimetres.
     pub const fn pinhole(intrinsics: Intrinsics) -> Self {
-        Self { intrinsics, distortion: None, pose: None, mm_per_unit: 1.0 }
+        Self { intrinsics, distortion: None, pose: None, mm_per_unit: 1.0, quarter_turns: 0 }
     }
 }
 
@@ -39,6 +41,8 @@ struct Described {
     distortion: Option<Bent>,
     #[serde(default)]
     mm_per_unit: Option<f32>,
+    #[serde(default)]
+    quarter_turns: u8,
     #[serde(default)]
     cam_to_world: Option<[[f64; 4]; 4]>,
 }
@@ -87,5 +91,5 @@ pub(super) fn read(bytes: &[u8]) -> Result<Camera, Fault> {
         centre: [0.0; 2],
         widest: f32::INFINITY,
     });
-    Ok(Camera { intrinsics, distortion, pose, mm_per_unit })
+    Ok(Camera { intrinsics, distortion, pose, mm_per_unit, quarter_turns: d.quarter_turns % 4 })
 }

@@ -95,7 +95,7 @@ fn samples<'a>(bytes: &'a [u8], camera: &Intrinsics) -> Result<&'a [u8], Fault> 
 
 /// Depth of a raw reading (mm), linear in its inverse, with the constants that the Kinect's users calibrated (OpenKinect);
 /// 0 where there is no reading.
-fn millimetres(raw: u16) -> u16 {
+pub(super) fn millimetres(raw: u16) -> u16 {
     if raw >= NO_READING {
         return 0;
     }

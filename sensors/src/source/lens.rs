@@ -126,8 +126,9 @@ impl Straighten {
 
     /// The straight image of a bent one (mm). Between four pixels of one surface depth is interpolated; at an edge the
     /// nearest pixel is taken, so that no depth is made up between two surfaces.
-    pub fn apply(&self, bent: &[u16]) -> Box<[u16]> {
-        self.from.iter().map(|&[u, v]| if u.is_nan() { 0 } else { self.sample(bent, u, v) }).collect()
+    pub fn apply_into(&self, bent: &[u16], straight: &mut Vec<u16>) {
+        straight.clear();
+        straight.extend(self.from.iter().map(|&[u, v]| if u.is_nan() { 0 } else { self.sample(bent, u, v) }));
     }
 
     fn sample(&self, bent: &[u16], u: f32, v: f32) -> u16 {
@@ -165,6 +166,12 @@ fn table(bent: &Intrinsics, straight: &Intrinsics, lens: &BrownConrady, sound: f
 mod tests {
     use super::*;
 
+    fn applied(table: &Straighten, bent: &[u16]) -> Vec<u16> {
+        let mut straight = Vec::new();
+        table.apply_into(bent, &mut straight);
+        straight
+    }
+
     const CAMERA: Intrinsics = Intrinsics { width: 160, height: 120, fx: 120.0, fy: 120.0, cx: 80.0, cy: 58.0 };
 
     /// Bends as strongly as the lens of an Azure Kinect.
@@ -191,7 +198,7 @@ mod tests {
         };
         let image: Vec<u16> =
             (0..CAMERA.pixels()).map(|i| plane(unbent((i % 160) as f32, (i / 160) as f32)[0]).round() as u16).collect();
-        let out = straight.apply(&image);
+        let out = applied(&straight, &image);
         let k = straight.straight;
         assert!(k.width > 160 && k.height > 120, "{k:?}");
         let (mut worst, mut seen) = (0.0f32, 0);
@@ -211,7 +218,7 @@ mod tests {
     fn no_depth_is_made_up_at_an_edge() {
         let straight = Straighten::new(CAMERA, &LENS).unwrap();
         let image: Vec<u16> = (0..CAMERA.pixels()).map(|i| if i % 160 < 61 { 1000 } else { 2000 }).collect();
-        assert!(straight.apply(&image).iter().all(|d| [0, 1000, 2000].contains(d)));
+        assert!(applied(&straight, &image).iter().all(|d| [0, 1000, 2000].contains(d)));
     }
 
     #[test]

@@ -14,18 +14,20 @@
 //! | BVH motion capture | text that begins with `HIERARCHY` |
 //! | Azure Kinect recording (MKV) | the EBML magic; its depth alone is read |
 //! | 16-bit grey PNG | the PNG magic; a folder of them is a sequence |
-//! | OpenNI 2 recording (ONI) | its magic; with the feature `openni2` and Debian's libopenni2 |
+//! | OpenNI 2 recording (ONI) | its magic; read through libOpenNI2 where that is installed |
 //! | fakenect recording | a folder with INDEX.txt |
 //! | raw 16-bit depth | none of these, and a camera is given or the size is that of 640x480 images |
 
 mod align;
 mod azure;
+mod azure_calibration;
 mod azure_mkv;
 mod bvh;
 mod bvh_file;
 mod bvh_names;
 mod bvh_pose;
 mod camera;
+mod depth_converter;
 mod ebml;
 mod fakenect;
 mod files;
@@ -35,12 +37,14 @@ mod kinect2;
 mod kinect_csv;
 mod kinectron;
 mod lens;
+pub mod live;
 mod mediapipe;
 mod mediapipe_landmarks;
 mod mediapipe_place;
-#[cfg(feature = "openni2")]
 mod openni2;
+mod openni_library;
 mod openpose;
+mod placement;
 mod png_depth;
 mod raw_depth;
 mod sequence;
@@ -71,7 +75,6 @@ pub fn open(path: &Path, options: &OpenOptions) -> Result<Session, SourceError> 
         return folder::read(path, options);
     }
     let bytes = file::read(path, &RECORDING)?;
-    #[cfg(feature = "openni2")]
     if bytes.starts_with(ONI_MAGIC) {
         return openni2::read(path, options);
     }
@@ -118,8 +121,7 @@ pub fn read_bytes(path: &str, name: &str, bytes: &[u8], camera: Option<(&str, &[
 const ONI_MAGIC: &[u8] = b"NI10";
 
 /// What is said of an OpenNI recording that cannot be read.
-const OPENNI: &str =
-    "an OpenNI recording, which is read from a file and only where Toile was built with `--features openni2`";
+const OPENNI: &str = "an OpenNI recording, which is read from a file and not from memory";
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum RecordingKind {

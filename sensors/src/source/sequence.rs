@@ -1,22 +1,18 @@
 //! Depth images on their way into a session: straightened, counted, put in order of time, and set into our world.
 
-use glam::{Affine3A, Mat3, Vec3};
-use toile_assets::numeric::statistics::quantile_of;
+use glam::{Affine3A, Vec3};
 
 use super::camera::Camera;
-use super::lens::Straighten;
+use super::depth_converter::DepthConverter;
+use super::placement::{self, Placement};
 use crate::clock::SECOND_NS;
 use crate::error::{Fault, Place};
 use crate::frame::{DepthFrame, Intrinsics};
 use crate::limits::MAX_DURATION_NS;
-use crate::segment::floor::{Floor, FloorFinder};
 use crate::session::{DepthRoom, Session};
 
 /// Rate assumed of images without times (Hz): that of the Kinects.
 const ASSUMED_HZ: u64 = 30;
-
-/// Height of a camera of unknown pose above the floor (m): the middle of the 0.6 .. 1.8 m that Kinect's makers advise.
-const ASSUMED_CAMERA_HEIGHT: f32 = 1.2;
 
 /// Time of an image that has none: the `index`th at [`ASSUMED_HZ`] (ns).
 pub(super) const fn assumed_time(index: usize) -> u64 {
@@ -31,7 +27,7 @@ pub(super) fn untimed(images: usize) -> String {
 /// Depth images of one camera, as they come.
 pub(super) struct Sequence {
     camera: Camera,
-    straighten: Option<Straighten>,
+    converter: DepthConverter,
     room: DepthRoom,
     start_ns: Option<u64>,
     backwards: usize,
@@ -43,41 +39,14 @@ pub(super) struct Sequence {
 impl Sequence {
     /// No images yet; refused where the camera's lens is described by numbers of no lens.
     pub fn new(camera: Camera, mut notes: Vec<String>) -> Result<Self, Fault> {
-        let bent = camera.distortion.as_ref();
-        let straighten = match bent.map(|lens| Straighten::new(camera.intrinsics, lens)) {
-            None => None,
-            Some(Some(table)) => {
-                let (from, to) = (camera.intrinsics, table.straight);
-                notes.push(format!(
-                    "the lens bends straight lines: images of {} x {} pixels were straightened to {} x {}",
-                    from.width, from.height, to.width, to.height
-                ));
-                Some(table)
-            }
-            Some(None) => {
-                let cure = "give the coefficients k1 .. k6, p1, p2 of a calibrated lens, or leave them out";
-                return Err(Fault::new(Place::Whole, "the distortion folds the image over itself", cure));
-            }
-        };
-        Ok(Self {
-            camera,
-            straighten,
-            room: DepthRoom::default(),
-            start_ns: None,
-            backwards: 0,
-            frames: Vec::new(),
-            notes,
-        })
+        let converter = DepthConverter::new(camera, &mut notes)?;
+        let room = DepthRoom::default();
+        Ok(Self { camera, converter, room, start_ns: None, backwards: 0, frames: Vec::new(), notes })
     }
 
     /// The camera that the images come from.
     pub fn sensor(&self) -> Intrinsics {
         self.camera.intrinsics
-    }
-
-    /// The camera of the images that are kept.
-    fn kept(&self) -> Intrinsics {
-        self.straighten.as_ref().map_or(self.camera.intrinsics, |s| s.straight)
     }
 
     /// Takes one image of the sensor's size (in the camera's units, 0 = nothing). One that goes back in time is dropped
@@ -99,20 +68,10 @@ impl Sequence {
             let problem = "its time lies more than two hours after the first image";
             return Err(Fault::new(Place::Frame(index), problem, "cut the recording where the clock was set"));
         }
-        let intrinsics = self.kept();
+        let intrinsics = self.converter.kept();
         self.room.take(&intrinsics)?;
-        let scale = self.camera.mm_per_unit;
-        let raw: Box<[u16]> = if scale == 1.0 {
-            samples.collect()
-        } else {
-            // What is too far for 16 bits of millimetres was not measured: the cast saturates.
-            samples.map(|d| (f32::from(d) * scale).round() as u16).map(|d| if d == u16::MAX { 0 } else { d }).collect()
-        };
-        let depth_mm = match &self.straighten {
-            Some(table) => table.apply(&raw),
-            None => raw,
-        };
-        let camera_to_world = self.camera.pose.unwrap_or_else(level_camera);
+        let depth_mm = self.converter.convert(samples);
+        let camera_to_world = self.camera.pose.unwrap_or_else(placement::level_camera);
         self.frames.push(DepthFrame { time_ns, intrinsics, camera_to_world, depth_mm });
         Ok(())
     }
@@ -128,76 +87,49 @@ impl Sequence {
     }
 }
 
-/// A level camera that the shopper faces: image right is the shopper's left (+x), down is -y, forward is -z.
-fn level_camera() -> Affine3A {
-    let rotation = Mat3::from_cols(Vec3::X, Vec3::NEG_Y, Vec3::NEG_Z);
-    Affine3A::from_mat3_translation(rotation, Vec3::Y * ASSUMED_CAMERA_HEIGHT)
-}
-
 /// Sets the images into our world: the floor at y = 0, centred at what is seen. Where the pose is known, so is the floor, if
 /// something stands near y = 0 of the camera's world; otherwise it lies under the lowest points. Of a camera of unknown pose
 /// all comes from the floor that is seen.
 fn place(depth: &mut [DepthFrame], posed: bool, notes: &mut Vec<String>) -> Result<(), Fault> {
-    if !posed && let Some(floor) = depth.iter().take(TRIED).find_map(floor_of) {
-        notes.push(format!(
-            "the camera's pose is unknown: from the floor that it sees, it stands {:.2} m high and is tilted by {:.0} degrees",
-            floor.height,
-            floor.up.angle_between(Vec3::NEG_Y).to_degrees()
-        ));
-        depth.iter_mut().for_each(|f| f.camera_to_world = floor.pose());
-        return centre(depth, |_| 0.0);
-    }
-    let mut floor_height = |low: f32| {
-        if posed && low.abs() < AT_THE_FLOOR {
-            return 0.0;
-        }
-        if posed {
-            notes.push(format!(
-                "the floor is put under the lowest points of the first image, at y = {low:.3} m of the camera's world"
-            ));
-            return low;
-        }
-        notes.push(format!(
-            "the camera's pose is unknown and no floor is seen: level, {ASSUMED_CAMERA_HEIGHT} m above the floor is assumed, and heights depend on it"
-        ));
-        0.0
-    };
-    centre(depth, &mut floor_height)
+    let pose = if posed { centred(depth, notes) } else { found(depth, notes) };
+    let pose = pose.ok_or_else(|| {
+        let cure = "record again with somebody in view";
+        Fault::new(Place::Frame(0), "every depth image is empty", cure)
+    })?;
+    depth.iter_mut().for_each(|f| f.camera_to_world = pose);
+    Ok(())
+}
+
+/// The pose of a camera that nothing is known of.
+fn found(depth: &[DepthFrame], notes: &mut Vec<String>) -> Option<Affine3A> {
+    let mut placement = Placement::default();
+    let placed = depth.iter().find_map(|frame| placement.push(frame)).or_else(|| placement.assumed())?;
+    notes.push(placed.note);
+    Some(placed.pose)
 }
 
 /// Lowest points this near to y = 0 of a known camera's world stand on its floor (m): what lies lower is the noise of pixels
 /// at the floor, what lies higher a foot that the picture cuts or that is lost in the floor.
 const AT_THE_FLOOR: f32 = 0.15;
 
-/// Images in which the floor is sought.
-const TRIED: usize = 5;
-
-/// The floor that a frame of unknown pose shows.
-fn floor_of(frame: &DepthFrame) -> Option<Floor> {
-    let mut finder = FloorFinder::default();
-    finder.push(frame, Vec3::NEG_Y);
-    finder.floor().copied()
-}
-
-/// Moves the world's origin under the median point of the first image that shows anything, at the floor.
-fn centre(depth: &mut [DepthFrame], floor: impl FnOnce(f32) -> f32) -> Result<(), Fault> {
-    let first = depth.iter().find(|f| f.depth_mm.iter().any(|d| *d != 0));
-    let points: Vec<Vec3> = first.map(|f| f.points().collect()).unwrap_or_default();
-    let axis = |k: usize, fraction| quantile_of(points.iter().map(|p| p[k]), fraction);
-    let (Some(x), Some(low), Some(z)) = (axis(0, 0.5), axis(1, 0.002), axis(2, 0.5)) else {
-        let cure = "record again with somebody in view";
-        return Err(Fault::new(Place::Frame(0), "every depth image is empty", cure));
+/// A known pose, its world's origin under the median point of the first image that shows anything, at the floor.
+fn centred(depth: &[DepthFrame], notes: &mut Vec<String>) -> Option<Affine3A> {
+    let first = depth.iter().find(|f| placement::shows_anything(f))?;
+    let [x, low, z] = placement::middle(first)?;
+    let floor = if low.abs() < AT_THE_FLOOR {
+        0.0
+    } else {
+        notes.push(format!(
+            "the floor is put under the lowest points of the first image, at y = {low:.3} m of the camera's world"
+        ));
+        low
     };
-    let floor = floor(low);
-    let shift = Affine3A::from_translation(-Vec3::new(x, floor, z));
-    for frame in depth {
-        frame.camera_to_world = shift * frame.camera_to_world;
-    }
-    Ok(())
+    Some(Affine3A::from_translation(-Vec3::new(x, floor, z)) * first.camera_to_world)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::placement::level_camera;
     use super::*;
 
     /// A board of a person's size at the origin, as a level camera sees it, with its lowest edge at a height (m).

@@ -4,6 +4,7 @@
 //! Budget: well below a second, but for a graphics driver that takes its time.
 //! Thread: the main thread.
 
+mod cameras;
 mod check;
 mod processor;
 mod rights;
@@ -93,6 +94,7 @@ fn examine(out: &Path) -> DoctorReport {
         folder,
         surroundings::ffmpeg(),
     ];
+    let checks: Vec<Check> = checks.into_iter().chain(cameras::cameras()).collect();
     let adapters = adapters.into_iter();
     let adapters =
         adapters.map(|a| AdapterReport { name: a.name, backend: a.backend, kind: a.kind, driver: a.driver }).collect();

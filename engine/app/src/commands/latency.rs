@@ -6,16 +6,22 @@ use std::time::{Duration, Instant};
 
 use clap::value_parser;
 use serde::Serialize;
+use toile_assets::body::Sex;
+use toile_engine::clock::RealClock;
 use toile_engine::frame_loop::governor::LADDER;
 use toile_engine::frame_loop::recording::{self, Entry};
 use toile_engine::frame_loop::threads;
 use toile_fitting::dress::measured;
 use toile_fitting::dress::recipe::Recipe;
 use toile_fitting::dress::session;
+use toile_fitting::live::depth_camera::{self, CameraFeed, TrackerOptions};
 use toile_fitting::live::report::Quantiles;
-use toile_perf::latency::{self, Goal, Latency, LatencyInputs, LatencyOptions};
+use toile_perf::latency::{self, Goal, Latency, LatencyInputs, LatencyOptions, LatencySource};
+use toile_sensors::segment::Zone;
+use toile_sensors::source::live::CameraName;
 
 use crate::arguments::{CrashArg, Printing, WorkersArg, WornArgs, cores};
+use crate::camera::{self, MountArgs};
 use crate::exit::AppError;
 use crate::machine::Machine;
 use crate::output::{Inputs, OutputFolder};
@@ -41,6 +47,12 @@ pub struct LatencyArgs {
     /// Recording to play, forwards and backwards (default: the embedded session)
     #[arg(long, value_name = "F")]
     pub session: Option<PathBuf>,
+    /// Live camera that the joints come from, as `toile live` names them; the session decides who is dressed
+    #[arg(long, value_name = "C", value_parser = camera::name)]
+    pub camera: Option<CameraName>,
+    /// How it is mounted
+    #[command(flatten)]
+    mount: MountArgs,
     #[command(flatten)]
     worn: WornArgs,
     /// Length of the run, after a first second that is not measured
@@ -120,6 +132,12 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
     let recipe = Recipe::choose(&session.name, &measured, &wish)?;
     let (frame, reader) = recipe.make(first)?;
     // Only now: a helper with a real-time priority shares its core with nobody who waits for it.
+    let clock = RealClock::default();
+    let sex = if recipe.sex == "male" { Sex::Male } else { Sex::Female };
+    let source = match &args.camera {
+        Some(name) => LatencySource::Camera(watch(name, &args.mount, sex, clock)?),
+        None => LatencySource::Played(&session.joints[from..]),
+    };
     let (crew, worker) = threads::worker_pool(args.workers.count()).map_err(AppError::input)?;
     let options = args.options();
     words.print_line(&format!("running for {} s, with {} threads of load", options.seconds, options.load));
@@ -140,8 +158,7 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
         assert!(!crashes, "the crash that --crash-after asked for");
         flight_recorder.capacity()
     };
-    let loop_inputs =
-        LatencyInputs { frame: frame.with_workers(crew), reader, joints: &session.joints[from..], worker, recording };
+    let loop_inputs = LatencyInputs { frame: frame.with_workers(crew), reader, source, clock, worker, recording };
     let found = latency::run(loop_inputs, &options, empty).map_err(AppError::internal);
     crash::forget();
     let found = found?;
@@ -169,6 +186,14 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
         terminal::print(&table(&report, Paint::for_stdout()))?;
     }
     verdict.map_or(Ok(()), |verdict| Err(AppError::Threshold(verdict)))
+}
+
+/// Opens a camera and starts what sees through it.
+fn watch(name: &CameraName, mount: &MountArgs, sex: Sex, clock: RealClock) -> Result<CameraFeed, AppError> {
+    let depth = camera::open(name, mount.options(false), 0)?;
+    let options = TrackerOptions { zone: Zone::default(), sex };
+    let (feed, _) = depth_camera::start(depth, clock, options).map_err(AppError::internal)?;
+    Ok(feed)
 }
 
 /// The figures as people read them.

@@ -13,9 +13,12 @@ use toile_engine::skin::SkinningJob;
 use toile_sensors::clock::SECOND_NS;
 use toile_sensors::frame::{Intrinsics, Joints};
 use toile_sensors::session::Session;
+use toile_sensors::source::live::CameraName;
 use toile_sensors::source::synthetic::{JointNoise, KinectNoise, SyntheticCamera};
 
+use super::record_camera::{self, CameraRequest};
 use crate::arguments::Printing;
+use crate::camera::{self, MountArgs};
 use crate::exit::AppError;
 use crate::output::{Inputs, OutputFile};
 use crate::report::{self, Document, RecordReport};
@@ -28,9 +31,9 @@ const MAX_SECONDS: i64 = 600;
 const DEFAULT_SECONDS: &str = "10";
 const _: () = assert!(scene::LENGTH_S == 10.0);
 
-/// Make a synthetic session, such as the embedded one.
+/// Record a session: from a live camera, or a synthetic one such as the embedded one.
 ///
-/// Renders what a depth camera would see of a moving body, with the camera's noise, and writes it as a session. Without
+/// With --camera it records whoever stands before a depth camera, once they have agreed. Without, it renders what a depth camera would see of a moving body, with the camera's noise, and writes it as a session. Without
 /// --seed and --seconds it makes the session that is embedded in the program.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(
@@ -47,6 +50,15 @@ pub struct RecordArgs {
     /// Length in seconds
     #[arg(long, value_name = "S", value_parser = value_parser!(u32).range(1..=MAX_SECONDS), default_value = DEFAULT_SECONDS)]
     pub seconds: u32,
+    /// Camera to record from, as `toile live` names them (default: the synthetic shopper)
+    #[arg(long, value_name = "C", value_parser = camera::name, conflicts_with = "seed")]
+    pub camera: Option<CameraName>,
+    /// Everybody in view has agreed to be recorded; without it, it is asked
+    #[arg(long, requires = "camera")]
+    pub consent: bool,
+    /// How the camera is mounted
+    #[command(flatten)]
+    pub mount: MountArgs,
     #[command(flatten)]
     printing: Printing,
 }
@@ -63,6 +75,11 @@ const CAMERA: Intrinsics = Intrinsics { width: 480, height: 640, fx: 575.8, fy: 
 /// # Errors
 /// An output file that cannot be written, or a closed stdout.
 pub fn run(args: &RecordArgs) -> Result<(), AppError> {
+    if let Some(camera) = &args.camera {
+        let RecordArgs { out, seconds, consent, mount, printing, .. } = args;
+        let (seconds, consent, printing) = (*seconds, *consent, *printing);
+        return record_camera::run(&CameraRequest { name: camera, mount, out, seconds, consent, printing });
+    }
     let words = args.printing.words();
     let out = OutputFile::prepare(&args.out, Inputs::default())?;
     let frames = u64::from(args.seconds) * SENSOR_HZ;

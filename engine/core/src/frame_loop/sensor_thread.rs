@@ -37,12 +37,16 @@ pub struct SourceFrame {
     pub joints: Joints,
     /// The depth image, shared: nothing is copied on its way.
     pub depth: Option<Arc<dyn DepthImage>>,
+    /// People whom the sensor sees besides, and whether one of them is nearer.
+    pub others: (u8, bool),
+    /// When the frame came to the machine (ns), where that was before it was read; none takes it as it is read.
+    pub arrived_ns: Option<u64>,
 }
 
 impl From<Joints> for SourceFrame {
     /// A frame of a sensor without depth.
     fn from(joints: Joints) -> Self {
-        Self { joints, depth: None }
+        Self { joints, depth: None, others: (0, false), arrived_ns: None }
     }
 }
 
@@ -55,6 +59,8 @@ pub struct ObservedFrame {
     pub filtered: Joints,
     /// The depth image, where there is one.
     pub depth: Option<Arc<dyn DepthImage>>,
+    /// People whom the sensor sees besides, and whether one of them is nearer.
+    pub others: (u8, bool),
 }
 
 /// Where raw frames come from: a camera, a recording, a generator of faults.
@@ -214,16 +220,16 @@ impl<S: FrameSource, C: Clock> ThreadLoop for SensorThread<S, C> {
         if self.clock.now_ns() < due {
             return Some(due);
         }
-        if let Some(SourceFrame { joints, depth }) = self.source.read()
+        if let Some(SourceFrame { joints, depth, others, arrived_ns }) = self.source.read()
             && let Some(raw) = self.stamped(joints, due)
         {
             // It has been here since it was due, however late this thread is: nothing is left out of its latency.
-            let arrived_ns = due.max(raw.time_ns);
+            let arrived_ns = arrived_ns.unwrap_or(due).max(raw.time_ns);
             let joints = self.filter.push(&raw);
             self.count += 1;
             self.writer.publish(SensorFrame { joints, arrived_ns, number: self.count });
             if let Some(observer) = &mut self.observer {
-                observer.push(ObservedFrame { raw, filtered: joints, depth });
+                observer.push(ObservedFrame { raw, filtered: joints, depth, others });
             }
             if arrived_ns >= self.from_ns {
                 self.filtering.add(self.clock.now_ns().saturating_sub(arrived_ns));

@@ -16,7 +16,8 @@ use toile_track::point_cloud::{PersonCloud, PersonFinder};
 /// Longest that is looked at for a turn after the first second, and how far apart its frames are taken (ns): a slow turn takes six
 /// seconds, and in a fifteenth of one it goes on by four degrees.
 pub const TURN_NS: u64 = 12_000_000_000;
-const APART_NS: u64 = 60_000_000;
+/// Least time between two frames of a turn (ns).
+pub const APART_NS: u64 = 60_000_000;
 
 /// The shopper's surface, and the floor below it.
 #[derive(Debug, Clone)]

@@ -65,8 +65,21 @@ impl Dressed {
 /// # Errors
 /// A session that nobody can be measured or dressed in, a garment or a size that there is not.
 pub fn shopper(session: &Session, attire: &Attire) -> Result<Dressed, FittingError> {
+    if session.joints.is_empty() {
+        return seen_in_depth(session, attire);
+    }
     let track = session::standing(session)?;
     let measured = measured::measure(session, attire.wish.facts())?;
+    let recipe = Recipe::choose_of(&session.name, &measured, attire)?;
+    Dressed::make_of(recipe, &track[0], false, &|name| attire.find(name))
+}
+
+/// The same of a session without joints: the body is followed through its depth.
+fn seen_in_depth(session: &Session, attire: &Attire) -> Result<Dressed, FittingError> {
+    let measured = measured::measure(session, attire.wish.facts())?;
+    let mut followed = session.clone();
+    measured::add_joints(&mut followed, &measured)?;
+    let track = session::standing(&followed)?;
     let recipe = Recipe::choose_of(&session.name, &measured, attire)?;
     Dressed::make_of(recipe, &track[0], false, &|name| attire.find(name))
 }

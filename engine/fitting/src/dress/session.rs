@@ -5,7 +5,7 @@ use std::path::Path;
 use toile_assets::skeleton::Joint;
 use toile_sensors::clock::SECOND_NS;
 use toile_sensors::filter::{FilterSettings, JointFilter};
-use toile_sensors::frame::Joints;
+use toile_sensors::frame::{DepthFrame, Joints};
 use toile_sensors::source::{self, OpenOptions, Session};
 
 use crate::FittingError;
@@ -35,6 +35,11 @@ pub fn open(path: Option<&Path>, camera: Option<&Path>) -> Result<Session, Fitti
 /// A session of joints alone, in metres, as a live sender gives them.
 pub fn of_joints(joints: Vec<Joints>) -> Session {
     Session { name: "live".into(), joints, raw_scale_known: true, ..Session::default() }
+}
+
+/// A session of depth alone, as a live camera gives it.
+pub fn of_depth(depth: Vec<DepthFrame>) -> Session {
+    Session { name: "live".into(), depth, raw_scale_known: true, ..Session::default() }
 }
 
 /// The joints of a session after the filter, at the same times: as the sensor thread filters them in the loop.

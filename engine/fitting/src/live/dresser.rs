@@ -2,10 +2,12 @@
 
 use std::sync::Arc;
 
+use toile_assets::body::Sex;
 use toile_sensors::frame::Joints;
 use toile_sensors::source::Session;
 
 use super::background::{BackgroundJob, Finished};
+use super::depth_camera::CameraHandle;
 use crate::FittingError;
 use crate::dress::attire::Attire;
 use crate::dress::dressed::{self, Dressed};
@@ -27,14 +29,39 @@ pub enum ShopperSource {
     Recording(Arc<Session>),
     /// The joints of the last second, which are all that a live sender gives.
     Joints(Vec<Joints>),
+    /// A live depth camera: what it has gathered since somebody began to be measured.
+    Camera(CameraHandle),
 }
 
 impl ShopperSource {
+    /// Somebody begins to be measured: what a camera gathered before is of no use.
+    pub fn begin(&self) {
+        if let Self::Camera(camera) = self {
+            camera.gather_anew();
+        }
+    }
+
+    /// The shopper has left: what a camera gathered is thrown away and wiped.
+    pub fn forget(&self) {
+        if let Self::Camera(camera) = self {
+            camera.forget(Sex::Female);
+        }
+    }
+
+    /// The live camera, if it is one.
+    pub fn camera(&self) -> Option<&CameraHandle> {
+        match self {
+            Self::Camera(camera) => Some(camera),
+            Self::Recording(_) | Self::Joints(_) => None,
+        }
+    }
+
     /// The same as a session.
     pub fn session(self) -> Arc<Session> {
         match self {
             Self::Recording(session) => session,
             Self::Joints(joints) => Arc::new(session::of_joints(joints)),
+            Self::Camera(camera) => Arc::new(session::of_depth(camera.gathered())),
         }
     }
 }

@@ -10,6 +10,7 @@
 pub mod assembly;
 pub mod background;
 pub mod crash;
+pub mod depth_camera;
 pub mod dresser;
 pub mod lateness;
 pub mod live_loop;

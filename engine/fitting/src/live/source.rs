@@ -12,6 +12,8 @@ use toile_sensors::frame::{DepthFrame, Joints};
 use toile_sensors::source::Session;
 use toile_sensors::source::vmc::VmcReceiver;
 
+use super::depth_camera::CameraFeed;
+
 /// Time between two frames in which nobody is seen (ns): a camera of 30 Hz.
 const EMPTY_NS: u64 = SECOND_NS / 30;
 
@@ -38,7 +40,7 @@ impl Visits {
         let frame = |joints: &Joints| {
             let index = depth_at(session, joints.time_ns);
             let image = |index| Arc::new(RecordedDepth { session: session.clone(), index }) as Arc<dyn DepthImage>;
-            SourceFrame { joints: *joints, depth: index.map(image) }
+            SourceFrame { depth: index.map(image), ..SourceFrame::from(*joints) }
         };
         Self::new(session.joints.iter().map(frame).collect(), origin_ns, pause_ns)
     }
@@ -66,9 +68,7 @@ impl Visits {
 
     fn frame(&self, at: u64) -> SourceFrame {
         match self.place(at) {
-            (Some(frame), time_ns) => {
-                SourceFrame { joints: Joints { time_ns, ..frame.joints }, depth: frame.depth.clone() }
-            }
+            (Some(frame), time_ns) => SourceFrame { joints: Joints { time_ns, ..frame.joints }, ..frame.clone() },
             (None, time_ns) => Joints::absent(time_ns).into(),
         }
     }
@@ -118,6 +118,8 @@ pub enum Feed {
     Played(Visits),
     /// A sender of joints over the network (VMC).
     Live(Box<LiveSender>),
+    /// A live depth camera.
+    Camera(CameraFeed),
 }
 
 impl Feed {
@@ -136,6 +138,7 @@ impl FrameSource for Feed {
         Some(match self {
             Self::Played(visits) => visits.place(visits.next).1,
             Self::Live(live) => live.next_ns,
+            Self::Camera(camera) => return camera.next_ns(),
         })
     }
 
@@ -153,6 +156,7 @@ impl FrameSource for Feed {
                 // nothing, which the loop tells as a lost sensor.
                 live.receiver.poll(now).ok().flatten().map(|joints| Joints { time_ns: now, ..joints }.into())
             }
+            Self::Camera(camera) => camera.read(),
         }
     }
 }

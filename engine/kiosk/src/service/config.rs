@@ -15,6 +15,7 @@ use super::session::SessionTimes;
 use crate::error::KioskError;
 use toile_fitting::dress::measured::ShopperFacts;
 use toile_fitting::dress::wish::Wish;
+use toile_sensors::source::live::{CameraError, CameraName};
 use toile_track::tape_readings::TapeReadings;
 use toile_view::figure::{Appearance, Hair, SkinTone};
 
@@ -117,6 +118,33 @@ pub struct SensorConfig {
     pub pause_s: f64,
     /// Where VMC messages arrive.
     pub vmc: SocketAddr,
+    /// A live depth camera, by its kind; it takes the place of `source`.
+    pub camera: Option<String>,
+    /// Which camera of that kind: its serial number, or a recording of it.
+    pub device: Option<String>,
+    /// By how much its images are turned clockwise to be upright (degrees): 0, 90, 180 or 270.
+    pub turned_degrees: u32,
+}
+
+impl SensorConfig {
+    /// The camera that is configured, if one is.
+    ///
+    /// # Errors
+    /// A kind that there is not.
+    pub fn camera(&self) -> Result<Option<CameraName>, CameraError> {
+        let Some(kind) = &self.camera else { return Ok(None) };
+        let name = self.device.as_ref().map_or_else(|| kind.clone(), |device| format!("{kind}:{device}"));
+        name.parse().map(Some)
+    }
+
+    /// The first value that cannot be, with the cure.
+    fn fault(&self) -> Option<String> {
+        let degrees = self.turned_degrees;
+        if !(degrees.is_multiple_of(90) && degrees < 360) {
+            return Some(format!("sensor.turned_degrees = {degrees} is not 0, 90, 180 or 270; correct it"));
+        }
+        self.camera().err().map(|why| format!("sensor.camera: {why}"))
+    }
 }
 
 /// A kind of sensor.
@@ -219,7 +247,15 @@ impl Default for WearConfig {
 impl Default for SensorConfig {
     fn default() -> Self {
         let vmc = SocketAddr::from(([127, 0, 0, 1], toile_sensors::source::vmc::PORT));
-        Self { source: SensorSource::Session, session: None, pause_s: 12.0, vmc }
+        Self {
+            source: SensorSource::Session,
+            session: None,
+            pause_s: 12.0,
+            vmc,
+            camera: None,
+            device: None,
+            turned_degrees: 0,
+        }
     }
 }
 
@@ -327,6 +363,7 @@ impl Config {
             .find_map(outside)
             .or_else(|| workers.map(|w| format!("machine.workers = {w} is not 1 or {SHARES}; correct it")))
             .or_else(|| self.wear.garments.is_empty().then(|| "wear.garments is empty; name a garment".into()))
+            .or_else(|| self.sensor.fault())
             .or_else(|| self.shopper.facts().err())
             .or_else(|| self.display.fault())
             .or_else(|| self.wear.quality.parse::<Quality>().err().map(|e| format!("wear.quality: {e}")))
@@ -407,6 +444,8 @@ mod tests {
             ("[shopper]\nage = \"12\"", "shopper.age"),
             ("[shopper]\nmeasures = [\"chest=91\"]", "centimetres"),
             ("[wear]\nquality = \"best\"", "wear.quality"),
+            ("[sensor]\ncamera = \"webcam\"", "sensor.camera"),
+            ("[sensor]\nturned_degrees = 45", "sensor.turned_degrees"),
             ("[display]\nlanguage = \"tlh\"", "display.language"),
             ("[display]\npicture_minutes = 0.0", "display.picture_minutes"),
             ("[display]\nmark_m = [0.0, nan]", "[display]"),

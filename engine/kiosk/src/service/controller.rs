@@ -154,7 +154,10 @@ impl HeadlessController {
     /// What a change of state brings about.
     fn change<S: Scene, O>(&mut self, change: StateChange, context: &mut ControllerContext<S, O>) {
         match change.to {
-            SessionState::Measuring => self.model.clear(),
+            SessionState::Measuring => {
+                self.model.clear();
+                self.played.iter().for_each(ShopperSource::begin);
+            }
             SessionState::TryOn => {
                 self.model.clear();
                 if let Some(fitted) = self.fitted.take() {
@@ -167,6 +170,7 @@ impl HeadlessController {
                 self.model.clear();
                 (self.fitted, self.dressed) = (None, false);
                 context.dresser.forget();
+                self.played.iter().for_each(ShopperSource::forget);
                 context.changer.wipe();
             }
         }

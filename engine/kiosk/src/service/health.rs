@@ -5,6 +5,7 @@ use std::fmt::{self, Display, Formatter};
 
 use toile_engine::frame_loop::event::{Event, EventKind};
 use toile_engine::meter::Meter;
+use toile_fitting::live::depth_camera::CameraFigures;
 use toile_fitting::live::lateness::LatenessAttribution;
 use toile_fitting::live::live_scene::StepReport;
 use toile_fitting::live::report::Attributed;
@@ -34,6 +35,8 @@ pub struct HealthFigures {
     pub pictures: u64,
     /// Times that the sensor was lost.
     pub sensor_lost: u64,
+    /// The live camera, where there is one.
+    pub camera: Option<CameraFigures>,
 }
 
 impl Default for HealthFigures {
@@ -49,6 +52,7 @@ impl Default for HealthFigures {
             sessions: 0,
             pictures: 0,
             sensor_lost: 0,
+            camera: None,
         }
     }
 }
@@ -69,7 +73,13 @@ impl Display for HealthFigures {
             self.sessions,
             self.pictures,
             self.sensor_lost
-        )
+        )?;
+        match &self.camera {
+            None => Ok(()),
+            Some(CameraFigures { state, counts, .. }) => {
+                write!(f, ", camera {state}, lost {} times, {} of its frames missing", counts.lost, counts.missing)
+            }
+        }
     }
 }
 
@@ -105,6 +115,11 @@ impl HealthCounter {
     /// Somebody is measured, who counts where they are `new`.
     pub fn stepped_in(&mut self, new: bool) {
         self.figures.sessions += u64::from(new);
+    }
+
+    /// The camera as it stands, where there is one.
+    pub fn camera(&mut self, camera: Option<CameraFigures>) {
+        self.figures.camera = camera;
     }
 
     /// The figures now.

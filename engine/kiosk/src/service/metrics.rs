@@ -8,6 +8,8 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use toile_engine::triple_buffer::Reader;
+use toile_fitting::live::depth_camera::CameraFigures;
+use toile_sensors::source::live::CameraState;
 
 use super::health::HealthFigures;
 use super::session::SessionState;
@@ -95,6 +97,28 @@ fn text(figures: &HealthFigures) -> String {
     // Writing to a string cannot fail.
     for (name, kind, help, value) in rows {
         let _ = writeln!(text, "# HELP toile_{name} {help}\n# TYPE toile_{name} {kind}\ntoile_{name} {value}");
+    }
+    if let Some(CameraFigures { state, counts, .. }) = &figures.camera {
+        let rows = [
+            ("frames", "Frames that the camera gave.", counts.frames),
+            ("missing", "Frames of the camera that did not come.", counts.missing),
+            ("half", "Frames of the camera that were cut short.", counts.half),
+            ("repeated", "Frames of the camera that were the same again.", counts.repeated),
+            ("empty", "Frames of the camera that measured nothing.", counts.empty),
+            ("clock_jumps", "Jumps of the camera's clock.", counts.clock_jumps),
+            ("lost", "Times that the camera was lost, frozen or covered.", counts.lost),
+            ("reopened", "Times that the camera was opened anew.", counts.reopened),
+        ];
+        for (name, help, value) in rows {
+            let _ = writeln!(
+                text,
+                "# HELP toile_camera_{name}_total {help}\n# TYPE toile_camera_{name}_total counter\ntoile_camera_{name}_total {value}"
+            );
+        }
+        let _ = writeln!(text, "# HELP toile_camera How the camera stands.\n# TYPE toile_camera gauge");
+        for of in CameraState::ALL {
+            let _ = writeln!(text, "toile_camera{{state=\"{of}\"}} {}", u8::from(of == *state));
+        }
     }
     let _ = writeln!(text, "# HELP toile_state Where the session is.\n# TYPE toile_state gauge");
     for state in SessionState::ALL {

@@ -27,6 +27,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use glam::Vec2;
+use toile_assets::body::Sex;
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::frame::Frame;
 use toile_engine::frame_loop::physics_thread::FrameScene;
@@ -36,6 +38,7 @@ use toile_engine::triple_buffer::Writer;
 use toile_fitting::dress::dressed;
 use toile_fitting::dress::session as sessions;
 use toile_fitting::live::assembly::{HeadlessRenderer, LoopOptions, LoopParts};
+use toile_fitting::live::depth_camera::{self, CameraHandle, TrackerOptions};
 use toile_fitting::live::dresser::{Dresser, ShopperSource};
 use toile_fitting::live::lateness::ThreadAccount;
 use toile_fitting::live::live_loop::LiveLoop;
@@ -44,7 +47,9 @@ use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
 use toile_fitting::live::source::{Feed, Visits};
 use toile_fitting::live::{crash, recording};
 use toile_sensors::frame::Joints;
+use toile_sensors::segment::Zone;
 use toile_sensors::source::Session;
+use toile_sensors::source::live::{self, CameraError, CameraName, CameraOptions, LiveDepth};
 
 use crate::error::KioskError;
 use config::{Config, SensorSource};
@@ -97,6 +102,7 @@ pub fn run(
     let mut config = Config::open(options.config.as_deref())?;
     if options.session.is_some() {
         (config.sensor.source, config.sensor.session) = (SensorSource::Session, options.session.clone());
+        config.sensor.camera = None;
     }
     let _lock = InstanceLock::take(options.instance.as_deref())?;
     let figures = figures(&config)?;
@@ -248,12 +254,17 @@ where
 
 /// The recording that is played, or for a live sensor the embedded one, whose shopper shows the mannequin how to stand.
 fn played_session(config: &Config) -> Result<Session, KioskError> {
-    let path = config.sensor.session.as_deref().filter(|_| config.sensor.source == SensorSource::Session);
+    let played = config.sensor.source == SensorSource::Session && config.sensor.camera.is_none();
+    let path = config.sensor.session.as_deref().filter(|_| played);
     sessions::open(path, None)
 }
 
 /// What the sensor reads, and what shoppers are then measured from.
 fn feed(config: &Config, session: Session, clock: RealClock) -> Result<(Feed, Option<ShopperSource>), KioskError> {
+    if let Some(name) = config.sensor.camera().map_err(KioskError::input)? {
+        let (feed, handle) = camera_feed(config, name, clock)?;
+        return Ok((feed, Some(ShopperSource::Camera(handle))));
+    }
     let address = config.sensor.vmc;
     if config.sensor.source == SensorSource::Vmc {
         let refused = |e| {
@@ -264,6 +275,24 @@ fn feed(config: &Config, session: Session, clock: RealClock) -> Result<(Feed, Op
     let session = Arc::new(session);
     let visits = Visits::of(&session, clock.now_ns(), config::ns(config.sensor.pause_s));
     Ok((Feed::Played(visits), Some(ShopperSource::Recording(session))))
+}
+
+/// A live camera, with the threads that see through it.
+fn camera_feed(config: &Config, name: CameraName, clock: RealClock) -> Result<(Feed, CameraHandle), KioskError> {
+    let mark = config.display.mark_m.map(Vec2::from);
+    let sex = config.shopper.facts().ok().and_then(|facts| facts.sex).unwrap_or(Sex::Female);
+    let options = TrackerOptions { zone: Zone { mark, ..Zone::default() }, sex };
+    let quarter_turns = (config.sensor.turned_degrees / 90) as u8;
+    let how = CameraOptions { colour: false, quarter_turns, libraries: live::folders() };
+    let opener = Box::new(move || live::open(&name, &how));
+    let depth = LiveDepth::open(opener, depth_camera::GATHERED, clock.now_ns()).map_err(camera_error)?;
+    let (feed, handle) = depth_camera::start(depth, clock, options).map_err(KioskError::internal)?;
+    Ok((Feed::Camera(feed), handle))
+}
+
+/// Why a camera cannot be used: what was given, or the device.
+fn camera_error(error: CameraError) -> KioskError {
+    if error.is_input() { KioskError::input(error) } else { KioskError::Device(error.to_string()) }
 }
 
 fn workers() -> usize {

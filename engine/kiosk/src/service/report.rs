@@ -4,6 +4,7 @@ use serde::Serialize;
 use toile_engine::frame_loop::physics_thread::{LoopMeters, Scene};
 use toile_engine::frame_loop::queue::Capacity;
 use toile_engine::frame_loop::render_thread::Renderer;
+use toile_fitting::live::depth_camera::CameraFigures;
 use toile_fitting::live::live_loop::EndedLive;
 use toile_fitting::live::report::{Attributed, Quantiles, QueueUse, ThreadPlacement};
 use toile_fitting::live::source::Feed;
@@ -56,9 +57,48 @@ pub struct KioskReport {
     pub capacities: Vec<QueueUse>,
     /// What did not go as it should, with the cure.
     pub warnings: Vec<String>,
+    /// The live camera, where there was one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub camera: Option<CameraReport>,
     /// The window, where there was one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub window: Option<WindowReport>,
+}
+
+/// The camera's part of the JSON.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct CameraReport {
+    /// How it stood at the end.
+    pub state: &'static str,
+    /// Frames that came.
+    pub frames: u64,
+    /// Frames that did not come.
+    pub missing: u64,
+    /// Frames that were cut short, the same again, or of a covered lens.
+    pub unusable: [u64; 3],
+    /// Jumps of its clock.
+    pub clock_jumps: u64,
+    /// Times that it was lost, frozen or covered.
+    pub lost: u64,
+    /// Times that it was opened anew.
+    pub reopened: u64,
+    /// Frames in which somebody was followed.
+    pub followed: u64,
+}
+
+impl From<CameraFigures> for CameraReport {
+    fn from(CameraFigures { state, counts, tracked: [_, followed], .. }: CameraFigures) -> Self {
+        Self {
+            state: state.name(),
+            frames: counts.frames,
+            missing: counts.missing,
+            unusable: [counts.half, counts.repeated, counts.empty],
+            clock_jumps: counts.clock_jumps,
+            lost: counts.lost,
+            reopened: counts.reopened,
+            followed,
+        }
+    }
 }
 
 /// The window's part of the JSON.
@@ -144,6 +184,7 @@ impl KioskReport {
             threads: record.threads,
             capacities: capacities.map(QueueUse::from).to_vec(),
             warnings,
+            camera: record.figures.camera.map(CameraReport::from),
             window: None,
         }
     }
@@ -167,6 +208,16 @@ impl KioskReport {
             self.sensor_frames,
             self.nonfinite
         );
+        if let Some(camera) = &self.camera {
+            text.push_str(&format!(
+                "  camera: {} frames, {} missing, {} unusable, lost {} times, opened anew {} times\n",
+                camera.frames,
+                camera.missing,
+                camera.unusable.iter().sum::<u64>(),
+                camera.lost,
+                camera.reopened
+            ));
+        }
         self.warnings.iter().for_each(|w| text.push_str(&format!("  {w}\n")));
         text
     }

@@ -9,6 +9,7 @@ use toile_engine::frame_loop::physics_thread::Scene;
 use toile_engine::frame_loop::queue::Capacity;
 use toile_engine::frame_loop::render_thread::Renderer;
 use toile_engine::triple_buffer::Writer;
+use toile_fitting::live::depth_camera::CameraHandle;
 use toile_fitting::live::dresser::{DressOutcome, Dresser, ShopperSource};
 use toile_fitting::live::live_loop::{EndedLive, LiveLoop};
 use toile_fitting::live::report::{Attributed, ThreadPlacement};
@@ -90,6 +91,7 @@ pub struct Service<'a, S: Scene, E: Renderer> {
     figures: Option<Writer<HealthFigures>>,
     flight_recorder: Option<Arc<FlightRecorder>>,
     counter: HealthCounter,
+    camera: Option<CameraHandle>,
     dog: Option<Watchdog>,
     /// The loop's time when it began, and when the next health line is due (ns).
     began_ns: u64,
@@ -119,6 +121,7 @@ impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
         };
         let ServiceEnvironment { manager, stop, print_line, figures, dresser, to_scene, pose, flight_recorder } =
             environment;
+        let camera = options.played.as_ref().and_then(ShopperSource::camera).cloned();
         let controller = Box::new(HeadlessController::new(options.times, options.measure_ns, options.played, now));
         Self {
             live,
@@ -135,6 +138,7 @@ impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
             figures,
             flight_recorder,
             counter: HealthCounter::default(),
+            camera,
             began_ns: now,
             health_ns: now + options.health_ns,
             record,
@@ -246,6 +250,7 @@ impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
         while let Some(event) = self.live.queues.events.pop() {
             self.counter.event(&event);
         }
+        self.counter.camera(self.camera.as_ref().map(CameraHandle::figures));
         let [_, pictures] = self.live.queues.progress.count();
         let uptime = self.live.now_ns() - self.began_ns;
         self.record.revived = self.live.threads.revived();

@@ -2,11 +2,13 @@
 
 use std::sync::Arc;
 
+use toile_assets::sizes::Population;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::frame_loop::physics_thread::Scene;
 use toile_engine::frame_loop::queue::Sender;
 use toile_engine::frame_loop::sensor_thread::ObservedFrame;
 use toile_engine::triple_buffer::Writer;
+use toile_fitting::dress::measured;
 use toile_fitting::dress::session;
 use toile_fitting::live::dresser::{DressOutcome, ShopperSource};
 use toile_sensors::frame::Joints;
@@ -160,6 +162,7 @@ impl<'a, O> VisitController<'a, O> {
     fn run<S: Scene>(&mut self, now: u64, effect: Effect, context: &mut ControllerContext<S, O>) {
         match effect {
             Effect::Measure { number, seated } => {
+                self.played.iter().for_each(ShopperSource::begin);
                 self.measuring = Some(OngoingMeasurement { number, seated, since_ns: now, frames: Vec::new() });
                 self.until_ns = 0;
             }
@@ -178,6 +181,7 @@ impl<'a, O> VisitController<'a, O> {
             Effect::Forget => {
                 self.clear(context);
                 self.pose = None;
+                self.played.iter().for_each(ShopperSource::forget);
                 (self.depth_ns, self.until_ns) = (None, 0);
                 self.presence.forget();
                 self.gestures.reset();
@@ -197,7 +201,13 @@ impl<'a, O> VisitController<'a, O> {
     /// Takes what the worker has done.
     fn done<S: Scene>(&mut self, now: u64, number: u32, done: JobResult, context: &mut ControllerContext<S, O>) {
         let input = match done {
-            JobResult::Measured(known) => Input::Measured(number, known),
+            JobResult::Measured(known) => {
+                let sex = measured::sex(known.population, Population::Women);
+                if let Some(camera) = self.played.as_ref().and_then(ShopperSource::camera) {
+                    camera.follow(sex);
+                }
+                Input::Measured(number, known)
+            }
             JobResult::Dressed(dressed) => {
                 // What was asked for before something else was is not shown.
                 if !self.model.awaits_dress(number) {
@@ -276,14 +286,16 @@ impl<S: Scene, O> SessionController<S, O> for VisitController<'_, O> {
     }
 
     fn frame(&mut self, frame: ObservedFrame) {
-        let ObservedFrame { raw, filtered, depth } = frame;
+        let ObservedFrame { raw, filtered, depth, others: (others, nearer) } = frame;
         if let Some(image) = &depth {
             self.depth_ns = Some(raw.time_ns);
             self.until_ns = self.until_ns.max(image.frame().time_ns);
         }
         // Depth comes more seldom than joints do.
         let has_depth = self.depth_ns.is_some_and(|then| raw.time_ns.saturating_sub(then) < STALE_NS);
-        self.seen = (raw.time_ns, Presence { depth: has_depth, ..self.presence.push(&raw) });
+        let seen = self.presence.push(&raw);
+        let people = if seen.people > 0 { seen.people.saturating_add(others) } else { 0 };
+        self.seen = (raw.time_ns, Presence { depth: has_depth, people, nearer: nearer && people > 0, ..seen });
         if session::is_present(&filtered) {
             self.pose = Some(filtered);
         }
@@ -304,6 +316,10 @@ impl<S: Scene, O> SessionController<S, O> for VisitController<'_, O> {
         let stale = now.saturating_sub(self.seen.0) >= STALE_NS;
         let seen = if stale { Presence::default() } else { self.seen.1 };
         self.update(now, Input::Presence(seen), context);
+        if let Some(camera) = self.played.as_ref().and_then(ShopperSource::camera) {
+            let state = camera.figures().state;
+            self.update(now, Input::Camera(state), context);
+        }
         while let Some(input) = (self.window.next_input)() {
             self.update(now, input, context);
         }

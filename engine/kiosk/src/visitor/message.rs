@@ -1,5 +1,6 @@
 //! Messages: the inputs of the visitor's model and its effects, with the times that it keeps.
 
+use toile_sensors::source::live::CameraState;
 use toile_track::gesture::Gesture;
 use toile_track::tape_readings::TapeReadings;
 
@@ -106,6 +107,8 @@ pub enum Input {
     Tick,
     /// What is seen; it holds until the next.
     Presence(Presence),
+    /// How the camera stands; it holds until the next. Without a live camera it never comes.
+    Camera(CameraState),
     /// A control was pressed by finger or mouse. One that is not on the page is ignored.
     Pressed(Action),
     /// A navigation key was pressed.

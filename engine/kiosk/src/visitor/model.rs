@@ -14,6 +14,7 @@ use super::visit::{ComparedSizes, MeasureProgress, ViewTurn, Visit};
 use super::wardrobe::{Outfit, Wardrobe, WornItem};
 use crate::service::session::{SessionInput, SessionMachine, SessionState};
 use toile_fitting::dress::offer::GarmentOffer;
+use toile_sensors::source::live::CameraState;
 
 /// The model of a visit.
 #[derive(Debug, Clone)]
@@ -23,6 +24,8 @@ pub struct VisitModel {
     pub(super) session: SessionMachine,
     pub(super) now_ns: u64,
     pub(super) seen: Presence,
+    /// How the camera stands; seeing where there is none.
+    pub(super) camera: CameraState,
     /// Since when nobody is seen (ns), and whether the one who has said that they are done is still there.
     unseen_ns: u64,
     resting: bool,
@@ -43,6 +46,7 @@ impl VisitModel {
             wardrobe,
             now_ns,
             seen: Presence::default(),
+            camera: CameraState::Seeing,
             unseen_ns: now_ns,
             resting: false,
             focus: 0,
@@ -122,6 +126,7 @@ impl VisitModel {
         match input {
             Input::Tick => {}
             Input::Presence(seen) => self.see(seen),
+            Input::Camera(state) => self.camera = state,
             Input::Pressed(action) => self.pressed(action, &mut effects),
             Input::Typed(action) => self.typed_key(action, &mut effects),
             Input::Key(button) => self.key(button, &mut effects),

@@ -20,6 +20,7 @@ use super::texts::{Language, TextKey, TextValue, Texts, Translation};
 use super::visit::MeasureProgress;
 use super::wardrobe::WardrobeItem;
 use toile_assets::sizes::Girth;
+use toile_sensors::source::live::CameraState;
 use toile_view::image::linear;
 
 /// Large type, as a multiple of the ordinary one.
@@ -36,7 +37,7 @@ impl Screen {
         Self {
             page,
             heading: writer.heading(page),
-            blocks: writer.blocks(page),
+            blocks: writer.camera().into_iter().chain(writer.blocks(page)).collect(),
             controls: model.actions().iter().map(|action| writer.control(page, *action)).collect(),
             focus: model.focus,
             body_view: model.body_view(page),
@@ -107,6 +108,16 @@ struct PageWriter<'a> {
 }
 
 impl PageWriter<'_> {
+    /// What is said above all else while the camera sees nothing.
+    fn camera(&self) -> Option<Block> {
+        let key = match self.model.camera {
+            CameraState::Lost | CameraState::Frozen => TextKey::CameraLost,
+            CameraState::Covered => TextKey::CameraCovered,
+            CameraState::Starting | CameraState::Seeing => return None,
+        };
+        Some(Block::Text(self.words(key)))
+    }
+
     fn words(&self, key: TextKey) -> String {
         self.translation.text(key)
     }

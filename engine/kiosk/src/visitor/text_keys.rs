@@ -39,6 +39,8 @@ keys! {
     GuideRight = "guide-right",
     GuideAlone = "guide-alone",
     GuideUnseen = "guide-unseen",
+    CameraLost = "camera-lost",
+    CameraCovered = "camera-covered",
     GuideSoon = "guide-soon",
     MeasuringHeading = "measuring-heading",
     MeasuringBody = "measuring-body",

@@ -401,3 +401,26 @@ fn whatever_is_pressed_something_has_the_focus_and_one_control_at_most_stands_ou
     }
     assert!(play.pages.len() >= 13, "{:?}", play.pages);
 }
+
+#[test]
+fn a_camera_that_is_lost_or_covered_is_said_on_every_page_and_unsaid_when_it_is_back() {
+    use toile_sensors::source::live::CameraState;
+    let mut play = Play::dressed();
+    let blocks = play.screen().blocks;
+    for (state, words) in [
+        (CameraState::Lost, Some("does not answer")),
+        (CameraState::Covered, Some("covers the camera")),
+        (CameraState::Frozen, Some("does not answer")),
+        (CameraState::Seeing, None),
+    ] {
+        play.update(Input::Camera(state));
+        let now = play.screen().blocks;
+        match words {
+            Some(words) => {
+                assert!(matches!(&now[0], Block::Text(text) if text.contains(words)), "{state}: {now:?}");
+                assert_eq!(now[1..], blocks);
+            }
+            None => assert_eq!(now, blocks),
+        }
+    }
+}

@@ -1,0 +1,38 @@
+//! Libraries of live cameras: which are there, and the exact command for those that are not.
+
+use toile_sensors::source::live::{self, CameraError, CameraKind};
+
+use super::check::Check;
+
+/// Name of the check of a kind, and what it is for.
+const fn words(kind: CameraKind) -> (&'static str, &'static str) {
+    match kind {
+        CameraKind::Kinect => ("camera kinect", "a live Kinect v1"),
+        CameraKind::OpenNi => {
+            ("camera openni", "live cameras of OpenNI 2 (Xtion, Astra, Structure) and .oni recordings")
+        }
+        CameraKind::K4a => ("camera k4a", "a live Azure Kinect, Femto Bolt or Femto Mega"),
+        CameraKind::RealSense => ("camera realsense", "a live RealSense"),
+        CameraKind::Orbbec => ("camera orbbec", "a live Gemini, Astra 2 or Femto"),
+        CameraKind::Recording => ("camera recording", "a recording that plays as a camera"),
+    }
+}
+
+/// One check for each kind that needs a library.
+pub fn cameras() -> Vec<Check> {
+    let folders = live::folders();
+    let needing = CameraKind::ALL.into_iter().filter(|kind| !kind.libraries().is_empty());
+    needing
+        .map(|kind| {
+            let (name, needed_for) = words(kind);
+            let install = kind.libraries()[0].install;
+            match kind.installed(&folders) {
+                Ok(path) => Check::ok(name, needed_for, path.map_or_else(String::new, |p| p.display().to_string())),
+                Err(CameraError::LibraryMissing { library, .. }) => {
+                    Check::missing(name, needed_for, format!("{library} is not installed"), format!("`{install}`"))
+                }
+                Err(other) => Check::missing(name, needed_for, other.to_string(), format!("`{install}`")),
+            }
+        })
+        .collect()
+}

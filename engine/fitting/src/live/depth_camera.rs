@@ -1,0 +1,462 @@
+//! A live depth camera in the loop. Between it and the sensor thread stand two threads: one waits for the camera, one finds the
+//! shopper and fits the body, which takes up to an eighth of a second. Each hands on the latest value; neither the sensor thread nor a
+//! step ever waits for them.
+//!
+//! The frames that a shopper is measured from are gathered beside that, shared and not copied. What guards them is a mutex, which only the
+//! tracker's thread and whoever begins to measure take: no thread of the loop does.
+
+use std::io;
+use std::sync::atomic::Ordering::Relaxed;
+use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use toile_assets::body::Sex;
+use toile_engine::clock::Clock;
+use toile_engine::frame_loop::sensor_thread::{DepthImage, FrameSource, SourceFrame};
+use toile_engine::meter::Meter;
+use toile_engine::triple_buffer::{Reader, TripleBuffer, Writer};
+use toile_sensors::clock::SECOND_NS;
+use toile_sensors::frame::{DepthFrame, Joints};
+use toile_sensors::segment::Zone;
+use toile_sensors::source::live::{CameraCounts, CameraState, ColourImage, LiveDepth, PATIENCE_NS};
+use toile_track::fit::FitOptions;
+use toile_track::fit::measuring::FRAMES;
+use toile_track::fit::tracker::{BodyTracker, Company};
+
+use crate::dress::depth::{APART_NS, TURN_NS};
+
+/// Time between two looks of the sensor thread (ns): half a step, so that no frame waits for longer.
+const LOOK_NS: u64 = SECOND_NS / 240;
+
+/// Most frames that are kept of a turn: one in each [`APART_NS`] of the longest that is looked at.
+const TURN_FRAMES: usize = (TURN_NS / APART_NS) as usize;
+
+/// Depth images that a measurement holds at most: the first second at full rate, and a turn.
+pub const GATHERED: usize = FRAMES + TURN_FRAMES;
+
+/// Longest that the tracker sleeps without being woken: so soon it sees that it is to end.
+const NAP: Duration = Duration::from_millis(50);
+
+/// A frame of the camera on its way to the tracker.
+#[derive(Debug, Clone)]
+struct CameraNews {
+    frame: Arc<DepthFrame>,
+    /// Joints of the one whom the camera itself tracks, where it tracks anybody.
+    joints: Option<Joints>,
+    arrived_ns: u64,
+}
+
+/// A frame that was looked at, on its way to the sensor thread.
+#[derive(Debug, Clone)]
+struct TrackedFrame {
+    frame: Arc<DepthFrame>,
+    joints: Joints,
+    company: Company,
+    arrived_ns: u64,
+}
+
+/// Figures of the camera and of who is seen through it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CameraFigures {
+    /// How the camera stands.
+    pub state: CameraState,
+    /// What was counted of its frames.
+    pub counts: CameraCounts,
+    /// Frames in which somebody was looked for, and in which somebody was found.
+    pub tracked: [u64; 2],
+    /// Colour images that came.
+    pub colours: u64,
+}
+
+/// Numbers that the threads count up, to be looked at by others.
+///
+/// Relaxed throughout: each stands by itself and orders nothing.
+#[derive(Debug, Default)]
+struct SharedFigures {
+    state: AtomicU8,
+    counts: [AtomicU64; 8],
+    tracked: [AtomicU64; 2],
+    colours: AtomicU64,
+    /// The body model that is asked for: 0 female, 1 male.
+    sex: AtomicU8,
+    /// Whether images that nobody has are to be wiped.
+    wipe: AtomicBool,
+    stop: AtomicBool,
+}
+
+/// What is gathered for measuring.
+#[derive(Debug)]
+struct Gathered {
+    /// Whether somebody is measured.
+    wanted: bool,
+    frames: Vec<Arc<DepthFrame>>,
+    next_ns: u64,
+}
+
+/// What others know of the camera, and ask of it.
+#[derive(Debug, Clone)]
+pub struct CameraHandle {
+    figures: Arc<SharedFigures>,
+    gathered: Arc<Mutex<Gathered>>,
+    /// The last colour image, where colour is asked for.
+    colour: Arc<Mutex<ColourImage>>,
+    /// What was assumed of the camera.
+    notes: Arc<Mutex<Vec<String>>>,
+}
+
+impl CameraHandle {
+    fn new() -> Self {
+        let gathered = Gathered { wanted: false, frames: Vec::with_capacity(GATHERED), next_ns: 0 };
+        Self {
+            figures: Arc::default(),
+            gathered: Arc::new(Mutex::new(gathered)),
+            colour: Arc::default(),
+            notes: Arc::default(),
+        }
+    }
+
+    /// How the camera stands, and what was counted.
+    pub fn figures(&self) -> CameraFigures {
+        let shared = &self.figures;
+        let [frames, missing, half, repeated, empty, clock_jumps, lost, reopened] =
+            shared.counts.each_ref().map(|n| n.load(Relaxed));
+        let counts = CameraCounts { frames, missing, half, repeated, empty, clock_jumps, lost, reopened };
+        let state = CameraState::ALL[usize::from(shared.state.load(Relaxed)).min(CameraState::ALL.len() - 1)];
+        CameraFigures {
+            state,
+            counts,
+            tracked: shared.tracked.each_ref().map(|n| n.load(Relaxed)),
+            colours: shared.colours.load(Relaxed),
+        }
+    }
+
+    /// Somebody begins to be measured: from now on a second is gathered at full rate, and then a turn.
+    pub fn gather_anew(&self) {
+        let mut gathered = self.lock();
+        gathered.frames.clear();
+        (gathered.wanted, gathered.next_ns) = (true, 0);
+    }
+
+    /// The shopper has left: what was gathered is thrown away, and the camera's images are wiped. A body of this sex is fitted to whoever
+    /// comes next.
+    pub fn forget(&self, sex: Sex) {
+        let mut gathered = self.lock();
+        gathered.frames.clear();
+        gathered.wanted = false;
+        drop(gathered);
+        self.figures.wipe.store(true, Relaxed);
+        self.follow(sex);
+    }
+
+    /// Copies of the frames that were gathered.
+    pub fn gathered(&self) -> Vec<DepthFrame> {
+        // The images themselves are copied without the lock.
+        let frames: Vec<Arc<DepthFrame>> = self.lock().frames.clone();
+        frames.iter().map(|frame| (**frame).clone()).collect()
+    }
+
+    /// The last colour image; of no size where none came.
+    pub fn colour(&self) -> ColourImage {
+        self.colour.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    fn set_colour(&self, image: &ColourImage) {
+        if image.width > 0 {
+            self.figures.colours.fetch_add(1, Relaxed);
+            self.colour.lock().unwrap_or_else(PoisonError::into_inner).clone_from(image);
+        }
+    }
+
+    /// What was assumed of the camera so far, one sentence each.
+    pub fn notes(&self) -> Vec<String> {
+        self.notes.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    fn set_notes(&self, notes: &[String]) {
+        let mut known = self.notes.lock().unwrap_or_else(PoisonError::into_inner);
+        if known.len() != notes.len() {
+            known.clone_from(&notes.to_vec());
+        }
+    }
+
+    /// From now on a body of this sex is fitted.
+    pub fn follow(&self, sex: Sex) {
+        self.figures.sex.store(u8::from(sex == Sex::Male), Relaxed);
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Gathered> {
+        self.gathered.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn publish(&self, state: CameraState, counts: CameraCounts) {
+        let CameraCounts { frames, missing, half, repeated, empty, clock_jumps, lost, reopened } = counts;
+        let numbers = [frames, missing, half, repeated, empty, clock_jumps, lost, reopened];
+        self.figures.counts.iter().zip(numbers).for_each(|(to, n)| to.store(n, Relaxed));
+        self.figures.state.store(state as u8, Relaxed);
+    }
+
+    /// Takes a frame for whoever is measured: the first second whole, then what a turn needs.
+    fn gather(&self, frame: &Arc<DepthFrame>) {
+        let mut gathered = self.lock();
+        let (count, time_ns) = (gathered.frames.len(), frame.time_ns);
+        if !gathered.wanted || count >= GATHERED || time_ns < gathered.next_ns {
+            return;
+        }
+        gathered.frames.push(frame.clone());
+        if count + 1 >= FRAMES {
+            gathered.next_ns = time_ns + APART_NS;
+        }
+    }
+
+    fn is_over(&self) -> bool {
+        self.figures.stop.load(Relaxed)
+    }
+}
+
+/// How the shopper is found and followed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrackerOptions {
+    /// Where a shopper stands.
+    pub zone: Zone,
+    /// The body model that is fitted first.
+    pub sex: Sex,
+}
+
+/// Times of the camera's two threads.
+#[derive(Debug, Default)]
+pub struct CameraMeters {
+    /// From the arrival of a frame until it was looked at, by frames in which somebody was followed.
+    pub followed: Meter,
+    /// The same where somebody was found for the first time, or nobody was.
+    pub found: Meter,
+}
+
+/// The threads of a camera, ended when dropped.
+#[derive(Debug)]
+pub struct CameraThreads {
+    handle: CameraHandle,
+    camera: Option<JoinHandle<()>>,
+    tracker: Option<JoinHandle<CameraMeters>>,
+}
+
+impl CameraThreads {
+    /// Ends them; gives how long the tracker took.
+    pub fn end(mut self) -> CameraMeters {
+        self.stop().unwrap_or_default()
+    }
+
+    fn stop(&mut self) -> Option<CameraMeters> {
+        self.handle.figures.stop.store(true, Relaxed);
+        if let Some(camera) = self.camera.take() {
+            let _ = camera.join();
+        }
+        let tracker = self.tracker.take()?;
+        tracker.thread().unpark();
+        tracker.join().ok()
+    }
+}
+
+impl Drop for CameraThreads {
+    fn drop(&mut self) {
+        self.stop();
+    }
+}
+
+/// Starts the threads of a camera that is open. Gives what the sensor thread reads, and what others ask.
+///
+/// # Errors
+/// Where the system gives no thread.
+pub fn start<C>(depth: LiveDepth, clock: C, options: TrackerOptions) -> io::Result<(CameraFeed, CameraHandle)>
+where
+    C: Clock + Clone + Send + 'static,
+{
+    let handle = CameraHandle::new();
+    handle.follow(options.sex);
+    let TripleBuffer { writer: news, reader: seen } = TripleBuffer::new(&None);
+    let TripleBuffer { writer: tracked, reader } = TripleBuffer::new(&None);
+    let watcher = Tracking { handle: handle.clone(), clock: clock.clone(), options, meters: CameraMeters::default() };
+    let tracker = thread::Builder::new().name("toile-tracker".into()).spawn(move || watcher.run(seen, tracked))?;
+    let (woken, shared, own) = (tracker.thread().clone(), handle.clone(), clock.clone());
+    let camera = thread::Builder::new()
+        .name("toile-camera".into())
+        .spawn(move || wait_for_frames(depth, &own, &shared, news, &woken))?;
+    let threads = CameraThreads { handle: handle.clone(), camera: Some(camera), tracker: Some(tracker) };
+    let next_ns = clock.now_ns();
+    let now: Box<dyn Fn() -> u64 + Send> = Box::new(move || clock.now_ns());
+    Ok((CameraFeed { reader, now, next_ns, threads }, handle))
+}
+
+/// What the camera thread runs.
+fn wait_for_frames<C: Clock>(
+    mut depth: LiveDepth,
+    clock: &C,
+    handle: &CameraHandle,
+    mut news: Writer<Option<CameraNews>>,
+    tracker: &thread::Thread,
+) {
+    let patience = Duration::from_nanos(PATIENCE_NS);
+    while !handle.is_over() {
+        let update = depth.poll(&|| clock.now_ns(), patience);
+        handle.publish(update.state, depth.counts());
+        if handle.figures.wipe.swap(false, Relaxed) {
+            depth.wipe();
+        }
+        match update.frame {
+            Some(frame) => {
+                handle.set_colour(depth.colour());
+                handle.set_notes(depth.notes());
+                let arrived_ns = update.arrived_ns.unwrap_or(frame.time_ns);
+                news.publish(Some(CameraNews { frame, joints: depth.people().first().copied(), arrived_ns }));
+                tracker.unpark();
+            }
+            None if update.is_closed => thread::sleep(patience),
+            None => {}
+        }
+    }
+}
+
+/// What the tracker's thread runs.
+struct Tracking<C> {
+    handle: CameraHandle,
+    clock: C,
+    options: TrackerOptions,
+    meters: CameraMeters,
+}
+
+impl<C: Clock> Tracking<C> {
+    fn run(mut self, mut news: Reader<Option<CameraNews>>, mut out: Writer<Option<TrackedFrame>>) -> CameraMeters {
+        let mut sex = self.options.sex;
+        let mut tracker = BodyTracker::new(sex, self.options.zone, FitOptions::LIVE);
+        while !self.handle.is_over() {
+            let Some(CameraNews { frame, joints, arrived_ns }) = news.news().cloned().flatten() else {
+                thread::park_timeout(NAP);
+                continue;
+            };
+            let asked = if self.handle.figures.sex.load(Relaxed) == 1 { Sex::Male } else { Sex::Female };
+            if asked != sex {
+                sex = asked;
+                tracker.set_sex(sex, FitOptions::LIVE);
+            }
+            self.handle.gather(&frame);
+            let fitted = tracker.push(&frame);
+            let joints = joints.unwrap_or(fitted.joints);
+            let [looked, found] = &self.handle.figures.tracked;
+            looked.fetch_add(1, Relaxed);
+            found.fetch_add(u64::from(fitted.found), Relaxed);
+            out.publish(Some(TrackedFrame { frame, joints, company: tracker.company(), arrived_ns }));
+            let took = self.clock.now_ns().saturating_sub(arrived_ns);
+            let meter =
+                if fitted.found && !fitted.started { &mut self.meters.followed } else { &mut self.meters.found };
+            meter.add(took);
+        }
+        self.meters
+    }
+}
+
+/// The end that the sensor thread reads. Its threads end with it.
+pub struct CameraFeed {
+    reader: Reader<Option<TrackedFrame>>,
+    now: Box<dyn Fn() -> u64 + Send>,
+    next_ns: u64,
+    threads: CameraThreads,
+}
+
+impl std::fmt::Debug for CameraFeed {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("CameraFeed").field("threads", &self.threads).finish_non_exhaustive()
+    }
+}
+
+impl CameraFeed {
+    /// Ends the camera's threads; gives how long the tracker took.
+    pub fn end(self) -> CameraMeters {
+        self.threads.end()
+    }
+}
+
+impl FrameSource for CameraFeed {
+    fn next_ns(&self) -> Option<u64> {
+        Some(self.next_ns)
+    }
+
+    fn read(&mut self) -> Option<SourceFrame> {
+        self.next_ns = (self.now)() + LOOK_NS;
+        let TrackedFrame { frame, joints, company, arrived_ns } = self.reader.news()?.clone()?;
+        let joints = Joints { time_ns: frame.time_ns, ..joints };
+        let depth: Arc<dyn DepthImage> = frame;
+        let others = (company.others, company.nearer);
+        Some(SourceFrame { joints, depth: Some(depth), others, arrived_ns: Some(arrived_ns) })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Affine3A;
+    use toile_engine::clock::RealClock;
+    use toile_sensors::source::live::fault_injection::{
+        CameraFault, FaultClock, FaultPlan, FaultyCamera, SimulatedCamera, TimedFault,
+    };
+
+    const MS: u64 = 1_000_000;
+
+    /// The loop's end of a simulated camera with one fault, on the system's clock.
+    fn started(clock: RealClock, fault: Option<TimedFault>) -> (CameraFeed, CameraHandle) {
+        let now: FaultClock = Arc::new(move || clock.now_ns());
+        let plan = Arc::new(FaultPlan { faults: fault.into_iter().collect() });
+        let opener = Box::new(move || {
+            let pelvis = |ns: u64| {
+                let mut joints = Joints::absent(ns);
+                joints.joints[0].confidence = 1.0;
+                Some(joints)
+            };
+            let camera = SimulatedCamera::new(now.clone(), Affine3A::IDENTITY).seeing(Box::new(pelvis));
+            Ok(Box::new(FaultyCamera::open(camera, plan.clone(), now.clone())?) as Box<_>)
+        });
+        let depth = LiveDepth::open(opener, GATHERED, clock.now_ns()).unwrap();
+        start(depth, clock, TrackerOptions { zone: Zone::default(), sex: Sex::Female }).unwrap()
+    }
+
+    #[test]
+    fn frames_come_through_both_threads_with_the_cameras_own_joints_and_stamps() {
+        let clock = RealClock::starting_at(1_000 * MS);
+        let (mut feed, handle) = started(clock, None);
+        let (mut stamps, end) = (Vec::new(), clock.now_ns() + 700 * MS);
+        handle.gather_anew();
+        while clock.now_ns() < end {
+            clock.sleep_until(feed.next_ns().unwrap());
+            if let Some(frame) = feed.read() {
+                assert_eq!((frame.joints.joints[0].confidence, frame.depth.is_some()), (1.0, true));
+                assert!(frame.arrived_ns.unwrap() >= frame.joints.time_ns);
+                stamps.push(frame.joints.time_ns);
+            }
+        }
+        assert!(stamps.len() >= 5 && stamps.windows(2).all(|w| w[0] < w[1]), "{stamps:?}");
+        let gathered = handle.gathered();
+        assert!(gathered.len() >= 5 && gathered.len() <= FRAMES, "{}", gathered.len());
+        handle.forget(Sex::Male);
+        assert!(handle.gathered().is_empty());
+        assert_eq!(handle.figures().state, CameraState::Seeing);
+        feed.end();
+    }
+
+    #[test]
+    fn a_camera_that_falls_silent_is_known_to_be_lost_and_to_be_back() {
+        let clock = RealClock::starting_at(1_000 * MS);
+        let (from_ns, until_ns) = (1_400 * MS, 2_000 * MS);
+        let fault = TimedFault { fault: CameraFault::Silent, from_ns, until_ns };
+        let (feed, handle) = started(clock, Some(fault));
+        let seen_at = |ns: u64| {
+            clock.sleep_until(ns);
+            handle.figures().state
+        };
+        assert_eq!(seen_at(from_ns - 20 * MS), CameraState::Seeing);
+        // Beside compilers, threads wake late: the limits themselves are held in simulated time.
+        assert_eq!(seen_at(until_ns - 100 * MS), CameraState::Lost);
+        assert_eq!(seen_at(until_ns + 1_000 * MS), CameraState::Seeing);
+        assert_eq!(handle.figures().counts.lost, 1);
+        feed.end();
+    }
+}

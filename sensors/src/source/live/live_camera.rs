@@ -1,0 +1,107 @@
+//! What a live camera is, whichever library it is seen through.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use glam::Affine3A;
+
+use super::error::CameraError;
+use crate::frame::{Intrinsics, Joints};
+use crate::limits::MAX_VIEW_PEOPLE;
+use crate::source::camera::Camera;
+
+/// How a camera is opened.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct CameraOptions {
+    /// Whether colour is wanted too.
+    pub colour: bool,
+    /// Quarters by which its images are turned clockwise to be upright, for a camera that is mounted on its side.
+    pub quarter_turns: u8,
+    /// Folders in which its library is sought first.
+    pub libraries: Vec<PathBuf>,
+}
+
+/// What is known of a camera that is open.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CameraInfo {
+    /// Its name and number, as the library has them.
+    pub device: String,
+    /// How it sees.
+    pub(in crate::source) camera: Camera,
+    /// Frames a second that it promises (Hz).
+    pub rate_hz: f32,
+    /// Its pose in our world (m), where that is known already: then no floor is looked for.
+    pub placed: Option<Affine3A>,
+}
+
+impl CameraInfo {
+    /// The images as the camera gives them, before its lens is straightened.
+    pub fn sensor(&self) -> Intrinsics {
+        self.camera.intrinsics
+    }
+}
+
+/// A colour image; of no size where there is none.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct ColourImage {
+    /// Width (px).
+    pub width: u32,
+    /// Height (px).
+    pub height: u32,
+    /// Red, green and blue, row by row `[width * height * 3]`.
+    pub rgb: Vec<u8>,
+}
+
+/// One frame as a camera gave it. It is filled again and again, and then allocates nothing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CameraFrame {
+    /// When it was taken, by the device's own clock (ns).
+    pub device_ns: u64,
+    /// Depth in the camera's units, row by row, 0 = nothing measured. A half frame is shorter than the camera's image.
+    pub depth: Vec<u16>,
+    /// The colour image of about that time, where it is wanted and new.
+    pub colour: ColourImage,
+    /// Joints of everybody that the camera itself tracks; empty where it tracks nobody.
+    pub people: Vec<Joints>,
+}
+
+impl Default for CameraFrame {
+    fn default() -> Self {
+        let people = Vec::with_capacity(MAX_VIEW_PEOPLE);
+        Self { device_ns: 0, depth: Vec::new(), colour: ColourImage::default(), people }
+    }
+}
+
+impl CameraFrame {
+    /// Empties it for the next frame, and keeps its storage.
+    pub(super) fn clear(&mut self) {
+        self.device_ns = 0;
+        self.depth.clear();
+        (self.colour.width, self.colour.height) = (0, 0);
+        self.colour.rgb.clear();
+        self.people.clear();
+    }
+}
+
+/// What came of waiting for a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Arrival {
+    /// A frame.
+    Frame,
+    /// None in that time.
+    Nothing,
+    /// None any more: a recording that is played has ended.
+    Ended,
+}
+
+/// A camera that is open. It is closed when dropped.
+pub trait LiveCamera: Send {
+    /// What is known of it.
+    fn info(&self) -> &CameraInfo;
+
+    /// Waits for its next frame for about so long, and fills it in.
+    ///
+    /// # Errors
+    /// Where the camera is gone and has to be opened again.
+    fn read(&mut self, frame: &mut CameraFrame, patience: Duration) -> Result<Arrival, CameraError>;
+}

@@ -1,0 +1,42 @@
+//! Live cameras: depth, and colour and joints where a camera gives them, frame by frame as they come.
+//!
+//! Reads: a camera through its library, loaded at run time; or a recording, played in time. Writes: `CameraFrame`, and through
+//! [`LiveDepth`] depth images in our world with stamps of the loop's clock.
+//! Budget: 2 ms a 640x480 frame beside what the camera's library takes; nothing is allocated once the first frame was seen.
+//! Thread: the camera thread, which may wait for the camera; nothing else does.
+//!
+//! | camera | library | seen from here by |
+//! |---|---|---|
+//! | `kinect` | libfreenect | raw 11-bit readings, as recordings of `fakenect-record` hold them |
+//! | `openni` | libOpenNI2 | millimetres; an `.oni` file plays as a device |
+//! | `k4a` | libk4a, libk4arecord | millimetres and the lens of the calibration; an `.mkv` plays |
+//! | `realsense` | librealsense2 | units of the device; a recorded `.bag` or `.db3` plays |
+//! | `orbbec` | libOrbbecSDK | units of the device; a recorded `.bag` plays |
+//! | `recording` | none | any recording that [`super::open`] reads, played in time, again and again |
+
+mod device_clock;
+pub(in crate::source) mod error;
+pub mod fault_injection;
+mod frame_check;
+mod frame_pool;
+mod k4a;
+mod kinect;
+pub(in crate::source) mod library;
+mod live_camera;
+mod live_depth;
+mod open;
+mod openni;
+mod orbbec;
+mod realsense;
+mod recorded;
+mod recorder;
+
+pub use device_clock::DeviceClock;
+pub use error::CameraError;
+pub use frame_check::{CameraCounts, CameraState, FrameCheck, Verdict};
+pub use frame_pool::{FramePool, POOL_FRAMES, POOL_FRAMES_NAME};
+pub use library::{FOLDERS_VARIABLE, LibraryName, OWN_FOLDER, folders};
+pub use live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourImage, LiveCamera};
+pub use live_depth::{CameraOpener, LiveDepth, LiveUpdate, PATIENCE_NS};
+pub use open::{CameraKind, CameraName, open};
+pub use recorder::CameraRecorder;
