@@ -142,9 +142,9 @@ fn a_shop_shows_its_own_screens_and_a_change_is_seen_when_the_visitor_has_left()
     let kiosk = Kiosk::start(&scratch);
     kiosk.wait("the shop's ground", |seen| share(seen, PAPER) > 0.4);
     kiosk.display.give_keys("Toile");
-    if kiosk.pictures.is_some() {
+    if let Some(folder) = &kiosk.pictures {
         std::thread::sleep(Duration::from_secs(2));
-        kiosk.display.look().write(&kiosk.pictures.as_ref().unwrap().join("shop-attract.png"));
+        kiosk.display.look().write(&folder.join("shop-attract.png"));
     }
     kiosk.until("somebody dressed", &scratch, |lines| {
         lines.lines().last().is_some_and(|line| line.contains(", try-on, "))

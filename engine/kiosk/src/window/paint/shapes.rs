@@ -83,7 +83,7 @@ fn paint_block(block: &Block, placed: &PlacedBlock, look: Look, painter: &Painte
         Block::Text(_) => words.iter().for_each(|w| put(painter, rect.min, w)),
         Block::PoseGuide { phase, seated } => figure::paint(painter, rect, *phase, *seated, &look.palette),
         Block::TurnGuide { seen, turned, arrow } => {
-            turn_guide::paint((painter, &look.palette), rect, seen, *turned, *arrow)
+            turn_guide::paint((painter, &look.palette), rect, seen, *turned, *arrow);
         }
         Block::Entry { .. } => entry(rect, words, look, painter),
         Block::Progress { share, .. } => progress(*share, rect, words, look, painter),
