@@ -148,7 +148,7 @@ impl FrameCheck {
         Verdict::Good(stamp)
     }
 
-    /// Looks at the clock (ns): a camera that has not given anything good for 160 ms is lost, or frozen where the same frame comes.
+    /// Looks at the clock (ns): a camera that has not given anything good for 150 ms is lost, or frozen where the same frame comes.
     pub fn look(&mut self, now_ns: u64) -> CameraState {
         let silent = |since: Option<u64>| since.is_none_or(|then| now_ns.saturating_sub(then) > LOST_NS);
         let covered = self.state == CameraState::Covered && self.last_stamp.is_some_and(|then| !silent(Some(then)));
