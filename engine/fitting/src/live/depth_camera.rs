@@ -423,9 +423,10 @@ mod tests {
     fn frames_come_through_both_threads_with_the_cameras_own_joints_and_stamps() {
         let clock = RealClock::starting_at(1_000 * MS);
         let (mut feed, handle) = started(clock, None);
-        let (mut stamps, end) = (Vec::new(), clock.now_ns() + 700 * MS);
+        // Beside other tests, threads wake late: it ends as soon as enough has come.
+        let (mut stamps, end) = (Vec::new(), clock.now_ns() + 30_000 * MS);
         handle.gather_anew();
-        while clock.now_ns() < end {
+        while clock.now_ns() < end && (stamps.len() < 5 || handle.gathered().len() < 5) {
             clock.sleep_until(feed.next_ns().unwrap());
             if let Some(frame) = feed.read() {
                 assert_eq!((frame.joints.joints[0].confidence, frame.depth.is_some()), (1.0, true));
@@ -445,17 +446,19 @@ mod tests {
     #[test]
     fn a_camera_that_falls_silent_is_known_to_be_lost_and_to_be_back() {
         let clock = RealClock::starting_at(1_000 * MS);
-        let (from_ns, until_ns) = (1_400 * MS, 2_000 * MS);
+        let (from_ns, until_ns) = (3_000 * MS, 6_000 * MS);
         let fault = TimedFault { fault: CameraFault::Silent, from_ns, until_ns };
         let (feed, handle) = started(clock, Some(fault));
-        let seen_at = |ns: u64| {
-            clock.sleep_until(ns);
-            handle.figures().state
-        };
-        assert_eq!(seen_at(from_ns - 20 * MS), CameraState::Seeing);
         // Beside compilers, threads wake late: the limits themselves are held in simulated time.
-        assert_eq!(seen_at(until_ns - 100 * MS), CameraState::Lost);
-        assert_eq!(seen_at(until_ns + 1_000 * MS), CameraState::Seeing);
+        let comes_before = |state: CameraState, end_ns: u64| {
+            while clock.now_ns() < end_ns && handle.figures().state != state {
+                clock.sleep_until(clock.now_ns() + 5 * MS);
+            }
+            handle.figures().state == state
+        };
+        assert!(comes_before(CameraState::Seeing, from_ns));
+        assert!(comes_before(CameraState::Lost, until_ns));
+        assert!(comes_before(CameraState::Seeing, until_ns + 10_000 * MS));
         assert_eq!(handle.figures().counts.lost, 1);
         feed.end();
     }
