@@ -23,6 +23,7 @@ use toile_kiosk::visitor::photographs::{PHOTOGRAPH_BYTES, Photographs};
 use toile_kiosk::visitor::screen::{Action, Control, ControlStyle, Screen};
 use toile_kiosk::visitor::setup::VisitorSetup;
 use toile_kiosk::visitor::wardrobe::{Wardrobe, WornItem};
+use toile_view::figure::Appearance;
 
 const GARMENTS: usize = 200;
 
@@ -147,7 +148,13 @@ fn thirty_of_two_hundred_garments_are_opened_in_a_fixed_memory() {
 
     let first = VisitorSetup::new(&config, &stock, 0).unwrap().first();
     let quality = config.wish().quality;
-    let context = DressingContext::new(wardrobe.clone(), stock.first.clone(), quality, ShopperFacts::default());
+    let context = DressingContext::new(
+        wardrobe.clone(),
+        stock.first.clone(),
+        quality,
+        ShopperFacts::default(),
+        Appearance::default(),
+    );
     let mut worker = DressingWorker::new(context);
     let recording = session::open(None, None).unwrap();
     let pose = session::standing(&recording).unwrap()[0];
