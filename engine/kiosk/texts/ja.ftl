@@ -20,8 +20,8 @@ guide-left = 少し左へお動きください。
 guide-right = 少し右へお動きください。
 guide-alone = お一人ずつお願いします。
 guide-unseen = まだお姿が見えません。マークの上にお立ちください。
-camera-lost = カメラが今応答していません。少々お待ちください。
-camera-covered = カメラが何かで覆われています。取り除いてください。
+camera-lost = カメラが今うごいていません。少々お待ちください。
+camera-covered = カメラのまえに何かあります。取り除いてください。
 guide-soon = まもなく採寸を始めます。
 
 # Measuring
