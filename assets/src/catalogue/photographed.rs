@@ -170,7 +170,7 @@ impl PhotographedGarment {
         let [a, b] = self.points.map(Vec2::from);
         let metres = self.distance_mm * 1e-3 / a.distance(b);
         let anchor = 0.5 * (a + b) / size;
-        Ok(GarmentPhotographs { front, back, anchor, high_m: size.y * metres, level: self.level, own: self.clone() })
+        Ok(GarmentPhotographs { front, back, anchor, high_m: size.y * metres, own: self.clone() })
     }
 }
 
@@ -236,7 +236,6 @@ pub struct GarmentPhotographs {
     anchor: Vec2,
     /// Height of the whole picture on the garment (m).
     high_m: f32,
-    level: FittingLevel,
     /// What the manifest says.
     own: PhotographedGarment,
 }
@@ -253,7 +252,7 @@ impl GarmentPhotographs {
     /// # Errors
     /// A cut that is much longer or shorter than what the picture shows.
     pub fn lay_on(&self, garment: &mut Garment, body: &Body) -> Result<(), String> {
-        let level = self.level.height(&body.levels);
+        let level = self.own.level.height(&body.levels);
         let (low, high) = garment.start.iter().fold((f32::MAX, f32::MIN), |(l, h), p| (l.min(p.y), h.max(p.y)));
         let rows = ClothRows::of(&garment.start, low, high);
         // Down from the level the hems meet, upwards the upper edges.
@@ -263,7 +262,7 @@ impl GarmentPhotographs {
             return Err(format!(
                 "its photograph shows {:.0} mm below the {:?} and its cut has {:.0} mm; choose another cut, or measure image.distance_mm again",
                 below * 1e3,
-                self.level,
+                self.own.level,
                 cut * 1e3
             ));
         }

@@ -201,7 +201,7 @@ impl OpenNiStream {
     fn property<const N: usize>(&self, id: c_int) -> Option<[u8; N]> {
         let (mut value, mut size) = ([0; N], N as c_int);
         let api = &self.device.library.api;
-        // SAFETY: the stream lives, and the library writes at most `size` bytes, which are there.
+        // SAFETY: the stream is valid, and the library writes at most `size` bytes, which are there.
         let status = unsafe { (api.oniStreamGetProperty)(self.handle, id, value.as_mut_ptr().cast(), &mut size) };
         (status == OK && size == N as c_int).then_some(value)
     }
@@ -244,13 +244,13 @@ impl OpenNiStream {
         let (mut handle, mut index) = (self.handle, 0);
         let api = &self.device.library.api;
         let patience = c_int::try_from(patience_ms).unwrap_or(c_int::MAX);
-        // SAFETY: one stream is handed over, which lives, and one place for its index.
+        // SAFETY: one stream is handed over, which is valid, and one place for its index.
         let status = unsafe { (api.oniWaitForAnyStream)(&mut handle, 1, &mut index, patience) };
         if status != OK {
             return None;
         }
         let mut frame = ptr::null_mut();
-        // SAFETY: the stream lives and `frame` is a place for one pointer.
+        // SAFETY: the stream is valid and `frame` is a place for one pointer.
         let status = unsafe { (api.oniStreamReadFrame)(self.handle, &mut frame) };
         (status == OK && !frame.is_null()).then_some(OpenNiFrame(frame, self))
     }
@@ -259,7 +259,7 @@ impl OpenNiStream {
 impl Drop for OpenNiStream {
     fn drop(&mut self) {
         let api = &self.device.library.api;
-        // SAFETY: the stream lives, and its frames borrow it and are gone.
+        // SAFETY: the stream is valid, and its frames borrow it and are gone.
         unsafe {
             (api.oniStreamStop)(self.handle);
             (api.oniStreamDestroy)(self.handle);
@@ -344,7 +344,7 @@ fn checked(api: &OniApi, status: c_int, what: &str) -> Result<(), Fault> {
     if status == OK {
         return Ok(());
     }
-    // SAFETY: the library gives a text that ends with a zero and lives as long as itself, or nothing.
+    // SAFETY: the library gives a text that ends with a zero and is valid as long as itself, or nothing.
     let message = unsafe {
         let text = (api.oniGetExtendedError)();
         if text.is_null() { String::new() } else { CStr::from_ptr(text).to_string_lossy().into_owned() }

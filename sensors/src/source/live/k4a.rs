@@ -324,7 +324,7 @@ fn refused(what: &str) -> CameraError {
 }
 
 fn depth_of(api: &K4aApi, capture: &Capture) -> Option<K4aImage> {
-    // SAFETY: the capture lives; what is given is a reference of our own, or nothing.
+    // SAFETY: the capture is valid; what is given is a reference of our own, or nothing.
     let image = unsafe { (api.k4a_capture_get_depth_image)(capture.0) };
     (!image.is_null()).then_some(K4aImage(image, *api))
 }
@@ -337,20 +337,20 @@ fn colour_of(api: &K4aApi, capture: &Capture) -> Option<K4aImage> {
 
 impl K4aImage {
     fn size(&self) -> [u32; 2] {
-        // SAFETY: the image lives.
+        // SAFETY: the image is valid.
         let sides =
             unsafe { [(self.1.k4a_image_get_width_pixels)(self.0), (self.1.k4a_image_get_height_pixels)(self.0)] };
         sides.map(|side| u32::try_from(side).unwrap_or(0))
     }
 
     fn time_us(&self) -> u64 {
-        // SAFETY: the image lives.
+        // SAFETY: the image is valid.
         unsafe { (self.1.k4a_image_get_device_timestamp_usec)(self.0) }
     }
 
     /// The rows of so many bytes each; none where the image is shorter.
     fn rows(&self, row_bytes: usize) -> Option<impl Iterator<Item = &[u8]>> {
-        // SAFETY: the image lives.
+        // SAFETY: the image is valid.
         let (data, size, stride) = unsafe {
             let stride = (self.1.k4a_image_get_stride_bytes)(self.0);
             ((self.1.k4a_image_get_buffer)(self.0), (self.1.k4a_image_get_size)(self.0), stride)
@@ -399,7 +399,7 @@ impl LiveCamera for K4a {
             frame.depth.extend(samples);
         }
         if let Some(image) = colour_of(&self.api, &capture).filter(|_| self.colour) {
-            // SAFETY: the image lives.
+            // SAFETY: the image is valid.
             let format = unsafe { (self.api.k4a_image_get_format)(image.0) };
             let [w, h] = image.size();
             if let Some(rows) = image.rows(w as usize * 4).filter(|_| format == FORMAT_BGRA32) {

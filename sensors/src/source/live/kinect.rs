@@ -164,7 +164,7 @@ impl Kinect {
 
     fn start(&mut self, which: Option<&str>) -> Result<(), CameraError> {
         let (api, context) = (self.api, self.context);
-        // SAFETY: the context was made above and lives.
+        // SAFETY: the context was made above and is valid.
         let devices = unsafe {
             (api.freenect_set_log_level)(context, LOG_FATAL);
             (api.freenect_select_subdevices)(context, SUBDEVICE_CAMERA);
@@ -176,7 +176,7 @@ impl Kinect {
         }
         let opened = match which {
             None => {
-                // SAFETY: the context lives, and the device is a place for one pointer.
+                // SAFETY: the context is valid, and the device is a place for one pointer.
                 unsafe { (api.freenect_open_device)(context, &mut self.device, 0) }
             }
             Some(serial) => {
@@ -277,7 +277,7 @@ impl Kinect {
             microseconds: c_long::from(patience.subsec_micros() as i32),
         };
         INBOX.with(|inbox| inbox.swap(&RefCell::new(std::mem::take(&mut self.inbox))));
-        // SAFETY: the context lives, and the timeout outlives the call.
+        // SAFETY: the context is valid, and the timeout outlives the call.
         let status = unsafe { (self.api.freenect_process_events_timeout)(self.context, &mut timeout) };
         self.inbox = INBOX.with(RefCell::take);
         status
@@ -315,7 +315,7 @@ impl LiveCamera for Kinect {
 
 impl Drop for Kinect {
     fn drop(&mut self) {
-        // SAFETY: the device, if there is one, is open and the context lives; neither is used after this.
+        // SAFETY: the device, if there is one, is open and the context is valid; neither is used after this.
         unsafe {
             if !self.device.is_null() {
                 (self.api.freenect_stop_depth)(self.device);

@@ -199,11 +199,11 @@ impl Parts {
             })?;
             return Ok(());
         }
-        // SAFETY: the context lives.
+        // SAFETY: the context is valid.
         let list =
             api.call("its devices cannot be listed", |e| unsafe { (api.ob_query_device_list)(self.context, e) })?;
         let device = match &text {
-            // SAFETY: the list lives until it is deleted below, and the serial number ends with a zero.
+            // SAFETY: the list is valid until it is deleted below, and the serial number ends with a zero.
             Some(serial) => api.call("it cannot be opened", |e| unsafe {
                 (api.ob_device_list_get_device_by_serial_number)(list, serial.as_ptr(), e)
             }),
@@ -217,7 +217,7 @@ impl Parts {
                 Ok(_) => api.call("it cannot be opened", |e| unsafe { (api.ob_device_list_get_device)(list, 0, e) }),
             },
         };
-        // SAFETY: the list lives, and is used no more.
+        // SAFETY: the list is valid, and is used no more.
         let _ = api.call("", |e| unsafe { (api.ob_delete_device_list)(list, e) });
         self.device = device?;
         Ok(())
@@ -225,11 +225,11 @@ impl Parts {
 
     fn start(&mut self, colour: bool, is_recording: bool) -> Result<(), CameraError> {
         let (api, what) = (self.api, "it cannot be started");
-        // SAFETY: the device lives.
+        // SAFETY: the device is valid.
         self.pipeline = api.call(what, |e| unsafe { (api.ob_create_pipeline_with_device)(self.device, e) })?;
         // SAFETY: takes nothing else.
         self.config = api.call(what, |e| unsafe { (api.ob_create_config)(e) })?;
-        // SAFETY: the configuration lives, here and below.
+        // SAFETY: the configuration is valid, here and below.
         api.call("its depth cannot be chosen", |e| unsafe {
             (api.ob_config_enable_stream)(self.config, STREAM_DEPTH, e);
         })?;
@@ -248,7 +248,7 @@ impl Parts {
     /// The frames of the next moment; none in that time.
     fn wait(&mut self, patience: Duration) -> Result<Option<ObFrame>, CameraError> {
         let (api, ms) = (self.api, patience.as_millis().max(1) as u32);
-        // SAFETY: the pipeline lives and is started.
+        // SAFETY: the pipeline is valid and is started.
         let frames =
             api.call("it is gone", |e| unsafe { (api.ob_pipeline_wait_for_frameset)(self.pipeline, ms, e) })?;
         Ok((!frames.is_null()).then_some(ObFrame(frames, api)))
@@ -292,9 +292,9 @@ impl ObFrame {
     /// The camera of a depth frame, and its rate (Hz).
     fn camera(&self) -> Result<(Camera, f32), CameraError> {
         let (api, what) = (self.1, "its lens cannot be read");
-        // SAFETY: the frame lives; the profile is a reference of our own, deleted below.
+        // SAFETY: the frame is valid; the profile is a reference of our own, deleted below.
         let profile = api.call(what, |e| unsafe { (api.ob_frame_get_stream_profile)(self.0, e) })?;
-        // SAFETY: the profile lives, here and below.
+        // SAFETY: the profile is valid, here and below.
         let k = api.call(what, |e| unsafe { (api.ob_video_stream_profile_get_intrinsic)(profile, e) });
         // SAFETY: as above.
         let lens = api.call(what, |e| unsafe { (api.ob_video_stream_profile_get_distortion)(profile, e) });
@@ -302,7 +302,7 @@ impl ObFrame {
         let rate = api.call(what, |e| unsafe { (api.ob_video_stream_profile_get_fps)(profile, e) });
         // SAFETY: as above, for the last time.
         let _ = api.call("", |e| unsafe { (api.ob_delete_stream_profile)(profile, e) });
-        // SAFETY: a depth frame that lives.
+        // SAFETY: a depth frame that is valid.
         let scale = api.call(what, |e| unsafe { (api.ob_depth_frame_get_value_scale)(self.0, e) })?;
         let (k, size) = (k?, self.size().ok_or_else(|| refused(what, String::new()))?);
         let intrinsics = Intrinsics { width: size[0], height: size[1], fx: k.fx, fy: k.fy, cx: k.cx, cy: k.cy };
@@ -313,7 +313,7 @@ impl ObFrame {
 
     fn size(&self) -> Option<[u32; 2]> {
         let api = self.1;
-        // SAFETY: a video frame that lives.
+        // SAFETY: a video frame that is valid.
         let side =
             |f: unsafe extern "C" fn(ObHandle, *mut ObError) -> u32| api.call("", |e| unsafe { f(self.0, e) }).ok();
         Some([side(api.ob_video_frame_get_width)?, side(api.ob_video_frame_get_height)?])
@@ -322,7 +322,7 @@ impl ObFrame {
     /// The bytes of a video frame of so many a pixel; none where it is shorter than its size.
     fn bytes(&self, bytes: usize) -> Option<&[u8]> {
         let (api, [w, h]) = (self.1, self.size()?);
-        // SAFETY: the frame lives.
+        // SAFETY: the frame is valid.
         let data = api.call("", |e| unsafe { (api.ob_frame_get_data)(self.0, e) }).ok()?;
         // SAFETY: as above.
         let size = api.call("", |e| unsafe { (api.ob_frame_get_data_size)(self.0, e) }).ok()? as usize;
@@ -372,14 +372,14 @@ impl LiveCamera for Orbbec {
         };
         self.heard = Instant::now();
         let api = self.parts.api;
-        // SAFETY: the frame lives.
+        // SAFETY: the frame is valid.
         let us = api.call("", |e| unsafe { (api.ob_frame_get_timestamp_us)(depth.0, e) })?;
         frame.device_ns = us.saturating_mul(1_000);
         if let Some(bytes) = depth.bytes(2) {
             frame.depth.extend(bytes.chunks_exact(2).map(|b| u16::from_le_bytes([b[0], b[1]])));
         }
         if let Some(colour) = frames.as_ref().and_then(ObFrame::colour) {
-            // SAFETY: the frame lives.
+            // SAFETY: the frame is valid.
             let format = api.call("", |e| unsafe { (api.ob_frame_get_format)(colour.0, e) })?;
             if let (Some([w, h]), Some(bytes), FORMAT_RGB) = (colour.size(), colour.bytes(3), format) {
                 (frame.colour.width, frame.colour.height) = (w, h);

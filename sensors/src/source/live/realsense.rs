@@ -224,7 +224,7 @@ impl Pipeline {
     /// How many cameras are connected.
     fn devices(&self) -> Result<c_int, CameraError> {
         let (api, what) = (self.api, "its devices cannot be listed");
-        // SAFETY: the context lives.
+        // SAFETY: the context is valid.
         let list = api.call(what, |e| unsafe { (api.rs2_query_devices)(self.context, e) })?;
         // SAFETY: the list was made above, and is deleted once.
         let count = api.call(what, |e| unsafe { (api.rs2_get_device_count)(list, e) });
@@ -239,7 +239,7 @@ impl Pipeline {
         let [width, height, rate] = MODE;
         let text = which.map(CString::new).transpose().map_err(|_| refused("its name has a zero in it"))?;
         if let (Some(text), true) = (&text, recording.is_some()) {
-            // SAFETY: the configuration lives, and the path ends with a zero and outlives the call. All recorded streams are played.
+            // SAFETY: the configuration is valid, and the path ends with a zero and outlives the call. All recorded streams are played.
             return api
                 .call("the recording cannot be opened", |e| unsafe {
                     (api.rs2_config_enable_device_from_file_repeat_option)(config, text.as_ptr(), 0, e);
@@ -250,7 +250,7 @@ impl Pipeline {
             // SAFETY: the same.
             api.call("it cannot be chosen", |e| unsafe { (api.rs2_config_enable_device)(config, serial.as_ptr(), e) })?;
         }
-        // SAFETY: the configuration lives.
+        // SAFETY: the configuration is valid.
         api.call("its depth cannot be chosen", |e| unsafe {
             (api.rs2_config_enable_stream)(config, STREAM_DEPTH, -1, width, height, FORMAT_Z16, rate, e);
         })?;
@@ -275,7 +275,7 @@ impl Pipeline {
     fn wait(&mut self, patience: Duration) -> Result<Option<Frames>, CameraError> {
         let (api, pipeline) = (self.api, self.pipeline);
         let (mut frames, patience) = (ptr::null_mut(), patience.as_millis().max(LEAST_MS) as c_uint);
-        // SAFETY: the pipeline lives and is started, and `frames` is a place for one pointer.
+        // SAFETY: the pipeline is valid and is started, and `frames` is a place for one pointer.
         let came = api.call("it is gone", |e| unsafe {
             (api.rs2_pipeline_try_wait_for_frames)(pipeline, &mut frames, patience, e)
         })?;
@@ -326,7 +326,7 @@ impl Frames {
 
     fn profile(&self) -> Option<RsHandle> {
         let api = self.1;
-        // SAFETY: the frame lives, and so does its profile as long as the pipeline.
+        // SAFETY: the frame is valid, and so does its profile as long as the pipeline.
         api.call("", |e| unsafe { (api.rs2_get_frame_stream_profile)(self.0, e) }).ok().filter(|p| !p.is_null())
     }
 
@@ -334,7 +334,7 @@ impl Frames {
         let (api, profile) = (self.1, self.profile()?);
         let (mut kind, mut index, mut id) = (StreamKind { stream: 0, format: 0, rate: 0 }, 0, 0);
         let StreamKind { stream, format, rate } = &mut kind;
-        // SAFETY: the profile lives, and five places for a number are handed over.
+        // SAFETY: the profile is valid, and five places for a number are handed over.
         api.call("", |e| unsafe {
             (api.rs2_get_stream_profile_data)(profile, stream, format, &mut index, &mut id, rate, e);
         })
@@ -347,9 +347,9 @@ impl Frames {
         let (api, what) = (self.1, "its lens cannot be read");
         let (profile, kind) = self.profile().zip(self.kind()).ok_or_else(|| refused(what))?;
         let mut k = RsIntrinsics::default();
-        // SAFETY: the profile lives, and a place for the intrinsics is handed over.
+        // SAFETY: the profile is valid, and a place for the intrinsics is handed over.
         api.call(what, |e| unsafe { (api.rs2_get_video_stream_intrinsics)(profile, &mut k, e) })?;
-        // SAFETY: a depth frame that lives.
+        // SAFETY: a depth frame that is valid.
         let units = api.call(what, |e| unsafe { (api.rs2_depth_frame_get_units)(self.0, e) })?;
         let intrinsics = Intrinsics {
             width: u32::try_from(k.width).unwrap_or(0),
@@ -366,7 +366,7 @@ impl Frames {
     /// The rows of a video frame of so many bytes a pixel, with its width and height.
     fn rows(&self, bytes: usize) -> Option<([usize; 2], impl Iterator<Item = &[u8]>)> {
         let api = self.1;
-        // SAFETY: a video frame that lives, here and below.
+        // SAFETY: a video frame that is valid, here and below.
         let number = |f: unsafe extern "C" fn(RsHandle, *mut RsError) -> c_int| {
             usize::try_from(api.call("", |e| unsafe { f(self.0, e) }).ok()?).ok()
         };
@@ -385,7 +385,7 @@ impl Frames {
 
     fn time_ns(&self) -> u64 {
         let api = self.1;
-        // SAFETY: the frame lives.
+        // SAFETY: the frame is valid.
         let ms = api.call("", |e| unsafe { (api.rs2_get_frame_timestamp)(self.0, e) }).unwrap_or(0.0);
         (ms.max(0.0) * 1e6) as u64
     }
