@@ -346,6 +346,9 @@ fn the_unit_starts_what_there_is_with_the_rights_that_it_needs() {
     assert!(value(&unit, "WatchdogSec").parse::<u64>().unwrap() >= 3, "a stall of two seconds is survived");
     let loopback = fs::read_to_string(folder.join("loopback.conf")).unwrap();
     assert_eq!(value(&loopback, "IPAddressAllow"), "localhost");
+    // Pictures are served in a private network: one that `picture.serve` takes.
+    let link = fs::read_to_string(folder.join("link.conf")).unwrap();
+    assert!(value(&link, "IPAddressAllow").starts_with("192.168."), "{link}");
     // systemd itself, where there is one. It looks whether the program is there, so the one that is.
     let program = env!("CARGO_BIN_EXE_toile");
     let scratch = Scratch::new("kiosk-unit");

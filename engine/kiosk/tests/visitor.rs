@@ -5,10 +5,11 @@
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::io;
+use std::io::{self, Read, Write};
+use std::net::{TcpListener, TcpStream};
 use std::sync::atomic::AtomicBool;
 use std::sync::atomic::Ordering::Relaxed;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -35,6 +36,9 @@ use toile_kiosk::visitor::setup::VisitorSetup;
 
 /// Longest that a page is waited for, beside compilers.
 const LONGEST: Duration = Duration::from_secs(180);
+
+/// One visit at a time, for all that the process has open is looked at.
+static VISIT: Mutex<()> = Mutex::new(());
 
 /// A manager that ignores what it is notified of.
 struct Nobody;
@@ -84,6 +88,22 @@ impl Finger {
         assert!(self.asked.push(Input::Pressed(action)));
     }
 
+    /// Waits for the code of a picture; gives what a phone reads in it.
+    fn scan(&mut self) -> String {
+        let is_code = |block: &Block| matches!(block, Block::Code { .. });
+        let screen = self.wait("code", |s| s.blocks.iter().any(is_code));
+        let Some(Block::Code { side, dark }) = screen.blocks.into_iter().find(is_code) else { unreachable!() };
+        // Four pixels a module and the quiet zone around them, as on a screen.
+        let pixels = 4 * (side + 8);
+        let is_dark = |x: usize, y: usize| {
+            let [x, y] = [x / 4, y / 4].map(|at| at.checked_sub(4).filter(|at| *at < side));
+            x.zip(y).is_some_and(|(x, y)| dark[y * side + x])
+        };
+        let mut seen =
+            rqrr::PreparedImage::prepare_from_greyscale(pixels, pixels, |x, y| if is_dark(x, y) { 0 } else { 255 });
+        seen.detect_grids()[0].decode().expect("a phone reads it").1
+    }
+
     fn visit(&mut self) {
         let measuring = self.page(Page::Measuring);
         assert!(
@@ -112,7 +132,8 @@ impl Finger {
         self.page(Page::Zones);
         self.press(Action::Back);
         self.press(Action::TakePicture);
-        self.wait("code", |s| s.blocks.iter().any(|b| matches!(b, Block::Code { .. })));
+        let link = self.scan();
+        assert!(link.starts_with("data:image/png;base64,"), "{link}");
         self.press(Action::DeletePicture);
         self.page(Page::Fitting);
         self.press(Action::Leave);
@@ -120,6 +141,19 @@ impl Finger {
         assert_eq!(after.body_view, BodyView::Mannequin);
         assert!(!format!("{after:?}").contains("cm"), "{after:?}");
     }
+}
+
+/// What a phone gets by a link, as far as there is something.
+fn get(link: &str) -> io::Result<Vec<u8>> {
+    let (address, path) = link.strip_prefix("http://").unwrap().split_once('/').unwrap();
+    let mut stream = TcpStream::connect(address)?;
+    stream.set_read_timeout(Some(LONGEST))?;
+    write!(stream, "GET /{path} HTTP/1.1\r\nHost: {address}\r\n\r\n")?;
+    let mut answer = Vec::new();
+    stream.read_to_end(&mut answer)?;
+    let end = answer.windows(4).position(|four| four == b"\r\n\r\n").ok_or(io::ErrorKind::UnexpectedEof)?;
+    assert!(answer.starts_with(b"HTTP/1.1 200"), "{}", String::from_utf8_lossy(&answer[..end]));
+    Ok(answer.split_off(end + 4))
 }
 
 fn is_progress(block: &Block) -> bool {
@@ -155,6 +189,7 @@ fn written() -> i64 {
 
 #[test]
 fn a_whole_visit_opens_no_file_to_write_and_no_socket_and_writes_not_a_byte() {
+    let _alone = VISIT.lock().unwrap_or_else(PoisonError::into_inner);
     let before = (open_to_the_world(), written());
     let (over, opened) = (AtomicBool::new(false), Mutex::new(BTreeSet::new()));
     let mut states = Vec::new();
@@ -166,7 +201,7 @@ fn a_whole_visit_opens_no_file_to_write_and_no_socket_and_writes_not_a_byte() {
                 thread::sleep(Duration::from_millis(2));
             }
         });
-        states = serve();
+        states = serve("", Finger::visit);
         over.store(true, Relaxed);
     });
     let new: Vec<String> = opened.into_inner().unwrap().difference(&before.0).cloned().collect();
@@ -176,10 +211,48 @@ fn a_whole_visit_opens_no_file_to_write_and_no_socket_and_writes_not_a_byte() {
     assert_eq!(states[3], SessionState::Attract, "{states:?}");
 }
 
-/// The whole visit; gives the states that were entered.
-fn serve() -> Vec<SessionState> {
+/// A shop that serves pictures at an address of its own; the phone is in the same network.
+#[test]
+fn a_picture_by_a_link_is_large_and_gone_when_it_is_deleted() {
+    let _alone = VISIT.lock().unwrap_or_else(PoisonError::into_inner);
+    let address = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
+    let is_served = || TcpStream::connect(address).is_ok();
+    serve(&format!("[picture]\nserve = \"{address}\"\nnetwork = \"Shop guest\"\n"), |finger| {
+        finger.page(Page::Fitting);
+        assert!(!is_served(), "nothing listens before a picture is asked for");
+        finger.press(Action::TakePicture);
+        let link = finger.scan();
+        assert!(link.starts_with(&format!("http://{address}/")), "{link}");
+        let screen = finger.page(Page::Picture);
+        assert!(format!("{:?}", screen.blocks).contains("Shop guest"), "{screen:?}");
+        let picture = png::Decoder::new(io::Cursor::new(get(&link).unwrap())).read_info().unwrap();
+        assert_eq!((picture.info().width, picture.info().height), (720, 1200));
+        // A phone that is not in that network.
+        finger.press(Action::OtherCode);
+        finger.wait("own code", |s| {
+            s.controls.iter().any(|c| c.action == Action::OtherCode && c.label.contains("Large"))
+        });
+        assert!(finger.scan().starts_with("data:image/png;base64,"));
+        finger.press(Action::DeletePicture);
+        finger.page(Page::Fitting);
+        let begun = Instant::now();
+        while is_served() {
+            assert!(begun.elapsed() < LONGEST, "it is served after it was deleted");
+            thread::sleep(Duration::from_millis(20));
+        }
+        finger.press(Action::TakePicture);
+        let again = finger.scan();
+        assert!(again.starts_with("http://") && again != link, "a name is used once: {again}");
+        finger.press(Action::Leave);
+        finger.page(Page::Attract);
+        assert!(get(&link).is_err() && get(&again).is_err(), "whoever has left is served no longer");
+    });
+}
+
+/// A visit to a kiosk of this configuration; gives the states that were entered.
+fn serve(config: &str, visit: impl FnOnce(&mut Finger) + Send) -> Vec<SessionState> {
     let clock = RealClock::default();
-    let config = Config::parse("kiosk.toml", "[wear]\nquality = \"draft\"").unwrap();
+    let config = Config::parse("kiosk.toml", &format!("[wear]\nquality = \"draft\"\n{config}")).unwrap();
     let stock = Stock::read(&config).unwrap();
     let setup = VisitorSetup::new(&config, &stock, clock.now_ns()).unwrap();
     let session = Arc::new(session::open(None, None).unwrap());
@@ -217,7 +290,7 @@ fn serve() -> Vec<SessionState> {
     thread::scope(|scope| {
         let hand = scope.spawn(|| {
             let _end = AtTheEnd(&stop);
-            finger.visit();
+            visit(&mut finger);
         });
         let print_line = |_: &str| {};
         let environment = ServiceEnvironment {

@@ -36,7 +36,7 @@ struct More {
 }
 
 /// Files of the kiosk as the package installs them.
-const KIOSK_FILES: [(&str, &str); 4] = [
+const KIOSK_FILES: [(&str, &str); 6] = [
     (
         "/etc/toile/kiosk.toml",
         "The configuration that the service reads; `toile kiosk --print-config` explains all keys.",
@@ -45,6 +45,14 @@ const KIOSK_FILES: [(&str, &str); 4] = [
     (
         "/usr/share/doc/toile/examples/loopback.conf",
         "Opens the loopback interface to the service; install it as /etc/systemd/system/toile.service.d/loopback.conf.",
+    ),
+    (
+        "/usr/share/doc/toile/examples/camera.conf",
+        "Opens depth cameras to the service; install it as /etc/systemd/system/toile.service.d/camera.conf.",
+    ),
+    (
+        "/usr/share/doc/toile/examples/link.conf",
+        "Lets the service offer pictures on the shop's own network; install it as /etc/systemd/system/toile.service.d/link.conf.",
     ),
     ("/usr/share/doc/toile/shop.md", "The guide for a shop."),
 ];

@@ -39,15 +39,17 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Mean difference of the channels from another (0 .. 255), over the rows from `top` to `bottom` (shares of the height).
-    pub fn differs(&self, other: &Self, [top, bottom]: [f64; 2]) -> f64 {
+    /// Mean difference of the channels from another (0 .. 255), within left, top, right and bottom (shares of width and height).
+    pub fn differs(&self, other: &Self, [left, top, right, bottom]: [f64; 4]) -> f64 {
         if self.size != other.size {
             return 255.0;
         }
-        let row = |share: f64| (self.size[1] as f64 * share) as usize * self.size[0] * 3;
-        let pairs = self.rgb[row(top)..row(bottom)].iter().zip(&other.rgb[row(top)..row(bottom)]);
-        let count = pairs.len().max(1);
-        pairs.map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>() / count as f64
+        let at = |share: f64, axis: usize| (self.size[axis] as f64 * share) as usize;
+        let rows = (at(top, 1)..at(bottom, 1))
+            .map(|y| 3 * (y * self.size[0] + at(left, 0))..3 * (y * self.size[0] + at(right, 0)));
+        let pairs = rows.flat_map(|row| self.rgb[row.clone()].iter().zip(&other.rgb[row]));
+        let (sum, count) = pairs.fold((0, 0), |(sum, count), (a, b)| (sum + u64::from(a.abs_diff(*b)), count + 1_u64));
+        sum as f64 / count.max(1) as f64
     }
 
     /// Middle of what has this colour (pixels); none where nothing has.
