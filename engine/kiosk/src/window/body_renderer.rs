@@ -11,7 +11,6 @@ use toile_view::figure::PlacedHead;
 use toile_view::fit_map;
 use toile_view::image::Size;
 use toile_view::raster::{Backdrop, Gpu, Model, RenderQuality, Renderer, SurfaceInterpolation, Viewport};
-use toile_view::scene::Bounds;
 use wgpu::{CommandEncoder, TextureFormat, TextureView};
 
 use super::body_model::{BodyModel, ModelPair};
@@ -21,8 +20,8 @@ use crate::visitor::screen::{BodyView, JudgedGarment};
 /// A mannequin turns once in so many seconds.
 const TURN_S: f64 = 36.0;
 
-/// How fast the view follows a body across the floor (share of the way a picture).
-const FOLLOW: f32 = 0.2;
+/// Time in which the view follows a body across the floor by two thirds of the way (s).
+const FOLLOW_S: f32 = 0.075;
 
 /// What is drawn of a moment.
 #[derive(Debug, Clone, Copy)]
@@ -62,6 +61,12 @@ pub struct BodyRenderer {
     normals: Vec<Vec3>,
     /// Where the body stands (m), once it was seen.
     at: Option<Vec3>,
+    /// The same of the left and the right one of a pair, which stand as the shopper stood when they were dressed.
+    pair_at: [Vec3; 2],
+    /// When the snapshot was published that it was seen in (ns).
+    followed_ns: u64,
+    /// Coordinates on their way to a median.
+    sorted: Vec<f32>,
     /// What was painted last: colours, and whether as a fit map, with the zones that it does not know and how the garment in hand was
     /// judged.
     painted: (Vec<[f32; 3]>, Option<FitColours>),
@@ -87,6 +92,9 @@ impl BodyRenderer {
             positions: Vec::new(),
             normals: Vec::new(),
             at: None,
+            pair_at: [Vec3::ZERO; 2],
+            followed_ns: 0,
+            sorted: Vec::new(),
             painted: (Vec::new(), None),
         }
     }
@@ -108,6 +116,11 @@ impl BodyRenderer {
         (self.fit, self.zones) = (model.fit.clone(), model.zones.clone());
         (self.heights, self.levels) = (model.heights.clone(), model.levels);
         self.statures = [model.stature, pair.map_or(1.7, |p| p[0].stature), pair.map_or(1.7, |p| p[1].stature)];
+        let mut stands = |model: &BodyModel| {
+            let body = model.meshes.surfaces.first();
+            body.and_then(|body| camera::middle(&body.rest, &mut self.sorted)).unwrap_or_default()
+        };
+        self.pair_at = pair.map_or([Vec3::ZERO; 2], |pair| pair.each_ref().map(&mut stands));
         self.blends = vec![SurfaceInterpolation::new(); self.worn];
         self.painted = (Vec::new(), None);
         self.at = None;
@@ -127,7 +140,7 @@ impl BodyRenderer {
         self.normals.resize(vertices, Vec3::ZERO);
         snapshot.skin.read(&mut self.positions, &mut self.normals);
         self.head.place(&mut self.positions, &mut self.normals);
-        self.follow();
+        self.follow(snapshot.times.published_ns);
         self.move_to(0, snapshot.times.published_ns, now_ns);
         for (i, points) in snapshot.garments.iter().enumerate() {
             self.positions.clear();
@@ -139,14 +152,13 @@ impl BodyRenderer {
         }
     }
 
-    fn follow(&mut self) {
-        let bounds = Bounds::of(&self.positions);
-        if bounds.is_empty() {
-            return;
-        }
-        let middle = (bounds.min + bounds.max) * 0.5;
-        let now = Vec3::new(middle.x, 0.0, middle.z);
-        self.at = Some(self.at.map_or(now, |at| at.lerp(now, FOLLOW)));
+    /// Follows the body, and not an arm that is held out.
+    fn follow(&mut self, published_ns: u64) {
+        let Some(now) = camera::middle(&self.positions, &mut self.sorted) else { return };
+        let since_s = published_ns.saturating_sub(self.followed_ns) as f32 * 1e-9;
+        self.followed_ns = published_ns;
+        let share = 1.0 - (-since_s / FOLLOW_S).exp();
+        self.at = Some(self.at.map_or(now, |at| at.lerp(now, share)));
     }
 
     /// A position that is NaN, or another body's, leaves a surface where it was.
@@ -174,7 +186,7 @@ impl BodyRenderer {
                     let x = side as u32 * half.width;
                     let free = if right < 1.0 { [0.0, top, 1.0, bottom] } else { [left, top, right, bottom] };
                     let place = Viewport { x, y: 0, size: half };
-                    self.draw_body(encoder, target, place, (1 + side, Vec3::ZERO, *yaw), free);
+                    self.draw_body(encoder, target, place, (1 + side, self.pair_at[side], *yaw), free);
                 }
             }
             view => {
