@@ -95,6 +95,7 @@ fn page(first: &Screen, around: usize) -> Screen {
         action: Action::Garment(place),
         label: String::new(),
         detail: None,
+        is_detail_spare: false,
         style: ControlStyle::Tile([0.5; 3]),
         chosen: false,
         picture: None,

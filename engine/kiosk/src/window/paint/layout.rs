@@ -124,7 +124,7 @@ impl ScreenLayout {
     fn breaks_words(&self) -> bool {
         let buttons = self.buttons.iter().flat_map(|b| [Some(&b.label), b.detail.as_ref()].into_iter().flatten());
         let read = self.blocks.iter().flat_map(|b| &b.words).chain([&self.heading.1]);
-        buttons.chain(read).any(|words| breaks_a_word(words))
+        buttons.chain(read).any(breaks_a_word)
     }
 
     /// The control at a point, with buttons scrolled so far.

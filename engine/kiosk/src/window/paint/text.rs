@@ -38,6 +38,8 @@ pub fn breaks_a_word(words: &SetText) -> bool {
     let letters = |row: usize| words.rows[row].glyphs.iter().map(|glyph| glyph.chr);
     let is_letter = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() && !is_ideograph(c));
     (1..words.rows.len()).any(|row| {
-        !words.rows[row - 1].ends_with_newline && is_letter(letters(row - 1).last()) && is_letter(letters(row).next())
+        !words.rows[row - 1].ends_with_newline
+            && is_letter(letters(row - 1).next_back())
+            && is_letter(letters(row).next())
     })
 }
