@@ -3,6 +3,8 @@
 //! Reads: a fabric's file, and the picture that its print names. Writes: an immutable [`Fabric`].
 //! Budget: 10 ms a fabric with a print, at load only. Thread: the loading thread.
 
+pub mod friction_element;
+pub mod loop_widths;
 pub mod print;
 
 use std::sync::Arc;
@@ -12,6 +14,7 @@ use thiserror::Error;
 use toml::{Table, Value};
 
 use crate::texture::Texture;
+use loop_widths::LoopWidths;
 use print::Print;
 
 /// One fabric, as its file states it. Stiffnesses are per unit width of cloth, so that they do not depend on any mesh.
@@ -62,6 +65,9 @@ pub struct Fabric {
     /// Share of light that the threads hold back where cloth is seen against the light (0..1): a voile has gaps.
     #[serde(default = "opaque")]
     pub opacity: f32,
+    /// Widths of its measured loops; none where it was not measured, and then nothing of it costs anything.
+    #[serde(default)]
+    pub hysteresis: LoopWidths,
     /// What is printed on it or woven into it.
     pub print: Option<Print>,
     /// One repeat of the print, drawn or read.
@@ -295,6 +301,9 @@ impl Fabric {
         };
         for (key, low, high) in Self::RANGES {
             self.figure(key).map_or(Ok(()), |value| checked(key, value, low, high))?;
+        }
+        for ((key, low, high), width) in LoopWidths::RANGES.into_iter().zip(self.hysteresis.figures()) {
+            checked(key, width, low, high)?;
         }
         checked("comfortable_stretch", self.comfortable_stretch, 0.001, 1.0)?;
         self.colour.iter().try_for_each(|&part| checked("colour", part, 0.0, 1.0))?;

@@ -6,6 +6,7 @@
 
 use delaunator::{Point, triangulate};
 use glam::{DVec2, DVec3};
+use toile_assets::fabric::loop_widths::LoopWidths;
 use toile_assets::fabric::{Fabric, USUAL_SHEEN, USUAL_THREADS, Weave};
 use toile_assets::garment::shape::{NO_VERTEX, Part};
 use toile_assets::garment::{Face, Shape};
@@ -274,6 +275,7 @@ impl CaseFabric {
             threads_per_cm: USUAL_THREADS,
             sheen: USUAL_SHEEN,
             opacity: 1.0,
+            hysteresis: LoopWidths::default(),
             print: None,
             tile: None,
         }

@@ -15,6 +15,7 @@ use std::f64::consts::TAU;
 
 use glam::Vec3;
 
+use crate::fabric::loop_widths::LoopWidths;
 use crate::fabric::{Fabric, USUAL_SHEEN, USUAL_THREADS, Weave};
 use crate::garment::Shape;
 
@@ -101,6 +102,7 @@ pub fn fabric(shape: &Shape, stretch: Stretch) -> Fabric {
         threads_per_cm: USUAL_THREADS,
         sheen: USUAL_SHEEN,
         opacity: 1.0,
+        hysteresis: LoopWidths::default(),
         print: None,
         tile: None,
     }

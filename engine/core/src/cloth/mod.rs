@@ -4,11 +4,13 @@
 //! Budget: 3 ms a step for 6,000 particles on one core ([`STEP_BUDGET_US`]); no allocation after [`Cloth::new`].
 //! Thread: physics; two workers may share a step.
 
+pub mod bend_friction;
 pub mod bending;
 pub mod bending_matrix;
 pub mod contact;
 pub mod diagonals;
 pub mod fibers;
+pub mod friction_rows;
 pub mod guard;
 pub mod layers;
 pub mod links;
@@ -77,6 +79,8 @@ pub struct Cloth {
     records: Store,
     /// Room for bending that is stiffer than a substep; none where it cannot be.
     room: stiff_bending::StiffBendingScratch,
+    /// What bending remembers by friction; empty where nothing rubs.
+    friction: bend_friction::FrictionState,
     /// Room for what is solved along the bias.
     leaning: diagonals::DiagonalScratch,
     /// Tensions of weft links, of fibers, of crossing fibers within a substep; empty where they have no compliance.
@@ -119,6 +123,7 @@ impl Cloth {
             scratch: [scratch(), scratch()],
             records: Store::zeros(if prepared.reads_records() { RECORD * (start.len() + OWNERS) } else { 0 }),
             room: stiff_bending::StiffBendingScratch::new(if prepared.stiff() { start.len() } else { 0 }),
+            friction: bend_friction::FrictionState::new(&prepared.friction),
             leaning: diagonals::DiagonalScratch::new(&garment.layout().diagonals, garment.start.len()),
             strains: vec![0.0; garment.strain_edges.len()].into(),
             prepared,
@@ -237,6 +242,7 @@ impl Cloth {
             + self.faces.as_ref().map_or(0, wind::Faces::bytes)
             + self.records.bytes()
             + self.room.bytes()
+            + self.friction.bytes()
             + self.leaning.bytes()
             + self.scratch.iter().map(Store::bytes).sum::<usize>()
             + self.tension.iter().map(Store::bytes).sum::<usize>()

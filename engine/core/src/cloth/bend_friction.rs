@@ -1,0 +1,246 @@
+//! Friction in bending: threads that rub keep a part of each bend.
+//!
+//! Beside the elastic moment B k a stencil has an element of friction in series with a spring (Prandtl 1928, Jenkin 1922):
+//! M = B k + clamp(Kp (k - ks), -HB, HB), where ks, the curvature at which it sticks, follows k only while the clamp holds. The loop
+//! of moment against curvature then has the slope B and the width 2 HB wherever it slips, as the Kawabata system measures
+//! both, and a strip that is bent far and let go stays at HB / B. One number of state a stencil, six operations, nothing that the
+//! processor estimates, so every width gives the same bits.
+//!
+//! A stencil's curvature is a vector, which turns with the cloth; what sticks must turn with it. So friction acts on its part along
+//! the cloth's normal, which is the product of two chords over the vertex, and pushes along it.
+//!
+//! As a force at the positions of the substep's start it has to stay below what a substep can carry: a stencil that sticks is
+//! as stiff as [`FrictionRows::prepare`] lets it be, which changes how round the loop's corners are, and neither its slope
+//! nor its width.
+
+use super::friction_rows::{FrictionBlock, FrictionRows, FrictionStrip};
+use crate::lanes::{Kernel, Lanes, MOST, Numbers, ReadColumn, Readable, Store, V3, WriteColumn, reciprocal_root};
+
+/// What a stencil remembers, and what it keeps.
+#[derive(Debug, Clone)]
+pub struct FrictionState {
+    /// Where each slot sticks (sqrt(N/m) m).
+    pub sticks: Store,
+    /// What friction keeps of each slot, along the normal (sqrt(N/m) m); written in each substep in which it acts.
+    kept: [Store; 3],
+}
+
+/// The same as columns.
+#[derive(Clone, Copy)]
+pub struct FrictionColumns<'a> {
+    /// Where each slot sticks (sqrt(N/m) m).
+    pub sticks: WriteColumn<'a>,
+    /// What friction keeps of each slot (sqrt(N/m) m).
+    pub kept: [WriteColumn<'a>; 3],
+}
+
+impl FrictionState {
+    /// Of cloth that was never bent since it was cut. At load.
+    pub fn new(rows: &FrictionRows) -> Self {
+        let zeros = || Store::zeros(rows.count);
+        Self { sticks: zeros(), kept: [zeros(), zeros(), zeros()] }
+    }
+
+    /// As columns for kernels.
+    pub fn columns(&mut self) -> FrictionColumns<'_> {
+        FrictionColumns { sticks: self.sticks.column(), kept: self.kept.each_mut().map(Store::column) }
+    }
+
+    /// Memory that it holds (bytes).
+    pub fn bytes(&self) -> usize {
+        self.sticks.bytes() + self.kept.iter().map(Store::bytes).sum::<usize>()
+    }
+}
+
+/// What is bent farther than this in one slot is no cloth any more, or not a number (sqrt(N/m) m): it does not make it slip.
+const FARTHEST: f32 = 1e12;
+
+/// What the friction of one owner's slots keeps of the places as they are.
+pub struct KeepBent<'a> {
+    /// The garment's friction.
+    pub friction: &'a FrictionRows,
+    /// Owner whose slots they are.
+    pub owner: usize,
+    /// The places (m).
+    pub from: [WriteColumn<'a>; 3],
+    /// What the slots remember and keep.
+    pub state: FrictionColumns<'a>,
+}
+
+impl Kernel for KeepBent<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(mut self) {
+        let len = self.from[0].len();
+        self.from = self.from.map(|axis| axis.cut(len));
+        let table = &self.friction.slots;
+        for strip in &table.strips[table.owned_strips[self.owner].clone()] {
+            self.strip::<L>(strip);
+        }
+        for block in &table.blocks[table.owned_blocks[self.owner].clone()] {
+            self.block::<L>(block);
+        }
+    }
+}
+
+impl KeepBent<'_> {
+    #[inline(always)]
+    fn strip<L: Lanes>(&self, strip: &FrictionStrip) {
+        let table = &self.friction.slots;
+        let offsets = &table.offsets[strip.offsets.start as usize..strip.offsets.end as usize];
+        let values = ReadColumn::new(&table.values);
+        let (stick, reach) = (ReadColumn::new(&self.friction.stick), ReadColumn::new(&self.friction.reach));
+        let (first, len) = (strip.centre as usize, strip.len as usize);
+        let mut t = 0;
+        while t < len {
+            let n = (len - t).min(L::N);
+            let [a, b, c, d] = strip.chords;
+            let normal = unit(
+                self.beside::<L>(first + t, a, n) - self.beside(first + t, b, n),
+                self.beside::<L>(first + t, c, n) - self.beside(first + t, d, n),
+            );
+            let own = V3::<L>::load(self.from, first + t, n);
+            let mut sum = V3::<L>::splat(glam::Vec3A::ZERO);
+            for (k, &offset) in offsets.iter().enumerate() {
+                let value = some::<L>(values, strip.values as usize + k * len + t, n);
+                sum = sum + (self.beside::<L>(first + t, offset, n) - own) * value;
+            }
+            let slot = strip.first as usize + t;
+            let sticks = some::<L>(self.state.sticks, slot, n);
+            let [sticks, kept] = rubbed(sum.dot(normal), sticks, some(stick, slot, n), some(reach, slot, n));
+            if n == L::N { sticks.store(self.state.sticks, slot) } else { sticks.store_part(self.state.sticks, slot, n) }
+            (normal * kept).store(self.state.kept, slot, n);
+            t += n;
+        }
+    }
+
+    #[inline(always)]
+    fn beside<L: Lanes>(&self, at: usize, offset: i32, n: usize) -> V3<L> {
+        V3::load(self.from, at.wrapping_add_signed(offset as isize), n)
+    }
+
+    #[inline(always)]
+    fn block<L: Lanes>(&self, block: &FrictionBlock) {
+        let table = &self.friction.slots;
+        let values = ReadColumn::new(&table.values);
+        let (stick, reach) = (ReadColumn::new(&self.friction.stick), ReadColumn::new(&self.friction.reach));
+        let mut lane = 0;
+        while lane < block.len as usize {
+            let n = (block.len as usize - lane).min(L::N);
+            let index = |k: usize| &table.index[block.index as usize + k * MOST + lane..][..n];
+            let place = |k: usize| V3::<L>::gather(self.from, index(k), n);
+            let normal = unit(place(2) - place(3), place(4) - place(5));
+            let own = place(1);
+            let mut sum = V3::<L>::splat(glam::Vec3A::ZERO);
+            for k in 0..block.entries as usize {
+                let value = some::<L>(values, block.values as usize + k * MOST + lane, n);
+                sum = sum + (place(6 + k) - own) * value;
+            }
+            let of = |from: ReadColumn<'_>| L::gather(from, index(0), n);
+            let sticks = L::gather(self.state.sticks, index(0), n);
+            let [sticks, kept] = rubbed(sum.dot(normal), sticks, of(stick), of(reach));
+            sticks.scatter(self.state.sticks, index(0), n);
+            (normal * kept).scatter(self.state.kept, index(0), n);
+            lane += L::N;
+        }
+    }
+}
+
+/// Where a slot sticks after it was bent so far, and what it keeps; unchanged to the bit while it sticks.
+#[inline(always)]
+fn rubbed<L: Numbers>(bent: L, sticks: L, stick: L, reach: L) -> [L; 2] {
+    let off = bent - sticks;
+    let held = off.max(-reach).min(reach);
+    let slips = off - held;
+    let sound = slips.max(-slips).lt(L::splat(FARTHEST));
+    [sticks + slips.select(sound, L::splat(0.0)), held * stick]
+}
+
+/// The normal of the cloth: the product of two chords, of length 1. Nothing where they are parallel.
+#[inline(always)]
+fn unit<L: Numbers>(one: V3<L>, other: V3<L>) -> V3<L> {
+    let across = one.cross(other);
+    across * reciprocal_root(across.dot(across))
+}
+
+/// `n <= N` numbers side by side.
+#[inline(always)]
+fn some<L: Lanes>(from: impl Readable, at: usize, n: usize) -> L {
+    if n == L::N { L::load(from, at) } else { L::load_part(from, at, n) }
+}
+
+/// What the slots keep pushes one owner's particles.
+pub struct PushKept<'a> {
+    /// The garment's friction.
+    pub friction: &'a FrictionRows,
+    /// Owner whose rows they are.
+    pub owner: usize,
+    /// What the slots keep.
+    pub kept: [WriteColumn<'a>; 3],
+    /// What is pushed: the velocities (m/s).
+    pub to: [WriteColumn<'a>; 3],
+    /// How long (s).
+    pub by: f32,
+}
+
+impl Kernel for PushKept<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(mut self) {
+        let (slots, len) = (self.kept[0].len(), self.to[0].len());
+        (self.kept, self.to) = (self.kept.map(|axis| axis.cut(slots)), self.to.map(|axis| axis.cut(len)));
+        let table = &self.friction.rows;
+        for strip in &table.strips[table.owned_strips[self.owner].clone()] {
+            self.strip::<L>(strip);
+        }
+        for block in &table.blocks[table.owned_blocks[self.owner].clone()] {
+            self.block::<L>(block);
+        }
+    }
+}
+
+impl PushKept<'_> {
+    #[inline(always)]
+    fn strip<L: Lanes>(&self, strip: &FrictionStrip) {
+        let table = &self.friction.rows;
+        let offsets = &table.offsets[strip.offsets.start as usize..strip.offsets.end as usize];
+        let values = ReadColumn::new(&table.values);
+        let (first, len) = (strip.first as usize, strip.len as usize);
+        let mut t = 0;
+        while t < len {
+            let n = (len - t).min(L::N);
+            let mut sum = V3::<L>::splat(glam::Vec3A::ZERO);
+            for (k, &offset) in offsets.iter().enumerate() {
+                let kept = V3::<L>::load(self.kept, (first + t).wrapping_add_signed(offset as isize), n);
+                sum = sum + kept * some(values, strip.values as usize + k * len + t, n);
+            }
+            let to = V3::<L>::load(self.to, first + t, n);
+            (to + sum * L::splat(self.by)).store(self.to, first + t, n);
+            t += n;
+        }
+    }
+
+    #[inline(always)]
+    fn block<L: Lanes>(&self, block: &FrictionBlock) {
+        let table = &self.friction.rows;
+        let values = ReadColumn::new(&table.values);
+        let mut lane = 0;
+        while lane < block.len as usize {
+            let n = (block.len as usize - lane).min(L::N);
+            let index = |k: usize| &table.index[block.index as usize + k * MOST + lane..][..n];
+            let mut sum = V3::<L>::splat(glam::Vec3A::ZERO);
+            for k in 0..block.entries as usize {
+                let kept = V3::<L>::gather(self.kept, index(1 + k), n);
+                sum = sum + kept * some::<L>(values, block.values as usize + k * MOST + lane, n);
+            }
+            let to = V3::<L>::gather(self.to, index(0), n);
+            (to + sum * L::splat(self.by)).scatter(self.to, index(0), n);
+            lane += L::N;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
