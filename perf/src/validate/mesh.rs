@@ -241,6 +241,8 @@ pub struct CaseFabric {
     pub bend: f64,
     /// Bending rigidity along the bias (N m), where the case twists.
     pub bias: Option<f64>,
+    /// Width of the loop of its bending, 2HB (N).
+    pub hysteresis: f64,
     /// Rate at which motion is damped (1/s).
     pub damping: f64,
     /// Friction coefficient (1).
@@ -250,7 +252,7 @@ pub struct CaseFabric {
 impl CaseFabric {
     /// The median of the measured fabrics in weight, as stiff in tension and shear as a cotton lawn; it does not bend.
     pub const PLAIN: Self =
-        Self { density: 0.2, stretch: 6_000.0, shear: 60.0, bend: 0.0, bias: None, damping: 0.0, friction: 0.3 };
+        Self { density: 0.2, stretch: 6_000.0, shear: 60.0, bend: 0.0, bias: None, hysteresis: 0.0, damping: 0.0, friction: 0.3 };
 
     /// As the bake takes it.
     pub fn fabric(&self) -> Fabric {
@@ -275,7 +277,11 @@ impl CaseFabric {
             threads_per_cm: USUAL_THREADS,
             sheen: USUAL_SHEEN,
             opacity: 1.0,
-            hysteresis: LoopWidths::default(),
+            hysteresis: LoopWidths {
+                bend_warp_mn: (self.hysteresis * 1e3) as f32,
+                bend_weft_mn: (self.hysteresis * 1e3) as f32,
+                shear_n_m: 0.0,
+            },
             print: None,
             tile: None,
         }

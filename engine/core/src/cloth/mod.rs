@@ -191,6 +191,18 @@ impl Cloth {
         &self.state
     }
 
+    /// Bending remembers what that of another state of the same garment remembers; nothing where only one of them rubs.
+    pub fn remember(&mut self, other: &Self) {
+        if self.friction.sticks.as_slice().len() == other.friction.sticks.as_slice().len() {
+            self.friction.sticks.as_mut().copy_from_slice(other.friction.sticks.as_slice());
+        }
+    }
+
+    /// Where bending sticks by friction, in the order of its slots (sqrt(N/m) m); empty where nothing rubs.
+    pub fn sticks(&self) -> &[f32] {
+        self.friction.sticks.as_slice()
+    }
+
     /// Takes over what somebody else has made of a step: positions and velocities `[particles]` (m, m/s), and the events so far.
     pub fn take_over(&mut self, positions: &[Vec3A], velocities: &[Vec3A], events: guard::GuardEvents) {
         self.checked = false;

@@ -89,7 +89,7 @@ impl Prepared {
             records: [&layout.shear, &layout.weft].map(|l| RecordLinks::of(l, &garment.inverse_mass)),
             matrix,
             friction,
-            bend: bending::BendingPace { every: 1, stages: 1, least: 1.0, sticking: STICKING },
+            bend: bending::BendingPace { every: 1, stages: 1, least: 1.0, friction_every: 1, sticking: STICKING },
             bending,
             stages: [ChebyshevStage::default(); stiff_bending::MAX_BENDING_STAGES as usize],
             stiff,
@@ -145,7 +145,8 @@ impl Prepared {
         self.bending.stages = stages;
         let every = bending::every(&self.load, self.substeps);
         let sticking = self.friction.prepare(garment, self.dt, self.substeps, &mut self.load);
-        self.bend = bending::BendingPace { every, stages, least, sticking };
+        let friction_every = self.friction.every;
+        self.bend = bending::BendingPace { every, stages, least, friction_every, sticking };
     }
 
     /// Shear (0) and weft links (1) as records, where that is the faster form and nothing damps them: damping asks where the
