@@ -13,7 +13,7 @@
 //! as stiff as [`FrictionRows::prepare`] lets it be, which changes how round the loop's corners are, and neither its slope
 //! nor its width.
 
-use super::friction_rows::{FrictionBlock, FrictionRows, FrictionStrip};
+use super::friction_rows::{FrictionBlock, FrictionPart, FrictionRows, FrictionStrip, FrictionTable};
 use crate::lanes::{Kernel, Lanes, MOST, Numbers, ReadColumn, Readable, Store, V3, WriteColumn, reciprocal_root};
 
 /// What a stencil remembers, and what it keeps.
@@ -23,6 +23,8 @@ pub struct FrictionState {
     pub sticks: Store,
     /// What friction keeps of each slot, along the normal (sqrt(N/m) m); written in each substep in which it acts.
     kept: [Store; 3],
+    /// Normal of the cloth at each particle in whose middle something rubs, as the step began (1).
+    normals: [Store; 3],
 }
 
 /// The same as columns.
@@ -32,23 +34,30 @@ pub struct FrictionColumns<'a> {
     pub sticks: WriteColumn<'a>,
     /// What friction keeps of each slot (sqrt(N/m) m).
     pub kept: [WriteColumn<'a>; 3],
+    /// Normal of the cloth at each particle (1).
+    pub normals: [WriteColumn<'a>; 3],
 }
 
 impl FrictionState {
-    /// Of cloth that was never bent since it was cut. At load.
-    pub fn new(rows: &FrictionRows) -> Self {
-        let zeros = || Store::zeros(rows.count);
-        Self { sticks: zeros(), kept: [zeros(), zeros(), zeros()] }
+    /// Of cloth of so many particles that was never bent since it was cut. At load.
+    pub fn new(rows: &FrictionRows, particles: usize) -> Self {
+        let three = |n: usize| [Store::zeros(n), Store::zeros(n), Store::zeros(n)];
+        let particles = if rows.acts() { particles } else { 0 };
+        Self { sticks: Store::zeros(rows.count), kept: three(rows.count), normals: three(particles) }
     }
 
     /// As columns for kernels.
     pub fn columns(&mut self) -> FrictionColumns<'_> {
-        FrictionColumns { sticks: self.sticks.column(), kept: self.kept.each_mut().map(Store::column) }
+        FrictionColumns {
+            sticks: self.sticks.column(),
+            kept: self.kept.each_mut().map(Store::column),
+            normals: self.normals.each_mut().map(Store::column),
+        }
     }
 
     /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
-        self.sticks.bytes() + self.kept.iter().map(Store::bytes).sum::<usize>()
+        self.sticks.bytes() + self.kept.iter().chain(&self.normals).map(Store::bytes).sum::<usize>()
     }
 }
 
@@ -65,6 +74,8 @@ pub struct KeepBent<'a> {
     pub from: [WriteColumn<'a>; 3],
     /// What the slots remember and keep.
     pub state: FrictionColumns<'a>,
+    /// Whether the cloth's normals are taken anew: once a step, in which cloth turns by some degrees.
+    pub turns: bool,
 }
 
 impl Kernel for KeepBent<'_> {
@@ -73,7 +84,8 @@ impl Kernel for KeepBent<'_> {
     #[inline(always)]
     fn run<L: Lanes>(mut self) {
         let len = self.from[0].len();
-        self.from = self.from.map(|axis| axis.cut(len));
+        let [x, y, z] = self.from;
+        self.from = [x.cut(len), y.cut(len), z.cut(len)];
         let table = &self.friction.slots;
         for strip in &table.strips[table.owned_strips[self.owner].clone()] {
             self.strip::<L>(strip);
@@ -88,31 +100,58 @@ impl KeepBent<'_> {
     #[inline(always)]
     fn strip<L: Lanes>(&self, strip: &FrictionStrip) {
         let table = &self.friction.slots;
-        let offsets = &table.offsets[strip.offsets.start as usize..strip.offsets.end as usize];
-        let values = ReadColumn::new(&table.values);
-        let (stick, reach) = (ReadColumn::new(&self.friction.stick), ReadColumn::new(&self.friction.reach));
-        let (first, len) = (strip.centre as usize, strip.len as usize);
+        let (first, len) = (strip.first as usize, strip.len as usize);
         let mut t = 0;
         while t < len {
-            let n = (len - t).min(L::N);
-            let [a, b, c, d] = strip.chords;
-            let normal = unit(
-                self.beside::<L>(first + t, a, n) - self.beside(first + t, b, n),
-                self.beside::<L>(first + t, c, n) - self.beside(first + t, d, n),
-            );
-            let own = V3::<L>::load(self.from, first + t, n);
-            let mut sum = V3::<L>::splat(glam::Vec3A::ZERO);
-            for (k, &offset) in offsets.iter().enumerate() {
-                let value = some::<L>(values, strip.values as usize + k * len + t, n);
-                sum = sum + (self.beside::<L>(first + t, offset, n) - own) * value;
+            let (at, n) = (first + t, (len - t).min(L::N));
+            let normal = self.normal::<L>(strip, at, n);
+            let own = V3::<L>::load(self.from, at, n);
+            for part in &table.parts[strip.parts.start as usize..strip.parts.end as usize] {
+                if part.alike {
+                    self.part::<L, true>(part, len, [t, n], at, own, normal);
+                } else {
+                    self.part::<L, false>(part, len, [t, n], at, own, normal);
+                }
             }
-            let slot = strip.first as usize + t;
-            let sticks = some::<L>(self.state.sticks, slot, n);
-            let [sticks, kept] = rubbed(sum.dot(normal), sticks, some(stick, slot, n), some(reach, slot, n));
-            if n == L::N { sticks.store(self.state.sticks, slot) } else { sticks.store_part(self.state.sticks, slot, n) }
-            (normal * kept).store(self.state.kept, slot, n);
             t += n;
         }
+    }
+
+    #[inline(always)]
+    fn normal<L: Lanes>(&self, strip: &FrictionStrip, at: usize, n: usize) -> V3<L> {
+        if !self.turns {
+            return V3::load(self.state.normals, at, n);
+        }
+        let [a, b, c, d] = strip.chords;
+        let one = self.beside::<L>(at, a, n) - self.beside(at, b, n);
+        let normal = unit(one, self.beside(at, c, n) - self.beside(at, d, n));
+        normal.store(self.state.normals, at, n);
+        normal
+    }
+
+    /// One slot of each of `n` vertices, `t` and more of a strip.
+    #[inline(always)]
+    fn part<L: Lanes, const ALIKE: bool>(
+        &self,
+        part: &FrictionPart,
+        len: usize,
+        [t, n]: [usize; 2],
+        at: usize,
+        own: V3<L>,
+        normal: V3<L>,
+    ) {
+        let table = &self.friction.slots;
+        let offsets = &table.offsets[part.offsets.start as usize..part.offsets.end as usize];
+        let (stick, reach) = (ReadColumn::new(&self.friction.stick), ReadColumn::new(&self.friction.reach));
+        let mut sum = V3::<L>::splat(glam::Vec3A::ZERO);
+        for (k, &offset) in offsets.iter().enumerate() {
+            sum = sum + (self.beside::<L>(at, offset, n) - own) * value::<L, ALIKE>(table, part, k, len, [t, n]);
+        }
+        let slot = part.slot as usize + t;
+        let sticks = some::<L>(self.state.sticks, slot, n);
+        let [sticks, kept] = rubbed(sum.dot(normal), sticks, some(stick, slot, n), some(reach, slot, n));
+        if n == L::N { sticks.store(self.state.sticks, slot) } else { sticks.store_part(self.state.sticks, slot, n) }
+        (normal * kept).store(self.state.kept, slot, n);
     }
 
     #[inline(always)]
@@ -128,23 +167,65 @@ impl KeepBent<'_> {
         let mut lane = 0;
         while lane < block.len as usize {
             let n = (block.len as usize - lane).min(L::N);
-            let index = |k: usize| &table.index[block.index as usize + k * MOST + lane..][..n];
-            let place = |k: usize| V3::<L>::gather(self.from, index(k), n);
-            let normal = unit(place(2) - place(3), place(4) - place(5));
-            let own = place(1);
+            let own = self.listed::<L>(block, 1, lane, n);
+            let normal = if self.turns {
+                let one = self.listed::<L>(block, 2, lane, n) - self.listed(block, 3, lane, n);
+                let normal = unit(one, self.listed(block, 4, lane, n) - self.listed(block, 5, lane, n));
+                self.turn(normal, index(table, block, 1, lane, n));
+                normal
+            } else {
+                V3::gather(self.state.normals, index(table, block, 1, lane, n), n)
+            };
             let mut sum = V3::<L>::splat(glam::Vec3A::ZERO);
             for k in 0..block.entries as usize {
                 let value = some::<L>(values, block.values as usize + k * MOST + lane, n);
-                sum = sum + (place(6 + k) - own) * value;
+                sum = sum + (self.listed(block, 6 + k, lane, n) - own) * value;
             }
-            let of = |from: ReadColumn<'_>| L::gather(from, index(0), n);
-            let sticks = L::gather(self.state.sticks, index(0), n);
-            let [sticks, kept] = rubbed(sum.dot(normal), sticks, of(stick), of(reach));
-            sticks.scatter(self.state.sticks, index(0), n);
-            (normal * kept).scatter(self.state.kept, index(0), n);
+            let slots = index(table, block, 0, lane, n);
+            let sticks = L::gather(self.state.sticks, slots, n);
+            let [sticks, kept] =
+                rubbed(sum.dot(normal), sticks, L::gather(stick, slots, n), L::gather(reach, slots, n));
+            sticks.scatter(self.state.sticks, slots, n);
+            (normal * kept).scatter(self.state.kept, slots, n);
             lane += L::N;
         }
     }
+
+    /// Places of `n` particles of a block, those of its `k`th index.
+    #[inline(always)]
+    fn listed<L: Lanes>(&self, block: &FrictionBlock, k: usize, lane: usize, n: usize) -> V3<L> {
+        V3::gather(self.from, index(&self.friction.slots, block, k, lane, n), n)
+    }
+
+    /// Keeps normals of vertices, of which one may be there twice, with the same normal.
+    #[inline(always)]
+    fn turn<L: Lanes>(&self, normal: V3<L>, vertices: &[u32]) {
+        let (x, y, z) = (normal.x.to_array(), normal.y.to_array(), normal.z.to_array());
+        for (t, &v) in vertices.iter().enumerate() {
+            self.state.normals[0].set(v as usize, x[t]);
+            self.state.normals[1].set(v as usize, y[t]);
+            self.state.normals[2].set(v as usize, z[t]);
+        }
+    }
+}
+
+/// `n` of a block's `k`th indices.
+#[inline(always)]
+fn index<'a>(table: &'a FrictionTable, block: &FrictionBlock, k: usize, lane: usize, n: usize) -> &'a [u32] {
+    &table.index[block.index as usize + k * MOST + lane..][..n]
+}
+
+/// The value of an entry of `n` vertices or rows, `t` and more of a strip.
+#[inline(always)]
+fn value<L: Lanes, const ALIKE: bool>(
+    table: &FrictionTable,
+    part: &FrictionPart,
+    entry: usize,
+    len: usize,
+    [t, n]: [usize; 2],
+) -> L {
+    let (values, at) = (ReadColumn::new(&table.values), part.values as usize);
+    if ALIKE { L::splat(values.get(at + entry)) } else { some(values, at + entry * len + t, n) }
 }
 
 /// Where a slot sticks after it was bent so far, and what it keeps; unchanged to the bit while it sticks.
@@ -190,7 +271,8 @@ impl Kernel for PushKept<'_> {
     #[inline(always)]
     fn run<L: Lanes>(mut self) {
         let (slots, len) = (self.kept[0].len(), self.to[0].len());
-        (self.kept, self.to) = (self.kept.map(|axis| axis.cut(slots)), self.to.map(|axis| axis.cut(len)));
+        let ([kx, ky, kz], [x, y, z]) = (self.kept, self.to);
+        (self.kept, self.to) = ([kx.cut(slots), ky.cut(slots), kz.cut(slots)], [x.cut(len), y.cut(len), z.cut(len)]);
         let table = &self.friction.rows;
         for strip in &table.strips[table.owned_strips[self.owner].clone()] {
             self.strip::<L>(strip);
@@ -204,9 +286,15 @@ impl Kernel for PushKept<'_> {
 impl PushKept<'_> {
     #[inline(always)]
     fn strip<L: Lanes>(&self, strip: &FrictionStrip) {
+        for part in &self.friction.rows.parts[strip.parts.start as usize..strip.parts.end as usize] {
+            if part.alike { self.part::<L, true>(strip, part) } else { self.part::<L, false>(strip, part) }
+        }
+    }
+
+    #[inline(always)]
+    fn part<L: Lanes, const ALIKE: bool>(&self, strip: &FrictionStrip, part: &FrictionPart) {
         let table = &self.friction.rows;
-        let offsets = &table.offsets[strip.offsets.start as usize..strip.offsets.end as usize];
-        let values = ReadColumn::new(&table.values);
+        let offsets = &table.offsets[part.offsets.start as usize..part.offsets.end as usize];
         let (first, len) = (strip.first as usize, strip.len as usize);
         let mut t = 0;
         while t < len {
@@ -214,7 +302,7 @@ impl PushKept<'_> {
             let mut sum = V3::<L>::splat(glam::Vec3A::ZERO);
             for (k, &offset) in offsets.iter().enumerate() {
                 let kept = V3::<L>::load(self.kept, (first + t).wrapping_add_signed(offset as isize), n);
-                sum = sum + kept * some(values, strip.values as usize + k * len + t, n);
+                sum = sum + kept * value::<L, ALIKE>(table, part, k, len, [t, n]);
             }
             let to = V3::<L>::load(self.to, first + t, n);
             (to + sum * L::splat(self.by)).store(self.to, first + t, n);
@@ -229,14 +317,14 @@ impl PushKept<'_> {
         let mut lane = 0;
         while lane < block.len as usize {
             let n = (block.len as usize - lane).min(L::N);
-            let index = |k: usize| &table.index[block.index as usize + k * MOST + lane..][..n];
             let mut sum = V3::<L>::splat(glam::Vec3A::ZERO);
             for k in 0..block.entries as usize {
-                let kept = V3::<L>::gather(self.kept, index(1 + k), n);
+                let kept = V3::<L>::gather(self.kept, index(table, block, 1 + k, lane, n), n);
                 sum = sum + kept * some::<L>(values, block.values as usize + k * MOST + lane, n);
             }
-            let to = V3::<L>::gather(self.to, index(0), n);
-            (to + sum * L::splat(self.by)).scatter(self.to, index(0), n);
+            let rows = index(table, block, 0, lane, n);
+            let to = V3::<L>::gather(self.to, rows, n);
+            (to + sum * L::splat(self.by)).scatter(self.to, rows, n);
             lane += L::N;
         }
     }

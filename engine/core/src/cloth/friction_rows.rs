@@ -27,21 +27,30 @@ const STABLE: f32 = 1.2;
 /// One particle in so many may be held back more than the others.
 const NEEDLES: usize = 50;
 
-/// Slots or rows side by side: the first of them, how many, and from it to what each reads.
+/// Vertices whose slots lie alike, or rows, side by side.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrictionStrip {
-    /// First slot, or first particle.
+    /// The first vertex, or the particle of the first row.
     pub first: u32,
-    /// Particle in the middle of the first slot; of rows the first particle.
-    pub centre: u32,
-    /// Slots or rows.
+    /// Vertices or rows.
     pub len: u32,
-    /// From the middle's particle to the ends of the chords; of rows nothing.
+    /// From a vertex to the ends of its chords; of rows nothing.
     pub chords: [i32; 4],
-    /// Where its offsets begin in [`FrictionTable::offsets`], and of how many entries: from the middle's particle, or from the row's.
+    /// Slots of each vertex, of rows one, a range of [`FrictionTable::parts`].
+    pub parts: Range<u32>,
+}
+
+/// One slot of each vertex of a strip, or its rows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrictionPart {
+    /// The slot of the first vertex; of rows nothing.
+    pub slot: u32,
+    /// What each reads, from its vertex or particle on: a range of [`FrictionTable::offsets`].
     pub offsets: Range<u32>,
-    /// Where its values begin: those of all rows for each entry.
+    /// Where the values begin: those of all for each entry, or one for all of them.
     pub values: u32,
+    /// Whether they are all alike.
+    pub alike: bool,
 }
 
 /// Sixteen slots or rows in no order; what has fewer entries than the longest ends with some of no weight.
@@ -63,6 +72,8 @@ pub struct FrictionBlock {
 pub struct FrictionTable {
     /// Strips, owner after owner.
     pub strips: Box<[FrictionStrip]>,
+    /// What the strips have of slots or rows.
+    pub parts: Box<[FrictionPart]>,
     /// From a strip's particles to what they read.
     pub offsets: Box<[i32]>,
     /// Blocks, owner after owner.
@@ -94,7 +105,11 @@ pub struct FrictionRows {
     pub every: u32,
 }
 
+/// Difference between two values, as a part of the greatest, below which they count as the same: as for bending.
+const SAME: f32 = 1e-5;
+
 /// One slot or row before it has its place.
+#[derive(Clone)]
 struct Line {
     number: u32,
     centre: u32,
@@ -114,6 +129,11 @@ impl Line {
     }
 }
 
+/// Whether all lines of one vertex lead to those of another, `by` further on.
+fn lead_to(one: &[Line], other: &[Line], by: usize) -> bool {
+    one.len() == other.len() && one.iter().zip(other).all(|(a, b)| a.leads_to(b, by as u32))
+}
+
 impl FrictionTable {
     fn new(lines: [Vec<Line>; OWNERS]) -> Self {
         let mut this = Builder::default();
@@ -126,6 +146,7 @@ impl FrictionTable {
         }
         Self {
             strips: this.strips.into(),
+            parts: this.parts.into(),
             offsets: this.offsets.into(),
             blocks: this.blocks.into(),
             index: this.index.into(),
@@ -136,6 +157,7 @@ impl FrictionTable {
 
     fn bytes(&self) -> usize {
         size_of_val(&*self.strips)
+            + size_of_val(&*self.parts)
             + size_of_val(&*self.blocks)
             + 4 * (self.offsets.len() + self.index.len() + self.values.len())
     }
@@ -144,6 +166,7 @@ impl FrictionTable {
 #[derive(Default)]
 struct Builder {
     strips: Vec<FrictionStrip>,
+    parts: Vec<FrictionPart>,
     offsets: Vec<i32>,
     blocks: Vec<FrictionBlock>,
     index: Vec<u32>,
@@ -151,35 +174,46 @@ struct Builder {
 }
 
 impl Builder {
+    /// Lines in the order of their vertices.
     fn gather(&mut self, lines: &[Line]) {
+        let vertices: Vec<&[Line]> = lines.chunk_by(|a, b| a.centre == b.centre).collect();
         let (mut at, mut loose) = (0, Vec::new());
-        while at < lines.len() {
-            let first = &lines[at];
-            let len = (1u32..).zip(&lines[at + 1..]).take_while(|(by, line)| first.leads_to(line, *by)).count() + 1;
-            let some = &lines[at..at + len];
-            if len < LEAST_STRIP { loose.extend(some) } else { self.strip(some) }
+        while at < vertices.len() {
+            let len = (1..vertices.len() - at).take_while(|by| lead_to(vertices[at], vertices[at + by], *by)).count() + 1;
+            let some = &vertices[at..at + len];
+            if len < LEAST_STRIP { loose.extend(some.iter().copied().flatten()) } else { self.strip(some) }
             at += len;
         }
         loose.sort_by_key(|line| std::cmp::Reverse(line.entries.len()));
         loose.chunks(MOST).for_each(|some| self.block(some));
     }
 
-    fn strip(&mut self, lines: &[Line]) {
-        let first = &lines[0];
-        let from = |to: u32| to.cast_signed() - first.centre.cast_signed();
-        let begun = self.offsets.len() as u32;
-        self.offsets.extend(first.entries.iter().map(|(to, _)| from(*to)));
-        self.strips.push(FrictionStrip {
-            first: first.number,
-            centre: first.centre,
-            len: lines.len() as u32,
-            chords: first.chords.unwrap_or([first.centre; 4]).map(from),
-            offsets: begun..self.offsets.len() as u32,
-            values: self.values.len() as u32,
-        });
-        for k in 0..first.entries.len() {
-            self.values.extend(lines.iter().map(|line| line.entries[k].1));
+    fn strip(&mut self, vertices: &[&[Line]]) {
+        let begun = self.parts.len() as u32;
+        for (k, line) in vertices[0].iter().enumerate() {
+            let from = self.offsets.len() as u32;
+            self.offsets.extend(line.entries.iter().map(|(to, _)| to.cast_signed() - line.centre.cast_signed()));
+            let most = line.entries.iter().map(|(_, c)| c.abs()).fold(0.0, f32::max);
+            let like = |other: &Line| line.entries.iter().zip(&other.entries).all(|(a, b)| (a.1 - b.1).abs() <= SAME * most);
+            let alike = vertices.iter().all(|v| like(&v[k]));
+            self.parts.push(FrictionPart {
+                slot: line.number,
+                offsets: from..self.offsets.len() as u32,
+                values: self.values.len() as u32,
+                alike,
+            });
+            let kept = if alike { 1 } else { vertices.len() };
+            for e in 0..line.entries.len() {
+                self.values.extend(vertices[..kept].iter().map(|v| v[k].entries[e].1));
+            }
         }
+        let first = &vertices[0][0];
+        self.strips.push(FrictionStrip {
+            first: first.centre,
+            len: vertices.len() as u32,
+            chords: first.chords.unwrap_or([first.centre; 4]).map(|c| c.cast_signed() - first.centre.cast_signed()),
+            parts: begun..self.parts.len() as u32,
+        });
     }
 
     fn block(&mut self, lines: &[&Line]) {
@@ -231,6 +265,7 @@ impl FrictionRows {
             entries.sort_unstable_by_key(|(slot, _)| *slot);
             rows[owner(i)].push(Line { number: i, centre: i, chords: None, entries });
         }
+        slots.iter_mut().for_each(|own| own.sort_by_key(|line| (line.centre, line.number)));
         let count = (friction.kinds() * n) as usize;
         Self {
             slots: FrictionTable::new(slots),

@@ -123,7 +123,7 @@ impl Cloth {
             scratch: [scratch(), scratch()],
             records: Store::zeros(if prepared.reads_records() { RECORD * (start.len() + OWNERS) } else { 0 }),
             room: stiff_bending::StiffBendingScratch::new(if prepared.stiff() { start.len() } else { 0 }),
-            friction: bend_friction::FrictionState::new(&prepared.friction),
+            friction: bend_friction::FrictionState::new(&prepared.friction, start.len()),
             leaning: diagonals::DiagonalScratch::new(&garment.layout().diagonals, garment.start.len()),
             strains: vec![0.0; garment.strain_edges.len()].into(),
             prepared,

@@ -218,8 +218,8 @@ impl OwnerShare<'_, '_> {
     fn friction_moments(&self) {
         if self.rubs() {
             let (friction, from) = (&self.work.prepared.friction, self.columns.particles.x);
-            let (owner, state) = (self.owner, self.columns.friction);
-            self.work.width.run(bend_friction::KeepBent { friction, owner, from, state });
+            let (owner, state, turns) = (self.owner, self.columns.friction, self.substep.is_multiple_of(2));
+            self.work.width.run(bend_friction::KeepBent { friction, owner, from, state, turns });
         }
     }
 

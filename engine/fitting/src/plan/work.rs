@@ -5,7 +5,7 @@ use glam::Vec3;
 use toile_assets::garment::layout::{ENDED, Links};
 use toile_assets::garment::{Garment, Part};
 use toile_engine::cloth::bending_matrix::{BendingMatrix, RowBlock, RowStrip};
-use toile_engine::cloth::friction_rows::{FrictionRows, FrictionTable};
+use toile_engine::cloth::friction_rows::{FrictionRows, FrictionStrip, FrictionTable};
 use toile_engine::cloth::program::{self, BEFORE, Bending, Stage};
 use toile_engine::cloth::{Cloth, Quality, Settings, bending, contact, record_links};
 use toile_engine::colliders::Colliders;
@@ -202,12 +202,16 @@ impl Count<'_> {
     /// Entries of slots and rows; by index they take some three times as long as side by side.
     fn rubbing(&self, friction: &FrictionRows) -> f64 {
         let table = |t: &FrictionTable, own: u32| {
-            let strips = t.strips.iter().map(|s| f64::from(own + s.offsets.end - s.offsets.start) * self.vectors(s.len as usize));
+            let entries = |s: &FrictionStrip| -> u32 {
+                let parts = &t.parts[s.parts.start as usize..s.parts.end as usize];
+                parts.iter().map(|p| own + p.offsets.end - p.offsets.start).sum()
+            };
+            let strips = t.strips.iter().map(|s| f64::from(entries(s)) * self.vectors(s.len as usize));
             let blocks = t.blocks.iter().map(|b| 3.0 * f64::from(own + b.entries) * self.vectors(b.len as usize));
             strips.sum::<f64>() + blocks.sum::<f64>()
         };
-        // A slot reads its middle, four ends of chords, three numbers of its own; a row itself.
-        table(&friction.slots, 8) + table(&friction.rows, 1)
+        // A slot reads its middle, its normal, three numbers of its own, and writes four; a row itself.
+        table(&friction.slots, 4) + table(&friction.rows, 1)
     }
 
     fn leaning(&self) -> f64 {

@@ -25,8 +25,13 @@ const BENT: f64 = 100.0;
 const LENGTH: f64 = 0.06;
 const ROWS: usize = 6;
 
-/// Rate of damping (1/s): they are let go slowly, so that none swings past where it stops.
-const DAMPING: f64 = 300.0;
+/// Rate of damping over the slowest swing's angular frequency (1), 3.516 sqrt(B / rho) / L^2: they are let go slowly, so that
+/// none swings past where it stops.
+const DAMPING: f64 = 5.0;
+
+fn damping(rigidity: f64) -> f64 {
+    DAMPING * 3.516 * (rigidity / CaseFabric::PLAIN.density).sqrt() / (LENGTH * LENGTH)
+}
 
 /// Longest time that they are given (s).
 const REST_S: f64 = 20.0;
@@ -86,7 +91,7 @@ fn residual(style: MeshStyle, (name, rigidity, width): (&'static str, f64, f64))
     let cloth = CaseFabric {
         bend: rigidity * RIGIDITY,
         hysteresis: width * WIDTH,
-        damping: DAMPING,
+        damping: damping(rigidity * RIGIDITY),
         ..CaseFabric::PLAIN
     };
     ValidationCase {
@@ -105,7 +110,8 @@ fn residual(style: MeshStyle, (name, rigidity, width): (&'static str, f64, f64))
 /// Without friction nothing stays.
 fn without() -> ValidationCase {
     let strip = strip(MeshStyle::Grid);
-    let cloth = CaseFabric { bend: PUBLISHED[0].1 * RIGIDITY, damping: DAMPING, ..CaseFabric::PLAIN };
+    let bend = PUBLISHED[0].1 * RIGIDITY;
+    let cloth = CaseFabric { bend, damping: damping(bend), ..CaseFabric::PLAIN };
     ValidationCase {
         name: "residual",
         parameter: "without friction".into(),
