@@ -6,6 +6,7 @@
 pub mod friction_element;
 pub mod loop_widths;
 pub mod print;
+pub mod sheet;
 
 use std::sync::Arc;
 
@@ -25,6 +26,9 @@ pub struct Fabric {
     pub name: String,
     /// Name for shoppers.
     pub title: String,
+    /// Where its figures were published or measured.
+    #[serde(default)]
+    pub source: Option<String>,
     /// Mass per area (kg/m2).
     pub density_kg_m2: f32,
     /// Tensile stiffness along the warp (N/m); infinite is inextensible.
@@ -65,6 +69,9 @@ pub struct Fabric {
     /// Share of light that the threads hold back where cloth is seen against the light (0..1): a voile has gaps.
     #[serde(default = "opaque")]
     pub opacity: f32,
+    /// Cusick's drape coefficient as measured (%): reported beside the rest, never fitted to.
+    #[serde(default)]
+    pub drape_percent: Option<f32>,
     /// Widths of its measured loops; none where it was not measured, and then nothing of it costs anything.
     #[serde(default)]
     pub hysteresis: LoopWidths,
@@ -157,7 +164,7 @@ pub enum FabricError {
 }
 
 /// The fabrics that are built in.
-const BUILT_IN: [&str; 14] = [
+const BUILT_IN: [&str; 28] = [
     include_str!("../data/fabrics/cotton-lawn.toml"),
     include_str!("../data/fabrics/cotton-jersey.toml"),
     include_str!("../data/fabrics/linen-twill.toml"),
@@ -172,6 +179,20 @@ const BUILT_IN: [&str; 14] = [
     include_str!("../data/fabrics/wool-houndstooth.toml"),
     include_str!("../data/fabrics/wool-herringbone.toml"),
     include_str!("../data/fabrics/wool-windowpane.toml"),
+    include_str!("../data/fabrics/interlock.toml"),
+    include_str!("../data/fabrics/denim-11oz.toml"),
+    include_str!("../data/fabrics/ponte.toml"),
+    include_str!("../data/fabrics/rib-knit.toml"),
+    include_str!("../data/fabrics/sweat-knit.toml"),
+    include_str!("../data/fabrics/blanket-fleece.toml"),
+    include_str!("../data/fabrics/cotton-trousering.toml"),
+    include_str!("../data/fabrics/jacket-polyester.toml"),
+    include_str!("../data/fabrics/table-polyester.toml"),
+    include_str!("../data/fabrics/swim-knit.toml"),
+    include_str!("../data/fabrics/cotton-broad.toml"),
+    include_str!("../data/fabrics/wool-tropical.toml"),
+    include_str!("../data/fabrics/polyester-faille.toml"),
+    include_str!("../data/fabrics/denim-tropical.toml"),
 ];
 
 /// The name in the text of a built-in fabric, whose file has it in a line of its own.
@@ -305,6 +326,7 @@ impl Fabric {
         for ((key, low, high), width) in LoopWidths::RANGES.into_iter().zip(self.hysteresis.figures()) {
             checked(key, width, low, high)?;
         }
+        checked("drape_percent", self.drape_percent.unwrap_or(50.0), 0.0, 100.0)?;
         checked("comfortable_stretch", self.comfortable_stretch, 0.001, 1.0)?;
         self.colour.iter().try_for_each(|&part| checked("colour", part, 0.0, 1.0))?;
         self.threads_per_cm.iter().try_for_each(|&count| checked("threads_per_cm", count, 1.0, 200.0))?;

@@ -260,6 +260,7 @@ impl CaseFabric {
         Fabric {
             name: "case".into(),
             title: "Made for a case".into(),
+            source: None,
             density_kg_m2: self.density as f32,
             stretch_warp_n_m: self.stretch as f32,
             stretch_weft_n_m: self.stretch as f32,
@@ -277,6 +278,7 @@ impl CaseFabric {
             threads_per_cm: USUAL_THREADS,
             sheen: USUAL_SHEEN,
             opacity: 1.0,
+            drape_percent: None,
             hysteresis: LoopWidths {
                 bend_warp_mn: (self.hysteresis * 1e3) as f32,
                 bend_weft_mn: (self.hysteresis * 1e3) as f32,

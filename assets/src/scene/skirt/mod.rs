@@ -89,6 +89,7 @@ pub fn fabric(shape: &Shape, stretch: Stretch) -> Fabric {
     Fabric {
         name: "skirt".into(),
         title: "Benchmark skirt".into(),
+        source: None,
         density_kg_m2: (f64::from(MASS_KG) / area) as f32,
         stretch_warp_n_m: stretch.stiffness_n_m(),
         stretch_weft_n_m: stretch.stiffness_n_m(),
@@ -106,6 +107,7 @@ pub fn fabric(shape: &Shape, stretch: Stretch) -> Fabric {
         threads_per_cm: USUAL_THREADS,
         sheen: USUAL_SHEEN,
         opacity: 1.0,
+        drape_percent: None,
         hysteresis: LoopWidths::default(),
         print: None,
         tile: None,

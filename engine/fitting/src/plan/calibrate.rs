@@ -42,7 +42,7 @@ const WALKING: &str = "duration = 7\n[colliders]\nmotion = \"walk\"\n";
 const WAIST: &str = "motion = \"walk\"\n";
 
 /// A fabric whose bending rubs.
-const RUBBING: &str = "fabric = \"wool-flannel\"";
+const RUBBING: &str = "fabric = \"wool-tropical\"";
 
 /// Each cloth's own part of its scene file.
 fn texts() -> [String; 11] {
