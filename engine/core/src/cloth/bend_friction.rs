@@ -13,18 +13,15 @@
 //! as stiff as [`FrictionRows::prepare`] lets it be, which changes how round the loop's corners are, and neither its slope
 //! nor its width.
 
-use super::friction_rows::{FrictionBlock, FrictionPart, FrictionRows, FrictionStrip, FrictionTable};
+use super::friction_rows::{FrictionBlock, FrictionPart, FrictionRows, FrictionStrip, FrictionTable, staggered};
 use crate::lanes::{Kernel, Lanes, MOST, Numbers, ReadColumn, Readable, Store, V3, WriteColumn, reciprocal_root};
 
-/// What a stencil remembers, and what it keeps.
+/// What stencils remember, and what they keep: columns in one store.
 #[derive(Debug, Clone)]
 pub struct FrictionState {
-    /// Where each slot sticks (sqrt(N/m) m).
-    pub sticks: Store,
-    /// What friction keeps of each slot, along the normal (sqrt(N/m) m); written in each substep in which it acts.
-    kept: [Store; 3],
-    /// Normal of the cloth at each particle in whose middle something rubs, as the step began (1).
-    normals: [Store; 3],
+    numbers: Store,
+    starts: [usize; 7],
+    lens: [usize; 2],
 }
 
 /// The same as columns.
@@ -32,32 +29,45 @@ pub struct FrictionState {
 pub struct FrictionColumns<'a> {
     /// Where each slot sticks (sqrt(N/m) m).
     pub sticks: WriteColumn<'a>,
-    /// What friction keeps of each slot (sqrt(N/m) m).
+    /// What friction keeps of each slot along the normal (sqrt(N/m) m); written in each substep in which it acts.
     pub kept: [WriteColumn<'a>; 3],
-    /// Normal of the cloth at each particle (1).
+    /// Normal of the cloth at each particle in whose middle something rubs (1).
     pub normals: [WriteColumn<'a>; 3],
 }
 
 impl FrictionState {
     /// Of cloth of so many particles that was never bent since it was cut. At load.
     pub fn new(rows: &FrictionRows, particles: usize) -> Self {
-        let three = |n: usize| [Store::zeros(n), Store::zeros(n), Store::zeros(n)];
-        let particles = if rows.acts() { particles } else { 0 };
-        Self { sticks: Store::zeros(rows.count), kept: three(rows.count), normals: three(particles) }
+        let lens = [rows.count, if rows.acts() { particles } else { 0 }];
+        let (starts, end) = staggered(0, [lens[0], lens[0], lens[0], lens[0], lens[1], lens[1], lens[1]]);
+        Self { numbers: Store::zeros(if rows.acts() { end } else { 0 }), starts, lens }
     }
 
     /// As columns for kernels.
     pub fn columns(&mut self) -> FrictionColumns<'_> {
-        FrictionColumns {
-            sticks: self.sticks.column(),
-            kept: self.kept.each_mut().map(Store::column),
-            normals: self.normals.each_mut().map(Store::column),
+        let (starts, [slots, particles]) = (self.starts, self.lens);
+        let all = self.numbers.column();
+        if slots == 0 {
+            return FrictionColumns { sticks: all, kept: [all; 3], normals: [all; 3] };
         }
+        let three = |first: usize, len: usize| [0, 1, 2].map(|axis| all.part(starts[first + axis], len));
+        FrictionColumns { sticks: all.part(starts[0], slots), kept: three(1, slots), normals: three(4, particles) }
+    }
+
+    /// Where each slot sticks (sqrt(N/m) m); empty where nothing rubs.
+    pub fn sticks(&self) -> &[f32] {
+        &self.numbers.as_slice()[..if self.lens[0] > 0 { self.starts[0] + self.lens[0] } else { 0 }]
+    }
+
+    /// The same, to write.
+    pub fn sticks_mut(&mut self) -> &mut [f32] {
+        let len = self.sticks().len();
+        &mut self.numbers.as_mut()[..len]
     }
 
     /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
-        self.sticks.bytes() + self.kept.iter().chain(&self.normals).map(Store::bytes).sum::<usize>()
+        self.numbers.bytes()
     }
 }
 
@@ -142,7 +152,7 @@ impl KeepBent<'_> {
     ) {
         let table = &self.friction.slots;
         let offsets = &table.offsets[part.offsets.start as usize..part.offsets.end as usize];
-        let (stick, reach) = (ReadColumn::new(&self.friction.stick), ReadColumn::new(&self.friction.reach));
+        let (stick, reach) = (ReadColumn::new(self.friction.stick()), ReadColumn::new(self.friction.reach()));
         let mut sum = V3::<L>::splat(glam::Vec3A::ZERO);
         for (k, &offset) in offsets.iter().enumerate() {
             sum = sum + (self.beside::<L>(at, offset, n) - own) * value::<L, ALIKE>(table, part, k, len, [t, n]);
@@ -163,7 +173,7 @@ impl KeepBent<'_> {
     fn block<L: Lanes>(&self, block: &FrictionBlock) {
         let table = &self.friction.slots;
         let values = ReadColumn::new(&table.values);
-        let (stick, reach) = (ReadColumn::new(&self.friction.stick), ReadColumn::new(&self.friction.reach));
+        let (stick, reach) = (ReadColumn::new(self.friction.stick()), ReadColumn::new(self.friction.reach()));
         let mut lane = 0;
         while lane < block.len as usize {
             let n = (block.len as usize - lane).min(L::N);

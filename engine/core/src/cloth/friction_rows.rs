@@ -1,6 +1,6 @@
 //! Friction in bending, laid out for the lanes: which stencils rub (*slots*), and which of them push each particle (*rows*).
 //!
-//! A slot has the number `kind * particles + centre`, so that vertices side by side, whose neighbours lie side by side too, have
+//! A slot has the number `kind * stride + centre`, so that vertices side by side, whose neighbours lie side by side too, have
 //! slots side by side: a strip, which reads columns. What is in no strip is a block of sixteen, which reads by index.
 
 use std::ops::Range;
@@ -9,7 +9,7 @@ use toile_assets::garment::Garment;
 use toile_assets::garment::bend_friction::FrictionSlot;
 use toile_assets::garment::layout::OWNERS;
 
-use crate::lanes::MOST;
+use crate::lanes::{MOST, Store};
 
 /// Slots or rows that are a strip: fewer are as well off in a block.
 const LEAST_STRIP: usize = 6;
@@ -88,8 +88,27 @@ pub struct FrictionTable {
     pub owned_blocks: [Range<usize>; OWNERS],
 }
 
+/// Numbers between two places that a processor takes for the same when it looks whether a load follows a store (4 KiB), as for
+/// the particles' columns.
+const ALIAS: usize = 1_024;
+
+/// How far the columns of slots start behind each other of these, and the kinds within one: so that what one slot stores is never
+/// taken for what the next one loads.
+const STAGGER: [usize; 2] = [112, 48];
+
+/// Where the columns from the `first` on begin that have so many numbers each, and where the last ends.
+pub fn staggered<const N: usize>(first: usize, lens: [usize; N]) -> ([usize; N], usize) {
+    let mut end = 0usize;
+    let starts = std::array::from_fn(|c| {
+        let start = end + ((first + c) * STAGGER[0] + 100 * ALIAS - end) % ALIAS;
+        end = (start + lens[c]).next_multiple_of(MOST);
+        start
+    });
+    (starts, end)
+}
+
 /// The friction of one garment.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct FrictionRows {
     /// From places to what is bent: coefficients (sqrt(N/m)).
     pub slots: FrictionTable,
@@ -97,10 +116,11 @@ pub struct FrictionRows {
     pub rows: FrictionTable,
     /// Number of slots, those that nobody has among them.
     pub count: usize,
-    /// Stiffness while it sticks over the elastic one, of each slot (1); written by [`Self::prepare`].
-    pub stick: Box<[f32]>,
-    /// How far what is bent gets from where it sticks before it slips (sqrt(N/m) m), of each slot; written by [`Self::prepare`].
-    pub reach: Box<[f32]>,
+    /// From a kind's slots to the next one's.
+    stride: u32,
+    /// Stiffness and reach of each slot, and where each begins.
+    law: Store,
+    starts: [usize; 2],
     /// It acts every so many substeps, with the impulse of all of them.
     pub every: u32,
 }
@@ -247,9 +267,10 @@ impl FrictionRows {
         let (friction, n) = (&garment.layout().friction, garment.start.len() as u32);
         let owner = |particle: u32| usize::from(garment.layout().owner[particle as usize]);
         let (mut slots, mut rows): ([Vec<Line>; OWNERS], [Vec<Line>; OWNERS]) = Default::default();
+        let stride = ((n as usize).next_multiple_of(ALIAS) + STAGGER[1]) as u32;
         let mut pushed: Vec<Vec<(u32, f32)>> = vec![Vec::new(); if friction.slots.is_empty() { 0 } else { n as usize }];
         for slot in &friction.slots {
-            let number = slot.kind * n + slot.centre;
+            let number = slot.kind * stride + slot.centre;
             let entries: Vec<(u32, f32)> = friction.entries(slot).collect();
             let own = -entries.iter().map(|(_, c)| c).sum::<f32>();
             for (i, c) in entries.iter().copied().chain([(slot.centre, own)]) {
@@ -266,15 +287,32 @@ impl FrictionRows {
             rows[owner(i)].push(Line { number: i, centre: i, chords: None, entries });
         }
         slots.iter_mut().for_each(|own| own.sort_by_key(|line| (line.centre, line.number)));
-        let count = (friction.kinds() * n) as usize;
+        let count = (friction.kinds() * stride) as usize;
+        let (starts, end) = staggered(7, [count; 2]);
         Self {
             slots: FrictionTable::new(slots),
             rows: FrictionTable::new(rows),
             count,
-            stick: vec![0.0; count].into(),
-            reach: vec![0.0; count].into(),
+            stride,
+            law: Store::zeros(if count > 0 { end } else { 0 }),
+            starts,
             every: 1,
         }
+    }
+
+    /// Number of a slot.
+    pub fn number(&self, slot: &FrictionSlot) -> usize {
+        (slot.kind * self.stride + slot.centre) as usize
+    }
+
+    /// Stiffness of each slot while it sticks over the elastic one (1), as prepared.
+    pub fn stick(&self) -> &[f32] {
+        &self.law.as_slice()[self.starts[0]..][..self.count]
+    }
+
+    /// How far what is bent gets from where it sticks before it slips (sqrt(N/m) m), of each slot, as prepared.
+    pub fn reach(&self) -> &[f32] {
+        &self.law.as_slice()[self.starts[1]..][..self.count]
     }
 
     /// Whether anything rubs.
@@ -288,7 +326,7 @@ impl FrictionRows {
         if !self.acts() {
             return STICKING;
         }
-        let (friction, n) = (&garment.layout().friction, garment.start.len() as u32);
+        let friction = &garment.layout().friction;
         load.fill(0.0);
         let each = |slot: &FrictionSlot, put: &mut dyn FnMut(u32, f32)| {
             let (sum, all) = friction.entries(slot).fold((0.0, 0.0), |(s, a), (_, c)| (s + c, a + c.abs()));
@@ -309,8 +347,9 @@ impl FrictionRows {
             let mut heaviest = 0.0f32;
             each(slot, &mut |i, _| heaviest = heaviest.max(load[i as usize]));
             let stick = if STICKING * heaviest > most { most / heaviest } else { STICKING };
-            let at = (slot.kind * n + slot.centre) as usize;
-            (self.stick[at], self.reach[at]) = (stick, slot.limit / stick);
+            let at = self.number(slot);
+            let law = self.law.as_mut();
+            (law[self.starts[0] + at], law[self.starts[1] + at]) = (stick, slot.limit / stick);
             least = least.min(stick);
         }
         least
@@ -318,6 +357,6 @@ impl FrictionRows {
 
     /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
-        self.slots.bytes() + self.rows.bytes() + 8 * self.count
+        self.slots.bytes() + self.rows.bytes() + self.law.bytes()
     }
 }

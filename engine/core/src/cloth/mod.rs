@@ -193,14 +193,14 @@ impl Cloth {
 
     /// Bending remembers what that of another state of the same garment remembers; nothing where only one of them rubs.
     pub fn remember(&mut self, other: &Self) {
-        if self.friction.sticks.as_slice().len() == other.friction.sticks.as_slice().len() {
-            self.friction.sticks.as_mut().copy_from_slice(other.friction.sticks.as_slice());
+        if self.sticks().len() == other.sticks().len() {
+            self.friction.sticks_mut().copy_from_slice(other.sticks());
         }
     }
 
     /// Where bending sticks by friction, in the order of its slots (sqrt(N/m) m); empty where nothing rubs.
     pub fn sticks(&self) -> &[f32] {
-        self.friction.sticks.as_slice()
+        self.friction.sticks()
     }
 
     /// Takes over what somebody else has made of a step: positions and velocities `[particles]` (m, m/s), and the events so far.

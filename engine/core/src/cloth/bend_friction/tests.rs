@@ -118,7 +118,7 @@ fn the_rows_are_the_law_in_f64_and_the_same_bits_at_every_width() {
         let widths: Vec<Width> = Width::ALL.into_iter().filter(|w| w.available()).collect();
         let mut rubbed: Vec<Rubbed<'_>> = widths.iter().map(|w| Rubbed::new(&garment, *w)).collect();
         let slots = &garment.layout().friction.slots;
-        let stiff = |s: &FrictionSlot| f64::from(rubbed[0].friction.stick[(s.kind as usize) * garment.start.len() + s.centre as usize]);
+        let stiff = |s: &FrictionSlot| f64::from(rubbed[0].friction.stick()[rubbed[0].friction.number(s)]);
         let element = |s: &FrictionSlot| FrictionElement {
             stiffness: 0.0,
             sticking: stiff(s),
@@ -127,8 +127,6 @@ fn the_rows_are_the_law_in_f64_and_the_same_bits_at_every_width() {
         };
         let mut elements: Vec<FrictionElement> = slots.iter().map(element).collect();
         assert!(slots.len() > garment.start.len());
-        let tables = [&rubbed[0].friction.slots, &rubbed[0].friction.rows];
-        eprintln!("{:?} every {}", tables.map(|t| (t.strips.len(), t.strips.iter().map(|s| s.len).sum::<u32>(), t.blocks.len())), rubbed[0].friction.every);
         for step in 0..40 {
             let places = shaken(&garment, 0.4 * step as f32);
             let expected = exact(&garment, &mut elements, &places);
@@ -151,7 +149,7 @@ fn a_strip_rolled_up_and_down_gives_back_the_width_of_its_loop() {
         let slots = &garment.layout().friction.slots;
         let inner = |s: &&FrictionSlot| s.kind == 0 && garment.start[s.centre as usize].distance(Vec3::new(0.04, -0.06, 0.0)) < 1e-4;
         let slot = *slots.iter().find(inner).unwrap();
-        let number = slot.kind as usize * garment.start.len() + slot.centre as usize;
+        let number = rubbed.friction.number(&slot);
         let mut moment = |curvature: f64| {
             let chord = |s: f64| {
                 let turn = 2.0 * (0.5 * 0.01 * curvature).asin() / 0.01 * s;
@@ -163,7 +161,7 @@ fn a_strip_rolled_up_and_down_gives_back_the_width_of_its_loop() {
             };
             let places: Vec<Vec3> = garment.start.iter().map(place).collect();
             rubbed.pushed(&places);
-            let [x, y, z] = rubbed.state.kept.each_ref().map(|k| f64::from(k.as_slice()[number]));
+            let [x, y, z] = rubbed.state.columns().kept.map(|k| f64::from(k.get(number)));
             let (normal, sum) = bent(&garment, &slot, &places);
             // Sums have the root of B A within: over that of A it is a moment, with B.
             let root = (f64::from(numbers[0]) * 1e-6 * 1e-4).sqrt();
@@ -200,5 +198,5 @@ fn a_fabric_without_numbers_has_no_slots_and_what_is_no_number_makes_nothing_sli
     let mut places: Vec<Vec3> = garment.start.to_vec();
     places[30] = Vec3::NAN;
     rubbed.pushed(&places);
-    assert!(rubbed.state.sticks.as_slice().iter().all(|s| s.is_finite()));
+    assert!(rubbed.state.sticks().iter().all(|s| s.is_finite()));
 }
