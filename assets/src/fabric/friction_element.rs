@@ -93,13 +93,10 @@ mod tests {
     use super::*;
 
     /// Matsudaira et al. 2015: B (N m), 2HB (N), residual curvature (1/m).
-    const PUBLISHED: [[f64; 3]; 3] =
-        [[0.118, 0.124, 52.54], [0.067, 0.033, 24.63], [0.019, 0.007, 18.42]];
+    const PUBLISHED: [[f64; 3]; 3] = [[0.118, 0.124, 52.54], [0.067, 0.033, 24.63], [0.019, 0.007, 18.42]];
 
     fn elements() -> impl Iterator<Item = (FrictionElement, f64)> {
-        PUBLISHED.into_iter().map(|[b, width, rests]| {
-            (FrictionElement::new(b * 9.80665e-5, width * 9.80665e-3), rests)
-        })
+        PUBLISHED.into_iter().map(|[b, width, rests]| (FrictionElement::new(b * 9.80665e-5, width * 9.80665e-3), rests))
     }
 
     #[test]

@@ -27,9 +27,8 @@ const KES_MOST: f64 = 500.0;
 const FAST_MOST: f64 = 100.0;
 
 /// Names of the Kawabata system's values: tension, bending, shear, compression, surface, thickness and weight.
-const KES: [&str; 18] = [
-    "LT", "WT", "RT", "EMT", "EM", "B", "2HB", "G", "2HG", "2HG5", "LC", "WC", "RC", "T", "W", "MIU", "MMD", "SMD",
-];
+const KES: [&str; 18] =
+    ["LT", "WT", "RT", "EMT", "EM", "B", "2HB", "G", "2HG", "2HG5", "LC", "WC", "RC", "T", "W", "MIU", "MMD", "SMD"];
 
 /// Names of FAST's.
 const FAST: [&str; 9] = ["E5", "E20", "E100", "C", "B", "G", "W", "T2", "T100"];
@@ -60,7 +59,9 @@ impl SheetKind {
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SheetError {
     /// A line that has no figure.
-    #[error("line {line} of the sheet, \"{text}\", is no name with one figure or two; write for example `B, 0.118, 0.102`")]
+    #[error(
+        "line {line} of the sheet, \"{text}\", is no name with one figure or two; write for example `B, 0.118, 0.102`"
+    )]
     Line {
         /// Number of the line, from 1.
         line: usize,
@@ -113,7 +114,8 @@ impl MeasuredSheet {
                 continue;
             }
             let parts: Vec<&str> = line.split([',', ';', '\t', ' ']).filter(|p| !p.is_empty()).collect();
-            let figures: Option<Vec<f64>> = parts[1..].iter().map(|p| p.parse().ok().filter(|v: &f64| v.is_finite())).collect();
+            let figures: Option<Vec<f64>> =
+                parts[1..].iter().map(|p| p.parse().ok().filter(|v: &f64| v.is_finite())).collect();
             let [warp, weft] = match figures.as_deref() {
                 Some([both]) => [*both; 2],
                 Some([warp, weft]) => [*warp, *weft],
@@ -244,7 +246,8 @@ mod tests {
         assert!((figure(&sheet, "shear_n_m") - 0.8 * 56.188).abs() < 1e-2);
         // e = 2 WT / (LT F).
         assert!((figure(&sheet, "stretch_warp_n_m") - 490.3325 / (18.0 / (0.712 * 500.0))).abs() < 1e-6);
-        let fabric = Fabric::parse("sheet", &sheet.file("broad", "Broad \"cloth\"", "cotton-lawn", "own laboratory")).unwrap();
+        let fabric =
+            Fabric::parse("sheet", &sheet.file("broad", "Broad \"cloth\"", "cotton-lawn", "own laboratory")).unwrap();
         assert!((fabric.hysteresis.bend_warp_mn - 1.21602).abs() < 1e-4 && fabric.drape_percent == Some(62.0));
         assert!((fabric.density_kg_m2 - 0.12).abs() < 1e-6 && (fabric.bend_weft_un_m - 10.0028).abs() < 1e-3);
         let [warp, _] = fabric.hysteresis.residual_curvatures([fabric.bend_warp_un_m, 1.0]);
@@ -253,7 +256,8 @@ mod tests {
 
     #[test]
     fn a_fast_sheet_becomes_a_fabric_without_loops() {
-        let sheet = MeasuredSheet::parse("W 168\nC 15.0 14.5\nE5 1 1\nE20 2 2\nE100 2.5 4\nG 45\nT2 .65\nT100 .5").unwrap();
+        let sheet =
+            MeasuredSheet::parse("W 168\nC 15.0 14.5\nE5 1 1\nE20 2 2\nE100 2.5 4\nG 45\nT2 .65\nT100 .5").unwrap();
         assert_eq!(sheet.kind, SheetKind::Fast);
         // A published report of a plain wool: 5.56 and 5.02 uN m of 168 g/m2, 15.0 and 14.5 mm.
         assert!((figure(&sheet, "bend_warp_un_m") - 5.56).abs() < 0.01);

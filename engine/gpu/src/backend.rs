@@ -54,7 +54,8 @@ const CLOTH_ON_SKIN: &str =
     "a device has the body as capsules and not as skin; switch skin off (`--no-skin`) to step on those";
 
 /// Why the processor steps garments of fabrics that rub.
-const FRICTION: &str = "no device has friction in bending; take the `hysteresis` out of the fabric's file to step it on one";
+const FRICTION: &str =
+    "no device has friction in bending; take the `hysteresis` out of the fabric's file to step it on one";
 
 /// The same where the surroundings have a skin that the settings ask for.
 fn on_skin(colliders: &Colliders, settings: &Settings) -> Option<&'static str> {

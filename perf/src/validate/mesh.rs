@@ -251,8 +251,16 @@ pub struct CaseFabric {
 
 impl CaseFabric {
     /// The median of the measured fabrics in weight, as stiff in tension and shear as a cotton lawn; it does not bend.
-    pub const PLAIN: Self =
-        Self { density: 0.2, stretch: 6_000.0, shear: 60.0, bend: 0.0, bias: None, hysteresis: 0.0, damping: 0.0, friction: 0.3 };
+    pub const PLAIN: Self = Self {
+        density: 0.2,
+        stretch: 6_000.0,
+        shear: 60.0,
+        bend: 0.0,
+        bias: None,
+        hysteresis: 0.0,
+        damping: 0.0,
+        friction: 0.3,
+    };
 
     /// As the bake takes it.
     pub fn fabric(&self) -> Fabric {

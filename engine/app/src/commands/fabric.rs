@@ -23,7 +23,9 @@ use crate::terminal;
 /// Fabrics: list them, show one with its loops, make one of a laboratory's sheet.
 // The help of a command is the doc of its arguments, which a doc of the variant would replace.
 #[derive(Debug, Clone, PartialEq, clap::Subcommand)]
-#[command(after_help = "Example: the loop of a cotton poplin as a picture\n  toile fabric show cotton-broad --picture loop.png")]
+#[command(
+    after_help = "Example: the loop of a cotton poplin as a picture\n  toile fabric show cotton-broad --picture loop.png"
+)]
 pub(crate) enum FabricCommand {
     List(ListArgs),
     Show(ShowArgs),
@@ -41,7 +43,9 @@ pub(crate) struct ListArgs {
 
 /// Show a fabric: its figures, where they are from, and its loops.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
-#[command(after_help = "Example: the loop of a cotton poplin as a picture\n  toile fabric show cotton-broad --picture loop.png")]
+#[command(
+    after_help = "Example: the loop of a cotton poplin as a picture\n  toile fabric show cotton-broad --picture loop.png"
+)]
 pub(crate) struct ShowArgs {
     /// Name of a built-in fabric, or a fabric's file (.toml)
     #[arg(value_name = "FABRIC")]
@@ -56,7 +60,9 @@ pub(crate) struct ShowArgs {
 
 /// Make a fabric's file of a sheet of measured values: KES, FAST or Cusick. docs/fabrics.md says what is in one.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
-#[command(after_help = "Example: a fabric of a Kawabata sheet\n  toile fabric import sheet.csv --name poplin --base cotton-lawn --out poplin.toml")]
+#[command(
+    after_help = "Example: a fabric of a Kawabata sheet\n  toile fabric import sheet.csv --name poplin --base cotton-lawn --out poplin.toml"
+)]
 pub(crate) struct ImportArgs {
     /// The sheet: a line a value, its name and one figure, or that of warp and weft
     #[arg(value_name = "SHEET")]
@@ -134,7 +140,10 @@ impl FabricReport {
         match self.hysteresis {
             [0.0, 0.0, 0.0] => put_line!(out, "loops            none measured: nothing of it rubs"),
             [warp, weft, shear] => {
-                put_line!(out, "loops            bending 2HB warp {warp:.3}, weft {weft:.3} mN; shear 2HG {shear:.2} N/m");
+                put_line!(
+                    out,
+                    "loops            bending 2HB warp {warp:.3}, weft {weft:.3} mN; shear 2HG {shear:.2} N/m"
+                );
                 let [warp, weft] = self.residual_curvature_per_m;
                 put_line!(out, "stays bent at    warp {warp:.1}, weft {weft:.1} 1/m");
             }
@@ -184,7 +193,8 @@ fn list(printing: Printing) -> Result<(), AppError> {
     for f in &fabrics {
         let pair = |[a, b]: [f32; 2]| format!("{a:.1} {b:.1}");
         let source = f.source.as_deref().unwrap_or("");
-        let (bend, stays) = (pair(f.bend_un_m), pair(f.residual_curvature_per_m));
+        let rubs = f.residual_curvature_per_m != [0.0; 2];
+        let (bend, stays) = (pair(f.bend_un_m), if rubs { pair(f.residual_curvature_per_m) } else { "-".into() });
         put_line!(out, "{:<20} {:>7.3} {bend:>15} {stays:>15}  {source}", f.name, f.density_kg_m2);
     }
     terminal::print(&out)
@@ -199,7 +209,8 @@ fn fabric(name: &str) -> Result<Fabric, AppError> {
 }
 
 fn text_of(path: &Path) -> Result<String, AppError> {
-    let unread = |e: std::io::Error| AppError::Input(format!("{} cannot be read ({e}); give a text file", path.display()));
+    let unread =
+        |e: std::io::Error| AppError::Input(format!("{} cannot be read ({e}); give a text file", path.display()));
     std::fs::read_to_string(path).map_err(unread)
 }
 
@@ -207,7 +218,10 @@ fn show(args: &ShowArgs) -> Result<(), AppError> {
     let fabric = fabric(&args.fabric)?;
     let files = match &args.picture {
         Some(_) if fabric.hysteresis == LoopWidths::default() => {
-            return Err(AppError::Input(format!("{} has no measured loops to draw; leave `--picture` out", fabric.name)));
+            return Err(AppError::Input(format!(
+                "{} has no measured loops to draw; leave `--picture` out",
+                fabric.name
+            )));
         }
         Some(path) => {
             let file = OutputFile::prepare(path, Inputs::new([&args.fabric]))?;

@@ -160,7 +160,11 @@ impl KeepBent<'_> {
         let slot = part.slot as usize + t;
         let sticks = some::<L>(self.state.sticks, slot, n);
         let [sticks, kept] = rubbed(sum.dot(normal), sticks, some(stick, slot, n), some(reach, slot, n));
-        if n == L::N { sticks.store(self.state.sticks, slot) } else { sticks.store_part(self.state.sticks, slot, n) }
+        if n == L::N {
+            sticks.store(self.state.sticks, slot)
+        } else {
+            sticks.store_part(self.state.sticks, slot, n)
+        }
         (normal * kept).store(self.state.kept, slot, n);
     }
 

@@ -199,9 +199,14 @@ impl Builder {
         let vertices: Vec<&[Line]> = lines.chunk_by(|a, b| a.centre == b.centre).collect();
         let (mut at, mut loose) = (0, Vec::new());
         while at < vertices.len() {
-            let len = (1..vertices.len() - at).take_while(|by| lead_to(vertices[at], vertices[at + by], *by)).count() + 1;
+            let len =
+                (1..vertices.len() - at).take_while(|by| lead_to(vertices[at], vertices[at + by], *by)).count() + 1;
             let some = &vertices[at..at + len];
-            if len < LEAST_STRIP { loose.extend(some.iter().copied().flatten()) } else { self.strip(some) }
+            if len < LEAST_STRIP {
+                loose.extend(some.iter().copied().flatten())
+            } else {
+                self.strip(some)
+            }
             at += len;
         }
         loose.sort_by_key(|line| std::cmp::Reverse(line.entries.len()));
@@ -214,7 +219,8 @@ impl Builder {
             let from = self.offsets.len() as u32;
             self.offsets.extend(line.entries.iter().map(|(to, _)| to.cast_signed() - line.centre.cast_signed()));
             let most = line.entries.iter().map(|(_, c)| c.abs()).fold(0.0, f32::max);
-            let like = |other: &Line| line.entries.iter().zip(&other.entries).all(|(a, b)| (a.1 - b.1).abs() <= SAME * most);
+            let like =
+                |other: &Line| line.entries.iter().zip(&other.entries).all(|(a, b)| (a.1 - b.1).abs() <= SAME * most);
             let alike = vertices.iter().all(|v| like(&v[k]));
             self.parts.push(FrictionPart {
                 slot: line.number,

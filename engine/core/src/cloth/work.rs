@@ -18,8 +18,8 @@ use super::record_links::RecordLinks;
 use super::root::Carried;
 use super::state::{self, ParticleColumns};
 use super::{
-    Quality, Step, Wind, bend_friction, bending, contact, diagonals, fibers, links, lists, predict, record_links, records, settle,
-    stiff_bending, tethers, wind,
+    Quality, Step, Wind, bend_friction, bending, contact, diagonals, fibers, links, lists, predict, record_links,
+    records, settle, stiff_bending, tethers, wind,
 };
 use crate::lanes::{Shared, Width, WriteColumn};
 use crate::workers::PerShare;

@@ -151,8 +151,7 @@ impl Work {
             [rate(every.folds, particles), rate(every.layers, beside), meetings, 0.0],
             [particles, fixed, 0.0, 0.0],
         ];
-        let bending =
-            Bending { stages: first.bend.stages, friction: friction.acts(), ..Bending::plain(&matrix) };
+        let bending = Bending { stages: first.bend.stages, friction: friction.acts(), ..Bending::plain(&matrix) };
         let each = bending.len() + program::constraints(garment.layout(), settings.quality).len();
         let own = garment.layout().spans[0].iter().map(|s| f64::from(s.1)).sum::<f64>() / garment.particles() as f64;
         Self {

@@ -136,12 +136,7 @@ fn creep() -> ValidationCase {
     let ends = [EndSupport::Clamped, EndSupport::Free];
     let strip = Strip::narrow(HUNG.0, HUNG.1, ends);
     let (_, rigidity, width) = PUBLISHED[1];
-    let cloth = CaseFabric {
-        bend: rigidity * RIGIDITY,
-        hysteresis: width * WIDTH,
-        damping: 5.0,
-        ..CaseFabric::PLAIN
-    };
+    let cloth = CaseFabric { bend: rigidity * RIGIDITY, hysteresis: width * WIDTH, damping: 5.0, ..CaseFabric::PLAIN };
     let run = move |setup: CaseSetup<'_>| {
         let shape = strip.shape(|along, across| DVec3::new(along, 0.0, across));
         let mut specimen = Specimen::new(&shape, &cloth, setup, &Surroundings::default())?;

@@ -21,6 +21,9 @@ struct LoopKind {
 /// KES-FB2: to 2.5 1/cm, read at .5 and 1.5.
 const BENDING: [LoopKind; 2] = [bending("bending, warp"), bending("bending, weft")];
 
+/// Both ways where they are alike.
+const BOTH: LoopKind = bending("warp and weft");
+
 const fn bending(name: &'static str) -> LoopKind {
     LoopKind { name, most: 250.0, read: [50.0, 150.0], unit: ["uN m", "mN"], scale: [1.0, 1e3] }
 }
@@ -97,23 +100,32 @@ fn curve(kind: &LoopKind, element: &mut FrictionElement) -> Vec<[f64; 2]> {
 
 /// Where the measured lines pass: stiffness and half of the width on both sides, at the two deformations at which they are read.
 fn measured(kind: &LoopKind, element: &FrictionElement) -> Vec<[f64; 2]> {
-    let at = |d: f64, side: f64| {
-        [d * kind.scale[0], (element.stiffness * d + side * element.half_width) * kind.scale[1]]
-    };
+    let at =
+        |d: f64, side: f64| [d * kind.scale[0], (element.stiffness * d + side * element.half_width) * kind.scale[1]];
     kind.read.into_iter().flat_map(|d| [at(d, 1.0), at(d, -1.0), at(-d, 1.0), at(-d, -1.0)]).collect()
 }
 
 /// The loops as a picture: bending above, shear below where it was measured.
 pub fn drawing(fabric: &Fabric) -> Drawing {
     let all = elements(fabric);
-    let (bending, shear): (Vec<_>, Vec<_>) = all.into_iter().partition(|(kind, ..)| kind.unit[0] == "uN m");
+    let (mut bending, shear): (Vec<_>, Vec<_>) = all.into_iter().partition(|(kind, ..)| kind.unit[0] == "uN m");
+    if let [(_, _, warp), (_, _, weft)] = &bending[..]
+        && warp == weft
+    {
+        let (_, element, measured) = bending[0];
+        bending = vec![(&BOTH, element, measured)];
+    }
     let mut charts = Vec::new();
     let title = |what: &str| format!("{}: {what}", fabric.title);
     if !bending.is_empty() {
         charts.push(chart(title("bending"), ["curvature (1/m)", "moment for a width (mN)"], bending));
     }
     if !shear.is_empty() {
-        charts.push(chart(title("shear, as measured; the cloth steps without it"), ["angle (degrees)", "force for a width (N/m)"], shear));
+        charts.push(chart(
+            title("shear, as measured; the cloth steps without it"),
+            ["angle (degrees)", "force for a width (N/m)"],
+            shear,
+        ));
     }
     Drawing::stacked(charts.iter().map(Chart::draw))
 }
@@ -124,7 +136,9 @@ fn chart(title: String, labels: [&'static str; 2], loops: Vec<(&LoopKind, Fricti
         let rings = measured(kind, &element);
         let points = curve(kind, &mut element);
         series.push(Series { name: kind.name.into(), points, style: SeriesStyle::line(colour, 2.0) });
-        let name = format!("{:.2} {}, {:.3} {}", figures[0], kind.unit[0], figures[1], kind.unit[1]);
+        let [stiffness, width] = if kind.unit[0] == "uN m" { ["B", "2HB"] } else { ["G", "2HG"] };
+        let name =
+            format!("{stiffness} {:.2} {}, {width} {:.3} {}", figures[0], kind.unit[0], figures[1], kind.unit[1]);
         series.push(Series { name, points: rings, style: SeriesStyle::rings(BLACK) });
     }
     let values = |k: usize| series.iter().flat_map(move |s: &Series| s.points.iter().map(move |p| p[k]));

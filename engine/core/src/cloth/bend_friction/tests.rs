@@ -147,7 +147,9 @@ fn a_strip_rolled_up_and_down_gives_back_the_width_of_its_loop() {
         let garment = strip(12, numbers);
         let mut rubbed = Rubbed::new(&garment, Width::widest());
         let slots = &garment.layout().friction.slots;
-        let inner = |s: &&FrictionSlot| s.kind == 0 && garment.start[s.centre as usize].distance(Vec3::new(0.04, -0.06, 0.0)) < 1e-4;
+        let inner = |s: &&FrictionSlot| {
+            s.kind == 0 && garment.start[s.centre as usize].distance(Vec3::new(0.04, -0.06, 0.0)) < 1e-4
+        };
         let slot = *slots.iter().find(inner).unwrap();
         let number = rubbed.friction.number(&slot);
         let mut moment = |curvature: f64| {
