@@ -75,7 +75,7 @@ impl FrictionState {
 const FARTHEST: f32 = 1e12;
 
 /// What the friction of one owner's slots keeps of the places as they are.
-pub struct KeepBent<'a> {
+pub struct FrictionMoments<'a> {
     /// The garment's friction.
     pub friction: &'a FrictionRows,
     /// Owner whose slots they are.
@@ -88,7 +88,7 @@ pub struct KeepBent<'a> {
     pub turns: bool,
 }
 
-impl Kernel for KeepBent<'_> {
+impl Kernel for FrictionMoments<'_> {
     type Out = ();
 
     #[inline(always)]
@@ -106,7 +106,7 @@ impl Kernel for KeepBent<'_> {
     }
 }
 
-impl KeepBent<'_> {
+impl FrictionMoments<'_> {
     #[inline(always)]
     fn strip<L: Lanes>(&self, strip: &FrictionStrip) {
         let table = &self.friction.slots;
@@ -266,7 +266,7 @@ fn some<L: Lanes>(from: impl Readable, at: usize, n: usize) -> L {
 }
 
 /// What the slots keep pushes one owner's particles.
-pub struct PushKept<'a> {
+pub struct FrictionForces<'a> {
     /// The garment's friction.
     pub friction: &'a FrictionRows,
     /// Owner whose rows they are.
@@ -279,7 +279,7 @@ pub struct PushKept<'a> {
     pub by: f32,
 }
 
-impl Kernel for PushKept<'_> {
+impl Kernel for FrictionForces<'_> {
     type Out = ();
 
     #[inline(always)]
@@ -297,7 +297,7 @@ impl Kernel for PushKept<'_> {
     }
 }
 
-impl PushKept<'_> {
+impl FrictionForces<'_> {
     #[inline(always)]
     fn strip<L: Lanes>(&self, strip: &FrictionStrip) {
         for part in &self.friction.rows.parts[strip.parts.start as usize..strip.parts.end as usize] {

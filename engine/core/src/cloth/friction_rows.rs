@@ -130,14 +130,14 @@ const SAME: f32 = 1e-5;
 
 /// One slot or row before it has its place.
 #[derive(Clone)]
-struct Line {
+struct FrictionLine {
     number: u32,
     centre: u32,
     chords: Option<[u32; 4]>,
     entries: Vec<(u32, f32)>,
 }
 
-impl Line {
+impl FrictionLine {
     /// Whether `other` is `by` further on in every way.
     fn leads_to(&self, other: &Self, by: u32) -> bool {
         let ends = |line: &Self| line.chords.unwrap_or_default();
@@ -150,13 +150,13 @@ impl Line {
 }
 
 /// Whether all lines of one vertex lead to those of another, `by` further on.
-fn lead_to(one: &[Line], other: &[Line], by: usize) -> bool {
+fn lead_to(one: &[FrictionLine], other: &[FrictionLine], by: usize) -> bool {
     one.len() == other.len() && one.iter().zip(other).all(|(a, b)| a.leads_to(b, by as u32))
 }
 
 impl FrictionTable {
-    fn new(lines: [Vec<Line>; OWNERS]) -> Self {
-        let mut this = Builder::default();
+    fn new(lines: [Vec<FrictionLine>; OWNERS]) -> Self {
+        let mut this = FrictionTableBuilder::default();
         let mut out = Self::default();
         for (owner, lines) in lines.into_iter().enumerate() {
             let begun = [this.strips.len(), this.blocks.len()];
@@ -184,7 +184,7 @@ impl FrictionTable {
 }
 
 #[derive(Default)]
-struct Builder {
+struct FrictionTableBuilder {
     strips: Vec<FrictionStrip>,
     parts: Vec<FrictionPart>,
     offsets: Vec<i32>,
@@ -193,10 +193,10 @@ struct Builder {
     values: Vec<f32>,
 }
 
-impl Builder {
+impl FrictionTableBuilder {
     /// Lines in the order of their vertices.
-    fn gather(&mut self, lines: &[Line]) {
-        let vertices: Vec<&[Line]> = lines.chunk_by(|a, b| a.centre == b.centre).collect();
+    fn gather(&mut self, lines: &[FrictionLine]) {
+        let vertices: Vec<&[FrictionLine]> = lines.chunk_by(|a, b| a.centre == b.centre).collect();
         let (mut at, mut loose) = (0, Vec::new());
         while at < vertices.len() {
             let len =
@@ -213,14 +213,15 @@ impl Builder {
         loose.chunks(MOST).for_each(|some| self.block(some));
     }
 
-    fn strip(&mut self, vertices: &[&[Line]]) {
+    fn strip(&mut self, vertices: &[&[FrictionLine]]) {
         let begun = self.parts.len() as u32;
         for (k, line) in vertices[0].iter().enumerate() {
             let from = self.offsets.len() as u32;
             self.offsets.extend(line.entries.iter().map(|(to, _)| to.cast_signed() - line.centre.cast_signed()));
             let most = line.entries.iter().map(|(_, c)| c.abs()).fold(0.0, f32::max);
-            let like =
-                |other: &Line| line.entries.iter().zip(&other.entries).all(|(a, b)| (a.1 - b.1).abs() <= SAME * most);
+            let like = |other: &FrictionLine| {
+                line.entries.iter().zip(&other.entries).all(|(a, b)| (a.1 - b.1).abs() <= SAME * most)
+            };
             let alike = vertices.iter().all(|v| like(&v[k]));
             self.parts.push(FrictionPart {
                 slot: line.number,
@@ -242,7 +243,7 @@ impl Builder {
         });
     }
 
-    fn block(&mut self, lines: &[&Line]) {
+    fn block(&mut self, lines: &[&FrictionLine]) {
         let line = |lane: usize| lines[lane.min(lines.len() - 1)];
         let most = lines.iter().map(|l| l.entries.len()).max().unwrap_or(0);
         self.blocks.push(FrictionBlock {
@@ -272,7 +273,7 @@ impl FrictionRows {
     pub fn new(garment: &Garment) -> Self {
         let (friction, n) = (&garment.layout().friction, garment.start.len() as u32);
         let owner = |particle: u32| usize::from(garment.layout().owner[particle as usize]);
-        let (mut slots, mut rows): ([Vec<Line>; OWNERS], [Vec<Line>; OWNERS]) = Default::default();
+        let (mut slots, mut rows): ([Vec<FrictionLine>; OWNERS], [Vec<FrictionLine>; OWNERS]) = Default::default();
         let stride = ((n as usize).next_multiple_of(ALIAS) + STAGGER[1]) as u32;
         let mut pushed: Vec<Vec<(u32, f32)>> = vec![Vec::new(); if friction.slots.is_empty() { 0 } else { n as usize }];
         for slot in &friction.slots {
@@ -285,12 +286,12 @@ impl FrictionRows {
                     pushed[i as usize].push((number, -w * c));
                 }
             }
-            let line = Line { number, centre: slot.centre, chords: Some(slot.chords), entries };
+            let line = FrictionLine { number, centre: slot.centre, chords: Some(slot.chords), entries };
             slots[owner(slot.centre)].push(line);
         }
         for (i, mut entries) in (0..).zip(pushed).filter(|(_, entries)| !entries.is_empty()) {
             entries.sort_unstable_by_key(|(slot, _)| *slot);
-            rows[owner(i)].push(Line { number: i, centre: i, chords: None, entries });
+            rows[owner(i)].push(FrictionLine { number: i, centre: i, chords: None, entries });
         }
         slots.iter_mut().for_each(|own| own.sort_by_key(|line| (line.centre, line.number)));
         let count = (friction.kinds() * stride) as usize;

@@ -219,7 +219,7 @@ impl OwnerShare<'_, '_> {
         if self.rubs() {
             let (friction, from) = (&self.work.prepared.friction, self.columns.particles.x);
             let (owner, state, turns) = (self.owner, self.columns.friction, self.substep.is_multiple_of(2));
-            self.work.width.run(bend_friction::KeepBent { friction, owner, from, state, turns });
+            self.work.width.run(bend_friction::FrictionMoments { friction, owner, from, state, turns });
         }
     }
 
@@ -229,7 +229,13 @@ impl OwnerShare<'_, '_> {
         if self.rubs() {
             let to = if p.bending.stages > 1 { self.columns.room[0] } else { self.columns.particles.v };
             let (kept, by) = (self.columns.friction.kept, p.dt * p.friction.every as f32);
-            self.work.width.run(bend_friction::PushKept { friction: &p.friction, owner: self.owner, kept, to, by });
+            self.work.width.run(bend_friction::FrictionForces {
+                friction: &p.friction,
+                owner: self.owner,
+                kept,
+                to,
+                by,
+            });
         }
     }
 

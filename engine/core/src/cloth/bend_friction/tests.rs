@@ -74,10 +74,10 @@ impl<'a> Rubbed<'a> {
         let mut state = State::new(places, &self.garment.inverse_mass);
         let (c, f, friction) = (state.columns(), self.state.columns(), &self.friction);
         for owner in 0..OWNERS {
-            self.width.run(KeepBent { friction, owner, from: c.x, state: f, turns: true });
+            self.width.run(FrictionMoments { friction, owner, from: c.x, state: f, turns: true });
         }
         for owner in 0..OWNERS {
-            self.width.run(PushKept { friction, owner, kept: f.kept, to: c.v, by: 1.0 });
+            self.width.run(FrictionForces { friction, owner, kept: f.kept, to: c.v, by: 1.0 });
         }
         (0..places.len()).map(|i| Vec3::from_array(state.velocities().map(|a| a[i]))).collect()
     }
