@@ -3,7 +3,10 @@
 //! Reads: a fabric's file, and the picture that its print names. Writes: an immutable [`Fabric`].
 //! Budget: 10 ms a fabric with a print, at load only. Thread: the loading thread.
 
+pub mod friction_element;
+pub mod loop_widths;
 pub mod print;
+pub mod sheet;
 
 use std::sync::Arc;
 
@@ -12,6 +15,7 @@ use thiserror::Error;
 use toml::{Table, Value};
 
 use crate::texture::Texture;
+use loop_widths::LoopWidths;
 use print::Print;
 
 /// One fabric, as its file states it. Stiffnesses are per unit width of cloth, so that they do not depend on any mesh.
@@ -22,6 +26,9 @@ pub struct Fabric {
     pub name: String,
     /// Name for shoppers.
     pub title: String,
+    /// Where its figures were published or measured.
+    #[serde(default)]
+    pub source: Option<String>,
     /// Mass per area (kg/m2).
     pub density_kg_m2: f32,
     /// Tensile stiffness along the warp (N/m); infinite is inextensible.
@@ -62,6 +69,12 @@ pub struct Fabric {
     /// Share of light that the threads hold back where cloth is seen against the light (0..1): a voile has gaps.
     #[serde(default = "opaque")]
     pub opacity: f32,
+    /// Cusick's drape coefficient as measured (%): reported beside the rest, never fitted to.
+    #[serde(default)]
+    pub drape_percent: Option<f32>,
+    /// Widths of its measured loops; none where it was not measured, and then nothing of it costs anything.
+    #[serde(default)]
+    pub hysteresis: LoopWidths,
     /// What is printed on it or woven into it.
     pub print: Option<Print>,
     /// One repeat of the print, drawn or read.
@@ -151,7 +164,7 @@ pub enum FabricError {
 }
 
 /// The fabrics that are built in.
-const BUILT_IN: [&str; 14] = [
+const BUILT_IN: [&str; 28] = [
     include_str!("../data/fabrics/cotton-lawn.toml"),
     include_str!("../data/fabrics/cotton-jersey.toml"),
     include_str!("../data/fabrics/linen-twill.toml"),
@@ -166,6 +179,20 @@ const BUILT_IN: [&str; 14] = [
     include_str!("../data/fabrics/wool-houndstooth.toml"),
     include_str!("../data/fabrics/wool-herringbone.toml"),
     include_str!("../data/fabrics/wool-windowpane.toml"),
+    include_str!("../data/fabrics/interlock.toml"),
+    include_str!("../data/fabrics/denim-11oz.toml"),
+    include_str!("../data/fabrics/ponte.toml"),
+    include_str!("../data/fabrics/rib-knit.toml"),
+    include_str!("../data/fabrics/sweat-knit.toml"),
+    include_str!("../data/fabrics/blanket-fleece.toml"),
+    include_str!("../data/fabrics/cotton-trousering.toml"),
+    include_str!("../data/fabrics/jacket-polyester.toml"),
+    include_str!("../data/fabrics/table-polyester.toml"),
+    include_str!("../data/fabrics/swim-knit.toml"),
+    include_str!("../data/fabrics/cotton-broad.toml"),
+    include_str!("../data/fabrics/wool-tropical.toml"),
+    include_str!("../data/fabrics/polyester-faille.toml"),
+    include_str!("../data/fabrics/denim-tropical.toml"),
 ];
 
 /// The name in the text of a built-in fabric, whose file has it in a line of its own.
@@ -296,6 +323,10 @@ impl Fabric {
         for (key, low, high) in Self::RANGES {
             self.figure(key).map_or(Ok(()), |value| checked(key, value, low, high))?;
         }
+        for ((key, low, high), width) in LoopWidths::RANGES.into_iter().zip(self.hysteresis.figures()) {
+            checked(key, width, low, high)?;
+        }
+        checked("drape_percent", self.drape_percent.unwrap_or(50.0), 0.0, 100.0)?;
         checked("comfortable_stretch", self.comfortable_stretch, 0.001, 1.0)?;
         self.colour.iter().try_for_each(|&part| checked("colour", part, 0.0, 1.0))?;
         self.threads_per_cm.iter().try_for_each(|&count| checked("threads_per_cm", count, 1.0, 200.0))?;

@@ -223,6 +223,40 @@ fn fibers_that_end_before_others_of_their_bundle_have_the_same_bits_at_every_wid
 /// that of Linux on x86-64.)
 const GOLDEN: u64 = 0x0968_5acc_582b_f880;
 
+/// Farthest that a settled skirt whose bending rubs may creep in a minute (m).
+const CREEP_M: f32 = 1e-3;
+
+#[test]
+fn a_settled_skirt_that_rubs_creeps_less_than_a_millimetre_a_minute() {
+    let mut scene = scene(&SkirtOptions { motion: Motion::Settled, hysteresis: true, ..small() });
+    let mut run = |seconds: usize| {
+        for _ in 0..120 * seconds {
+            scene.prepare();
+            scene.step();
+        }
+        scene.cloths[0].positions.clone()
+    };
+    let (before, after) = (run(15), run(60));
+    let crept = before.iter().zip(&after).map(|(p, q)| p.distance(*q)).fold(0.0, f32::max);
+    eprintln!("{} mm in a minute", crept * 1e3);
+    assert!(crept < CREEP_M, "{crept} m");
+}
+
+#[test]
+fn bending_that_rubs_gives_the_same_bits_by_one_worker_and_two_and_others_than_without() {
+    let play = |threads: usize, hysteresis: bool| {
+        let mut scene = scene(&SkirtOptions { verts: 9_216, threads, hysteresis, ..SkirtOptions::default() });
+        for _ in 0..GOLDEN_STEPS {
+            scene.prepare();
+            scene.step();
+        }
+        scene.state_hash()
+    };
+    let one = play(1, true);
+    assert_eq!(play(2, true), one, "two workers");
+    assert_ne!(play(1, false), one, "friction changes nothing");
+}
+
 /// Steps to the golden hash.
 const GOLDEN_STEPS: usize = 40;
 

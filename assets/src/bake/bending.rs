@@ -67,12 +67,21 @@ pub fn stencils(shape: &Shape, edges: &[Edge], fabric: &Fabric) -> Vec<Stencil> 
             out.extend(whole.parts(plate.0).into_iter().map(|part| part.stencil(&whole.v, area)));
         } else if !around.is_empty() {
             let rigidity = patches.rigidities(v, &plate);
-            let k = |d: Direction, m: &RingMeasure| rigidity[d as usize] * rings.area[v] / m.bends(&shape.fixed);
-            out.extend(around.iter().map(|(direction, m)| m.stencil(*direction, k(*direction, m))));
+            out.extend(around.iter().map(|(direction, m)| {
+                let bends = m.bends(&shape.fixed);
+                m.stencil(*direction, rigidity[*direction as usize] * rings.area[v] / bends, bends)
+            }));
         }
     }
     out.retain(|s: &Stencil| s.k > 0.0 && s.v.iter().any(|&i| !shape.fixed[i as usize]));
     out
+}
+
+/// For each vertex the two chords of its ring whose product is its normal, as far apart along warp and weft as they can be:
+/// from the second vertex to the first, and from the fourth to the third. `None` where its faces do not close a ring or a fan.
+pub fn chords(shape: &Shape, edges: &[Edge]) -> Vec<Option<[u32; 4]>> {
+    let rings = Rings::new(shape, edges);
+    (0..shape.cut.len()).map(|v| rings.flat(v).and_then(|ring| ring.chords())).collect()
 }
 
 /// Largest difference between the force of a short stencil and that of the whole ring under the same moment (of 1) up to

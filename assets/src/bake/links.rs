@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::bend_friction;
 use super::bending::{self, Stencil};
 use super::diagonals::{self, BiasFiber};
 use super::fibers::{Direction, Edge, Fiber};
@@ -79,6 +80,7 @@ pub fn lay_out(baking: &BakeInput<'_>) -> Layout {
         bends: bends(baking, &stencils),
         skewed: bends(baking, &stencils),
         hubs: hubs::hubs(baking.order, &stencils),
+        friction: bend_friction::lay_out(baking.shape, baking.edges, baking.order, &stencils, baking.fabric),
         tethers: tethers(baking),
         spans: spans(&baking.order.owner),
         owner: baking.order.owner.clone().into(),

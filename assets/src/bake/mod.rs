@@ -5,6 +5,7 @@
 //! Budget: 100 ms for 8,000 vertices; at load only.
 //! Thread: the loading thread.
 
+mod bend_friction;
 pub mod bending;
 mod diagonals;
 pub mod fibers;

@@ -7,6 +7,7 @@
 
 use std::ops::Range;
 
+use super::bend_friction::BendFriction;
 use super::{Direction, Solver};
 
 /// Workers that a garment can be shared between.
@@ -370,6 +371,8 @@ pub struct Layout {
     pub skewed: Bends<4>,
     /// Bending where the mesh is uneven: measured over whole rings.
     pub hubs: Hubs,
+    /// Which of the three rub, and how much; none where the fabric has no numbers for it.
+    pub friction: BendFriction,
     /// What holds the garment together when all else gives way.
     pub tethers: Tethers,
     /// The particles that each owner has, as ranges `(first, len)`.
@@ -425,6 +428,7 @@ impl Layout {
             + bends(&self.skewed)
             + 4 * (self.hubs.particles.len() + self.hubs.coefficients.len())
             + size_of_val(&*self.hubs.groups)
+            + self.friction.bytes()
             + self.tethers.anchor.len() * 8
             + self.owner.len()
             + self.spans.iter().map(Vec::len).sum::<usize>() * 8

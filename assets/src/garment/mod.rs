@@ -4,6 +4,7 @@
 //! Budget: at load only.
 //! Thread: the loading thread makes them, physics borrows them.
 
+pub mod bend_friction;
 pub mod check;
 pub mod direction;
 mod gather;
@@ -76,6 +77,12 @@ impl Garment {
     pub fn leave_out_bending(&mut self) {
         let layout = &mut self.layout;
         (layout.bends, layout.skewed, layout.hubs) = (Default::default(), Default::default(), Default::default());
+        layout.friction = Default::default();
+    }
+
+    /// Takes away the friction in bending: to see what it is worth.
+    pub fn leave_out_bend_friction(&mut self) {
+        self.layout.friction = Default::default();
     }
 
     /// Takes away the resistance to shear.

@@ -14,6 +14,7 @@ use crate::commands::catalogue::CatalogueCommand;
 use crate::commands::completions::CompletionsArgs;
 use crate::commands::convert::ConvertArgs;
 use crate::commands::doctor::DoctorArgs;
+use crate::commands::fabric::FabricCommand;
 use crate::commands::kiosk::KioskArgs;
 use crate::commands::latency::LatencyArgs;
 use crate::commands::live::LiveArgs;
@@ -60,6 +61,8 @@ pub(crate) enum Command {
     Tailor(TailorArgs),
     #[command(subcommand)]
     Catalogue(CatalogueCommand),
+    #[command(subcommand)]
+    Fabric(FabricCommand),
     Body(BodyArgs),
     Run(RunArgs),
     Doctor(DoctorArgs),

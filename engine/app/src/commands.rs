@@ -13,6 +13,7 @@ pub mod completions;
 pub mod convert;
 mod crossings;
 pub mod doctor;
+pub(crate) mod fabric;
 pub mod kiosk;
 pub mod latency;
 pub mod live;

@@ -355,6 +355,7 @@ impl Frame {
         for cloth in &self.cloths {
             cloth.positions.iter().flat_map(|p| p.to_array()).for_each(&mut add);
             (0..cloth.positions.len()).flat_map(|i| cloth.velocity(i).to_array()).for_each(&mut add);
+            cloth.sticks().iter().copied().for_each(&mut add);
         }
         hash.finish()
     }
@@ -366,6 +367,9 @@ impl Frame {
         self.pose.local.iter().for_each(|q| print.add(&q.to_array()));
         for cloth in &self.cloths {
             cloth.state.positions().into_iter().chain(cloth.state.velocities()).for_each(|column| print.add(column));
+            if !cloth.sticks().is_empty() {
+                print.add(cloth.sticks());
+            }
         }
         print.end()
     }

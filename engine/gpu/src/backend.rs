@@ -53,6 +53,10 @@ const CLOTH_ON_CLOTH: &str = "no device keeps cloth out of cloth; switch layers 
 const CLOTH_ON_SKIN: &str =
     "a device has the body as capsules and not as skin; switch skin off (`--no-skin`) to step on those";
 
+/// Why the processor steps garments of fabrics that rub.
+const FRICTION: &str =
+    "no device has friction in bending; take the `hysteresis` out of the fabric's file to step it on one";
+
 /// The same where the surroundings have a skin that the settings ask for.
 fn on_skin(colliders: &Colliders, settings: &Settings) -> Option<&'static str> {
     (colliders.skin().is_some() && settings.contact().skin > 0).then_some(CLOTH_ON_SKIN)
@@ -209,6 +213,9 @@ impl ClothStepper {
             && let Some(reason) = batch.steps.first().and_then(|step| on_skin(step.colliders, step.settings))
         {
             self.fall_back(reason.to_owned());
+        }
+        if self.graphics.is_some() && batch.garments.iter().any(|g| !g.layout().friction.slots.is_empty()) {
+            self.fall_back(FRICTION.to_owned());
         }
         if std::mem::take(&mut self.undecided) {
             self.decide(batch, pool.as_deref_mut())?;

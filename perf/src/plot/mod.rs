@@ -108,3 +108,24 @@ pub struct Drawing {
     /// What is drawn, in this order.
     pub marks: Vec<Mark>,
 }
+
+impl Drawing {
+    /// Drawings one below the other.
+    pub fn stacked(all: impl IntoIterator<Item = Self>) -> Self {
+        let mut whole = Self::default();
+        for drawing in all {
+            let below = f64::from(whole.size[1]);
+            let down = |at: &mut [f64; 2]| at[1] += below;
+            let moved = drawing.marks.into_iter().map(|mut mark| {
+                match &mut mark {
+                    Mark::Line { points, .. } => points.iter_mut().for_each(down),
+                    Mark::Dot { at, .. } | Mark::Box { at, .. } | Mark::Text { at, .. } => down(at),
+                }
+                mark
+            });
+            whole.marks.extend(moved);
+            whole.size = [whole.size[0].max(drawing.size[0]), whole.size[1] + drawing.size[1]];
+        }
+        whole
+    }
+}

@@ -30,6 +30,8 @@ pub struct SkirtOptions {
     pub mesh: SkirtMesh,
     /// How its threads stretch.
     pub stretch: Stretch,
+    /// Whether its bending rubs.
+    pub hysteresis: bool,
     /// Wind of the scene.
     pub wind: bool,
     /// Whether each skirt keeps from passing through itself.
@@ -71,6 +73,7 @@ impl Default for SkirtOptions {
             motion: Motion::Walk,
             mesh: SkirtMesh::Grid,
             stretch: Stretch::Inextensible,
+            hysteresis: false,
             wind: false,
             folds: false,
             threads: 1,

@@ -69,6 +69,8 @@ pub struct SkirtReport {
     pub mesh: &'static str,
     /// `inextensible` or `physical`.
     pub stretch: &'static str,
+    /// Whether its bending rubs.
+    pub hysteresis: bool,
     /// Whether there is wind.
     pub wind: bool,
     /// Whether each keeps from passing through itself.
@@ -145,6 +147,7 @@ impl SkirtReport {
             motion: options.motion.name(),
             mesh: options.mesh.name(),
             stretch: options.stretch.name(),
+            hysteresis: options.hysteresis,
             wind: options.wind,
             folds: options.folds,
             garments: options.garments,

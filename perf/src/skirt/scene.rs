@@ -96,7 +96,10 @@ impl SkirtScene {
             SkirtMesh::Grid => skirt::shape(side),
             SkirtMesh::Irregular => skirt::irregular(side, MESH_SEED),
         };
-        let fabric = skirt::fabric(&shape, options.stretch);
+        let mut fabric = skirt::fabric(&shape, options.stretch);
+        if options.hysteresis {
+            fabric.hysteresis = skirt::LOOPS;
+        }
         change(&mut shape);
         let before = heap.read();
         let garment = bake("skirt", "one", &shape, &fabric)?;

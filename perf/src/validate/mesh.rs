@@ -6,6 +6,7 @@
 
 use delaunator::{Point, triangulate};
 use glam::{DVec2, DVec3};
+use toile_assets::fabric::loop_widths::LoopWidths;
 use toile_assets::fabric::{Fabric, USUAL_SHEEN, USUAL_THREADS, Weave};
 use toile_assets::garment::shape::{NO_VERTEX, Part};
 use toile_assets::garment::{Face, Shape};
@@ -240,6 +241,8 @@ pub struct CaseFabric {
     pub bend: f64,
     /// Bending rigidity along the bias (N m), where the case twists.
     pub bias: Option<f64>,
+    /// Width of the loop of its bending, 2HB (N).
+    pub hysteresis: f64,
     /// Rate at which motion is damped (1/s).
     pub damping: f64,
     /// Friction coefficient (1).
@@ -248,8 +251,16 @@ pub struct CaseFabric {
 
 impl CaseFabric {
     /// The median of the measured fabrics in weight, as stiff in tension and shear as a cotton lawn; it does not bend.
-    pub const PLAIN: Self =
-        Self { density: 0.2, stretch: 6_000.0, shear: 60.0, bend: 0.0, bias: None, damping: 0.0, friction: 0.3 };
+    pub const PLAIN: Self = Self {
+        density: 0.2,
+        stretch: 6_000.0,
+        shear: 60.0,
+        bend: 0.0,
+        bias: None,
+        hysteresis: 0.0,
+        damping: 0.0,
+        friction: 0.3,
+    };
 
     /// As the bake takes it.
     pub fn fabric(&self) -> Fabric {
@@ -257,6 +268,7 @@ impl CaseFabric {
         Fabric {
             name: "case".into(),
             title: "Made for a case".into(),
+            source: None,
             density_kg_m2: self.density as f32,
             stretch_warp_n_m: self.stretch as f32,
             stretch_weft_n_m: self.stretch as f32,
@@ -274,6 +286,12 @@ impl CaseFabric {
             threads_per_cm: USUAL_THREADS,
             sheen: USUAL_SHEEN,
             opacity: 1.0,
+            drape_percent: None,
+            hysteresis: LoopWidths {
+                bend_warp_mn: (self.hysteresis * 1e3) as f32,
+                bend_weft_mn: (self.hysteresis * 1e3) as f32,
+                shear_n_m: 0.0,
+            },
             print: None,
             tile: None,
         }

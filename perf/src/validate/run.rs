@@ -63,10 +63,12 @@ impl ValidationReport {
 const STACK_BYTES: usize = 32 << 20;
 
 /// The names of all cases, in the order of the table: known without working out what is exact, which takes seconds.
-pub const NAMES: [&str; 23] = [
+pub const NAMES: [&str; 25] = [
     "cantilever",
     "peirce",
     "elastica",
+    "residual",
+    "creep",
     "greenhill",
     "euler",
     "lateral",

@@ -18,6 +18,12 @@ const MOST_OFF: f64 = 0.8;
 /// How much a measure by long levers is worse than one by short ones: enough to settle ties.
 const LEVER_COST: f64 = 0.02;
 
+/// How much a point that lies aside of a chord's direction is worse for it than one that lies on it.
+const ASIDE_COST: f64 = 0.3;
+
+/// Least sine between two chords whose product is a normal.
+const LEAST_SINE: f64 = 0.2;
+
 /// Longest lever: how much farther points pull apart than those of three in a row, for whom this is 1.
 const MOST_LEVER: f64 = 8.0;
 
@@ -217,12 +223,12 @@ pub struct RingMeasure {
 }
 
 impl RingMeasure {
-    /// The stencil of a stiffness (N m3). The weights sum to zero as exactly as f32 can.
-    pub fn stencil(&self, direction: Direction, k: f64) -> Stencil {
+    /// The stencil of a stiffness (N m3), of which so much bends (1). The weights sum to zero as exactly as f32 can.
+    pub fn stencil(&self, direction: Direction, k: f64, bends: f64) -> Stencil {
         let [p, q, r] = self.weights.map(|w| w as f32);
         let count = if self.v[3] == NO_VERTEX { 3 } else { 4 };
         let c = [-(p + q + r), p, q, r];
-        Stencil { v: self.v[..count].to_vec(), c: c[..count].to_vec(), k: k as f32, direction }
+        Stencil { v: self.v[..count].to_vec(), c: c[..count].to_vec(), k: k as f32, direction, bends: bends as f32 }
     }
 
     /// How each of its particles is pushed by a moment over an area (m2), as weights.
@@ -263,6 +269,21 @@ impl Ring {
             }
         }
         best.map(|(_, found)| found)
+    }
+
+    /// Two chords, one along the warp and one along the weft, whose product is the normal of the cloth at the vertex: the
+    /// ends of each are as far apart as the ring has them, and as little aside.
+    pub fn chords(&self) -> Option<[u32; 4]> {
+        let own = (self.v, DVec2::ZERO);
+        let all = || std::iter::once(&own).chain(&self.points);
+        let farthest = |along: DVec2| {
+            let reach = |p: &DVec2| p.dot(along) - ASIDE_COST * p.perp_dot(along).abs();
+            all().fold(own, |best, p| if reach(&p.1) > reach(&best.1) + 1e-9 { *p } else { best })
+        };
+        let [a, b, c, d] = [DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y].map(farthest);
+        let (one, other) = (a.1 - b.1, c.1 - d.1);
+        let sine = one.perp_dot(other) / (one.length() * other.length());
+        (sine > LEAST_SINE).then_some([a.0, b.0, c.0, d.0])
     }
 
     /// The affine dependence of the vertex and three points, normalised to measure 1 along a direction; and how bad it is.

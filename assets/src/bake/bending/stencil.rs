@@ -14,4 +14,6 @@ pub struct Stencil {
     pub k: f32,
     /// The direction whose curvature it measures.
     pub direction: Direction,
+    /// How much of that curvature its sum is (1): less beside a clamp, where only the half before it bends.
+    pub bends: f32,
 }

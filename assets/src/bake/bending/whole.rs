@@ -54,7 +54,7 @@ impl CurvatureTerm {
     pub fn stencil(&self, v: &[u32], area: f64) -> Stencil {
         let mut c: Vec<f32> = self.weights.iter().map(|w| (w / area) as f32).collect();
         c[0] = -c[1..].iter().sum::<f32>();
-        Stencil { v: v.to_vec(), c, k: (self.rigidity * area) as f32, direction: self.direction }
+        Stencil { v: v.to_vec(), c, k: (self.rigidity * area) as f32, direction: self.direction, bends: 1.0 }
     }
 }
 

@@ -24,6 +24,10 @@ pub struct BendingPace {
     pub stages: u32,
     /// Least share of its stiffness that the time step can carry.
     pub least: f32,
+    /// Friction in it acts every so many substeps.
+    pub friction_every: u32,
+    /// Least stiffness of what sticks by friction, over the elastic one (1).
+    pub sticking: f32,
 }
 
 /// Adds to each particle the bound on dt^2 omega^2 that bending puts on it.

@@ -4,11 +4,13 @@
 //! Budget: 3 ms a step for 6,000 particles on one core ([`STEP_BUDGET_US`]); no allocation after [`Cloth::new`].
 //! Thread: physics; two workers may share a step.
 
+pub mod bend_friction;
 pub mod bending;
 pub mod bending_matrix;
 pub mod contact;
 pub mod diagonals;
 pub mod fibers;
+pub mod friction_rows;
 pub mod guard;
 pub mod layers;
 pub mod links;
@@ -77,6 +79,8 @@ pub struct Cloth {
     records: Store,
     /// Room for bending that is stiffer than a substep; none where it cannot be.
     room: stiff_bending::StiffBendingScratch,
+    /// What bending remembers by friction; empty where nothing rubs.
+    friction: bend_friction::FrictionState,
     /// Room for what is solved along the bias.
     leaning: diagonals::DiagonalScratch,
     /// Tensions of weft links, of fibers, of crossing fibers within a substep; empty where they have no compliance.
@@ -119,6 +123,7 @@ impl Cloth {
             scratch: [scratch(), scratch()],
             records: Store::zeros(if prepared.reads_records() { RECORD * (start.len() + OWNERS) } else { 0 }),
             room: stiff_bending::StiffBendingScratch::new(if prepared.stiff() { start.len() } else { 0 }),
+            friction: bend_friction::FrictionState::new(&prepared.friction, start.len()),
             leaning: diagonals::DiagonalScratch::new(&garment.layout().diagonals, garment.start.len()),
             strains: vec![0.0; garment.strain_edges.len()].into(),
             prepared,
@@ -186,6 +191,18 @@ impl Cloth {
         &self.state
     }
 
+    /// Bending remembers what that of another state of the same garment remembers; nothing where only one of them rubs.
+    pub fn remember(&mut self, other: &Self) {
+        if self.sticks().len() == other.sticks().len() {
+            self.friction.sticks_mut().copy_from_slice(other.sticks());
+        }
+    }
+
+    /// Where bending sticks by friction, in the order of its slots (sqrt(N/m) m); empty where nothing rubs.
+    pub fn sticks(&self) -> &[f32] {
+        self.friction.sticks()
+    }
+
     /// Takes over what somebody else has made of a step: positions and velocities `[particles]` (m, m/s), and the events so far.
     pub fn take_over(&mut self, positions: &[Vec3A], velocities: &[Vec3A], events: guard::GuardEvents) {
         self.checked = false;
@@ -237,6 +254,7 @@ impl Cloth {
             + self.faces.as_ref().map_or(0, wind::Faces::bytes)
             + self.records.bytes()
             + self.room.bytes()
+            + self.friction.bytes()
             + self.leaning.bytes()
             + self.scratch.iter().map(Store::bytes).sum::<usize>()
             + self.tension.iter().map(Store::bytes).sum::<usize>()

@@ -7,6 +7,7 @@ use toile_assets::garment::layout::{ENDED, Layout};
 use toile_assets::limits::STEP_SECONDS;
 
 use super::bending_matrix::BendingMatrix;
+use super::friction_rows::{FrictionRows, STICKING};
 use super::links::{LinkGains, Passes};
 use super::program::{Bending, Program};
 use super::record_links::RecordLinks;
@@ -47,6 +48,8 @@ pub struct Prepared {
     records: [Option<RecordLinks>; 2],
     /// Bending of the garment, as much of it as the substep carries.
     pub matrix: BendingMatrix,
+    /// Friction in bending of the garment.
+    pub friction: FrictionRows,
     /// How bending goes on.
     pub bend: bending::BendingPace,
     /// Bending's phases of a substep, and its stages where it is stiff.
@@ -70,7 +73,8 @@ impl Prepared {
         bending::add_load(layout, &garment.inverse_mass, longest, &mut load);
         let stiff = load.iter().any(|l| *l > bending::STABLE);
         let matrix = BendingMatrix::new(garment);
-        let bending = Bending::plain(&matrix);
+        let friction = FrictionRows::new(garment);
+        let bending = Bending { friction: friction.acts(), ..Bending::plain(&matrix) };
         Self {
             made_for: None,
             program: Program::new(layout, bending, stiff),
@@ -84,7 +88,8 @@ impl Prepared {
             weft: LinkGains::new(&layout.weft),
             records: [&layout.shear, &layout.weft].map(|l| RecordLinks::of(l, &garment.inverse_mass)),
             matrix,
-            bend: bending::BendingPace { every: 1, stages: 1, least: 1.0 },
+            friction,
+            bend: bending::BendingPace { every: 1, stages: 1, least: 1.0, friction_every: 1, sticking: STICKING },
             bending,
             stages: [ChebyshevStage::default(); stiff_bending::MAX_BENDING_STAGES as usize],
             stiff,
@@ -138,7 +143,10 @@ impl Prepared {
         }
         let least = self.matrix.fill(garment, &self.load, limit);
         self.bending.stages = stages;
-        self.bend = bending::BendingPace { every: bending::every(&self.load, self.substeps), stages, least };
+        let every = bending::every(&self.load, self.substeps);
+        let sticking = self.friction.prepare(garment, self.dt, self.substeps, &mut self.load);
+        let friction_every = self.friction.every;
+        self.bend = bending::BendingPace { every, stages, least, friction_every, sticking };
     }
 
     /// Shear (0) and weft links (1) as records, where that is the faster form and nothing damps them: damping asks where the
@@ -180,6 +188,7 @@ impl Prepared {
             + self.shear.bytes()
             + self.weft.bytes()
             + self.matrix.bytes()
+            + self.friction.bytes()
             + self.records.iter().flatten().map(RecordLinks::bytes).sum::<usize>()
     }
 }

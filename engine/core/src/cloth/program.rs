@@ -27,6 +27,10 @@ pub enum Stage {
     BendingRecords,
     /// The bending forces.
     Bending,
+    /// What friction keeps of what is bent.
+    FrictionMoments,
+    /// What it keeps pushes the particles.
+    FrictionForces,
     /// Bending that is stiffer than a substep: before the forces of a stage of this number; behind the last of them.
     StiffBendingTurn(u32),
     /// The records of what bends in such a stage.
@@ -72,6 +76,8 @@ impl Stage {
             Self::Predict | Self::RootMotion => 0,
             Self::BendingRecords
             | Self::Bending
+            | Self::FrictionMoments
+            | Self::FrictionForces
             | Self::StiffBendingTurn(_)
             | Self::StiffBendingRecords(_)
             | Self::StiffBending(_) => 1,
@@ -94,12 +100,14 @@ pub struct Bending {
     pub records: bool,
     /// Stages; 1 for a force.
     pub stages: u32,
+    /// Whether it rubs.
+    pub friction: bool,
 }
 
 impl Bending {
     /// As a force.
     pub fn plain(matrix: &BendingMatrix) -> Self {
-        Self { acts: !matrix.values.is_empty(), records: matrix.reads_records(), stages: 1 }
+        Self { acts: !matrix.values.is_empty(), records: matrix.reads_records(), stages: 1, friction: false }
     }
 
     /// How many stages it is in the program.
@@ -114,13 +122,20 @@ impl Bending {
 
     /// Stages of bending in the program.
     pub fn program(self) -> impl Iterator<Item = Stage> {
-        let Self { acts, records, stages } = self;
-        let plain = [(Stage::BendingRecords, records), (Stage::Bending, true)];
+        let Self { acts, records, stages, friction } = self;
+        let plain = [
+            (Stage::BendingRecords, records),
+            (Stage::Bending, true),
+            (Stage::FrictionMoments, friction),
+            (Stage::FrictionForces, friction),
+        ];
         let plain = plain.into_iter().filter(move |(_, there)| *there && acts && stages < 2);
         let stiff = if acts && stages > 1 { stages } else { 0 };
         let staged = move |j: u32| {
             let each = [
                 (Stage::StiffBendingTurn(j), true),
+                (Stage::FrictionMoments, friction && j == 0),
+                (Stage::FrictionForces, friction && j == 0),
                 (Stage::StiffBendingRecords(j), records),
                 (Stage::StiffBending(j), true),
             ];

@@ -142,6 +142,7 @@ impl Cloth {
             scratch: [one.column(), two.column()],
             records: self.records.column(),
             room: self.room.columns(),
+            friction: self.friction.columns(),
             leaning: self.leaning.columns(),
         };
         StepWork {

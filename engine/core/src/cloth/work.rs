@@ -18,8 +18,8 @@ use super::record_links::RecordLinks;
 use super::root::Carried;
 use super::state::{self, ParticleColumns};
 use super::{
-    Quality, Step, Wind, bending, contact, diagonals, fibers, links, lists, predict, record_links, records, settle,
-    stiff_bending, tethers, wind,
+    Quality, Step, Wind, bend_friction, bending, contact, diagonals, fibers, links, lists, predict, record_links,
+    records, settle, stiff_bending, tethers, wind,
 };
 use crate::lanes::{Shared, Width, WriteColumn};
 use crate::workers::PerShare;
@@ -67,6 +67,8 @@ pub struct WorkColumns<'a> {
     pub records: WriteColumn<'a>,
     /// Scratch of stiff bending; empty where there is none.
     pub room: [[WriteColumn<'a>; 3]; 3],
+    /// What bending remembers by friction; empty where nothing rubs.
+    pub friction: bend_friction::FrictionColumns<'a>,
     /// Scratch of what is solved along the bias.
     pub leaning: [WriteColumn<'a>; diagonals::KEPT],
 }
@@ -87,7 +89,8 @@ impl StepWork<'_> {
         // - the ranges of `Layout::spans` hold each particle once (wind, root motion, prediction, contact, velocities,
         //   tethers, records filled and read back, and turns of stiff bending write nothing else; a tether reads anchors,
         //   which are fixed and not written);
-        // - a row of the bending matrix is its particle's owner's, and what bends is not what is pushed;
+        // - a row of the bending matrix is its particle's owner's, and what bends is not what is pushed; a slot of friction is the
+        //   owner's of the particle in its middle, a row that it pushes its own particle's;
         // - constraints of one set and different owners share no particle (`garment::layout`), and each has its own tension;
         //   links by records fill up with one spare record an owner;
         // - each owner has a scratch of its own, and half of the tensions to clear.
@@ -120,6 +123,8 @@ impl OwnerShare<'_, '_> {
             Stage::RootMotion => self.root_motion(),
             Stage::BendingRecords => self.bending_records(),
             Stage::Bending => self.bending(),
+            Stage::FrictionMoments => self.friction_moments(),
+            Stage::FrictionForces => self.friction_forces(),
             Stage::StiffBendingTurn(stage) => self.stiff_bending_turn(stage),
             Stage::StiffBendingRecords(stage) => self.fill_records(self.stiffly_bent(stage)[0]),
             Stage::StiffBending(stage) => self.stiff_bending(stage),
@@ -201,6 +206,36 @@ impl OwnerShare<'_, '_> {
         let (p, particles) = (self.work.prepared, self.columns.particles);
         if self.substep.is_multiple_of(p.bend.every) {
             self.bend([particles.x, particles.v], p.dt * p.bend.every as f32);
+        }
+    }
+
+    /// Whether friction in bending acts in this substep.
+    fn rubs(&self) -> bool {
+        self.substep.is_multiple_of(self.work.prepared.friction.every)
+    }
+
+    /// What friction keeps of what is bent.
+    fn friction_moments(&self) {
+        if self.rubs() {
+            let (friction, from) = (&self.work.prepared.friction, self.columns.particles.x);
+            let (owner, state, turns) = (self.owner, self.columns.friction, self.substep.is_multiple_of(2));
+            self.work.width.run(bend_friction::FrictionMoments { friction, owner, from, state, turns });
+        }
+    }
+
+    /// It pushes the velocities, or what is to become their change where bending goes in stages.
+    fn friction_forces(&self) {
+        let p = self.work.prepared;
+        if self.rubs() {
+            let to = if p.bending.stages > 1 { self.columns.room[0] } else { self.columns.particles.v };
+            let (kept, by) = (self.columns.friction.kept, p.dt * p.friction.every as f32);
+            self.work.width.run(bend_friction::FrictionForces {
+                friction: &p.friction,
+                owner: self.owner,
+                kept,
+                to,
+                by,
+            });
         }
     }
 

@@ -41,8 +41,11 @@ const WALKING: &str = "duration = 7\n[colliders]\nmotion = \"walk\"\n";
 /// Waist, pinned to the body that walks.
 const WAIST: &str = "motion = \"walk\"\n";
 
+/// A fabric whose bending rubs.
+const RUBBING: &str = "fabric = \"wool-tropical\"";
+
 /// Each cloth's own part of its scene file.
-fn texts() -> [String; 9] {
+fn texts() -> [String; 11] {
     let scene = |more: &str, garment: &str, pinned: &str| {
         format!("{WALKING}{more}\n[[garment]]\n{garment}\n[[garment.pin]]\nvertices = [\"{pinned}\"]\n{WAIST}")
     };
@@ -62,6 +65,8 @@ fn texts() -> [String; 9] {
         scene(draft, "skirt = { side = 48 }\nfabric = \"cotton-jersey\"", "0-47"),
         scene("", &format!("{}\nfabric = \"cotton-jersey\"", tube(40, 96)), "0-95"),
         scene(draft, "skirt = { side = 24, layout = \"irregular\" }\nfabric = \"cotton-lawn\"", "0-23"),
+        scene("", &format!("skirt = {{ side = 60 }}\n{RUBBING}"), "0-59"),
+        scene("", &format!("skirt = {{ side = 44, layout = \"irregular\" }}\n{RUBBING}"), "0-43"),
         scene(folds, "skirt = { side = 56 }\nfabric = \"linen-twill\"", "0-55"),
         format!(
             "{}\n[[garment]]\n{}\nscale = 1.05\n[[garment.pin]]\nvertices = [\"0-95\"]\n{WAIST}",

@@ -117,6 +117,9 @@ fn variants(scene: &Scene) -> Vec<Variant> {
     let (wind, tethers) = (scene.settings[0].wind, scene.settings[0].tethers);
     let quality = scene.settings[0].quality;
     add("bending", true, &Garment::leave_out_bending, &alike);
+    if scene.garments.iter().any(|g| !g.layout().friction.slots.is_empty()) {
+        add("friction in bending", true, &Garment::leave_out_bend_friction, &alike);
+    }
     add("shear", true, &Garment::leave_out_shear, &alike);
     add("friction", true, &|g| g.fabric.friction = 0.0, &alike);
     add("continuous contact", true, &same, &|s| s.continuous = false);
@@ -210,6 +213,7 @@ fn window(from: &Playing<'_>, variant: &Variant, tally: &mut Tally) -> Vec<Box<[
         }
         cloth.step(garment, &Step { palette: &playing.bones, colliders: &playing.colliders, settings });
         (0..garment.particles()).for_each(|i| cloth.disturb(i, run.positions[i], run.velocity(i)));
+        cloth.remember(run);
         playing.cloths.push(cloth);
     }
     // One worker is the caller.

@@ -5,6 +5,7 @@ use glam::Vec3;
 use toile_assets::garment::layout::{ENDED, Links};
 use toile_assets::garment::{Garment, Part};
 use toile_engine::cloth::bending_matrix::{BendingMatrix, RowBlock, RowStrip};
+use toile_engine::cloth::friction_rows::{FrictionRows, FrictionStrip, FrictionTable};
 use toile_engine::cloth::program::{self, BEFORE, Bending, Stage};
 use toile_engine::cloth::{Cloth, Quality, Settings, bending, contact, record_links};
 use toile_engine::colliders::Colliders;
@@ -20,7 +21,7 @@ pub const STAGES: [&str; 10] =
 /// What is counted in each stage, in one step.
 pub const UNITS: [[&str; KINDS]; STAGES.len()] = [
     ["lanes of particles", "skinned particles", "tensions", ""],
-    ["lanes of entries of rows", "lanes of scattered entries", "lanes of records", ""],
+    ["lanes of entries of rows", "lanes of scattered entries", "lanes of records", "lanes of entries that rub"],
     ["lanes of links along fibers", "lanes of links", "lanes of scattered links", ""],
     ["lanes of links", "lanes of scattered links", "phases", ""],
     ["lanes of rows", "lanes of rows by index", "lanes of closed hoops", ""],
@@ -128,8 +129,11 @@ impl Work {
         // Shear along whole fibers acts in every second of an even number of substeps.
         let half = first.substeps.is_multiple_of(2) && settings.quality != Quality::Fine;
         let leaning = if half { 0.5 } else { 1.0 };
-        let matrix = BendingMatrix::new(garment);
+        let (matrix, friction) = (BendingMatrix::new(garment), FrictionRows::new(garment));
         let [shear, scattered] = count.links(&garment.layout().shear);
+        let rubs = n / f64::from(first.bend.friction_every.max(1));
+        let mut bends = count.bending(&matrix).map(|c| c * bent);
+        bends[3] = count.rubbing(&friction) * rubs;
         let touching = first.near / BLOCK * n;
         let beside = first.beside / count.lanes as f64;
         let every = settings.contact();
@@ -137,7 +141,7 @@ impl Work {
         let meetings = when(every.folds > 0 || (every.layers > 0 && beside > 0.0), n);
         let counts = [
             per([particles, fixed, count.tensions(), 0.0]),
-            count.bending(&matrix).map(|c| c * bent),
+            bends,
             per([count.leaning() * leaning, shear, scattered, 0.0]),
             per(count.weft()),
             per(count.fibers()),
@@ -147,7 +151,7 @@ impl Work {
             [rate(every.folds, particles), rate(every.layers, beside), meetings, 0.0],
             [particles, fixed, 0.0, 0.0],
         ];
-        let bending = Bending { stages: first.bend.stages, ..Bending::plain(&matrix) };
+        let bending = Bending { stages: first.bend.stages, friction: friction.acts(), ..Bending::plain(&matrix) };
         let each = bending.len() + program::constraints(garment.layout(), settings.quality).len();
         let own = garment.layout().spans[0].iter().map(|s| f64::from(s.1)).sum::<f64>() / garment.particles() as f64;
         Self {
@@ -192,6 +196,21 @@ impl Count<'_> {
         let block = |b: &RowBlock| f64::from(1 + b.entries) * self.vectors(b.len as usize);
         let records = if matrix.reads_records() { self.vectors(self.garment.particles()) } else { 0.0 };
         [matrix.strips.iter().map(strip).sum(), matrix.blocks.iter().map(block).sum(), records, 0.0]
+    }
+
+    /// Entries of slots and rows; by index they take some three times as long as side by side.
+    fn rubbing(&self, friction: &FrictionRows) -> f64 {
+        let table = |t: &FrictionTable, own: u32| {
+            let entries = |s: &FrictionStrip| -> u32 {
+                let parts = &t.parts[s.parts.start as usize..s.parts.end as usize];
+                parts.iter().map(|p| own + p.offsets.end - p.offsets.start).sum()
+            };
+            let strips = t.strips.iter().map(|s| f64::from(entries(s)) * self.vectors(s.len as usize));
+            let blocks = t.blocks.iter().map(|b| 3.0 * f64::from(own + b.entries) * self.vectors(b.len as usize));
+            strips.sum::<f64>() + blocks.sum::<f64>()
+        };
+        // A slot reads its middle, its normal, three numbers of its own, and writes four; a row itself.
+        table(&friction.slots, 4) + table(&friction.rows, 1)
     }
 
     fn leaning(&self) -> f64 {

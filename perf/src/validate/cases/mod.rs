@@ -7,6 +7,7 @@
 mod bending;
 mod buckling;
 mod contact;
+mod hysteresis;
 mod invariance;
 pub mod layered;
 mod motion;
@@ -20,6 +21,7 @@ use super::case::ValidationCase;
 pub fn all() -> Vec<ValidationCase> {
     let rooms = [
         bending::cases,
+        hysteresis::cases,
         buckling::cases,
         strings::cases,
         motion::cases,

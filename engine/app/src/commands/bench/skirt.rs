@@ -64,6 +64,9 @@ pub struct SkirtArgs {
         default_value = "inextensible"
     )]
     stretch: Stretch,
+    /// With friction in bending: the loops of a wool tropical
+    #[arg(long)]
+    hysteresis: bool,
     /// Wind of (1, 0, 0.5) m/s with drag 0.1 and lift 0.05
     #[arg(long)]
     wind: bool,
@@ -75,7 +78,8 @@ pub struct SkirtArgs {
     threads: usize,
     /// Step this garment of the wardrobe on a performing mannequin in place of the skirt; again for an outfit
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(wardrobe::names()),
-          conflicts_with_all = ["verts", "motion", "mesh", "stretch", "wind", "garments", "table"])]
+          conflicts_with_all = ["verts", "motion", "mesh", "stretch", "hysteresis", "wind", "garments",
+                                 "table"])]
     garment: Vec<String>,
     /// With several garments: let them pass through each other
     #[arg(long, requires = "garment")]
@@ -142,6 +146,7 @@ impl SkirtArgs {
             motion: self.motion,
             mesh: self.mesh,
             stretch: self.stretch,
+            hysteresis: self.hysteresis,
             wind: self.wind,
             folds: self.folds,
             threads: self.threads,
@@ -173,6 +178,7 @@ impl SkirtArgs {
         self.lanes.into_iter().for_each(|l| give("lanes", l.to_string()));
         self.quality.into_iter().for_each(|q| give("quality", q.name().to_owned()));
         self.substeps.into_iter().for_each(|s| give("substeps", s.to_string()));
+        options.extend(self.hysteresis.then(|| "--hysteresis".to_owned()));
         options.extend(self.wind.then(|| "--wind".to_owned()));
         options.extend(self.folds.then(|| "--self".to_owned()));
         TurnCase { name, options }

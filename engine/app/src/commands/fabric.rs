@@ -1,0 +1,260 @@
+//! `toile fabric`: what fabrics there are, what one is, and a laboratory's sheet made into one.
+//!
+//! Reads: built-in fabrics, a fabric's file, a sheet of measured values. Writes: a report, a picture of loops, a fabric's file.
+//! Budget: milliseconds. Thread: the main thread.
+
+mod loops;
+
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+use toile_assets::fabric::Fabric;
+use toile_assets::fabric::loop_widths::LoopWidths;
+use toile_assets::fabric::sheet::MeasuredSheet;
+use toile_assets::put_line;
+use toile_perf::plot::raster;
+
+use crate::arguments::Printing;
+use crate::exit::AppError;
+use crate::output::{Inputs, OutputFile};
+use crate::report::Document;
+use crate::terminal;
+
+/// Fabrics: list them, show one with its loops, make one of a laboratory's sheet.
+// The help of a command is the doc of its arguments, which a doc of the variant would replace.
+#[derive(Debug, Clone, PartialEq, clap::Subcommand)]
+#[command(
+    after_help = "Example: the loop of a cotton poplin as a picture\n  toile fabric show cotton-broad --picture loop.png"
+)]
+pub(crate) enum FabricCommand {
+    List(ListArgs),
+    Show(ShowArgs),
+    Import(ImportArgs),
+}
+
+/// List the built-in fabrics with their weight, bending and the curvature that they keep.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(after_help = "Example: all fabrics\n  toile fabric list")]
+pub(crate) struct ListArgs {
+    /// What is printed.
+    #[command(flatten)]
+    pub printing: Printing,
+}
+
+/// Show a fabric: its figures, where they are from, and its loops.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(
+    after_help = "Example: the loop of a cotton poplin as a picture\n  toile fabric show cotton-broad --picture loop.png"
+)]
+pub(crate) struct ShowArgs {
+    /// Name of a built-in fabric, or a fabric's file (.toml)
+    #[arg(value_name = "FABRIC")]
+    pub fabric: String,
+    /// Picture of its loops to write, ending in .png: moment against curvature, shear force against angle
+    #[arg(long, value_name = "FILE")]
+    pub picture: Option<PathBuf>,
+    /// What is printed.
+    #[command(flatten)]
+    pub printing: Printing,
+}
+
+/// Make a fabric's file of a sheet of measured values: KES, FAST or Cusick. docs/fabrics.md says what is in one.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(
+    after_help = "Example: a fabric of a Kawabata sheet\n  toile fabric import sheet.csv --name poplin --base cotton-lawn --out poplin.toml"
+)]
+pub(crate) struct ImportArgs {
+    /// The sheet: a line a value, its name and one figure, or that of warp and weft
+    #[arg(value_name = "SHEET")]
+    pub sheet: PathBuf,
+    /// Name of the fabric
+    #[arg(long, value_name = "NAME")]
+    pub name: String,
+    /// Its name for shoppers (default: the name)
+    #[arg(long, value_name = "TITLE")]
+    pub title: Option<String>,
+    /// Built-in fabric that has what the sheet does not say
+    #[arg(long, value_name = "FABRIC", default_value = "cotton-lawn")]
+    pub base: String,
+    /// Where the sheet is from (default: the name of its file)
+    #[arg(long, value_name = "WORDS")]
+    pub source: Option<String>,
+    /// File to write, ending in .toml
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+    /// What is printed.
+    #[command(flatten)]
+    pub printing: Printing,
+}
+
+/// A fabric as it is reported.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct FabricReport {
+    name: String,
+    title: String,
+    source: Option<String>,
+    density_kg_m2: f32,
+    /// Warp, weft; null is inextensible (N/m).
+    stretch_n_m: [f32; 2],
+    shear_n_m: f32,
+    /// Warp, weft (uN m).
+    bend_un_m: [f32; 2],
+    bend_bias_un_m: Option<f32>,
+    /// 2HB of warp and weft (mN), 2HG (N/m).
+    hysteresis: [f32; 3],
+    /// Curvature that warp and weft keep (1/m).
+    residual_curvature_per_m: [f32; 2],
+    drape_percent: Option<f32>,
+}
+
+impl From<&Fabric> for FabricReport {
+    fn from(fabric: &Fabric) -> Self {
+        let bend_un_m = [fabric.bend_warp_un_m, fabric.bend_weft_un_m];
+        Self {
+            name: fabric.name.clone(),
+            title: fabric.title.clone(),
+            source: fabric.source.clone(),
+            density_kg_m2: fabric.density_kg_m2,
+            stretch_n_m: [fabric.stretch_warp_n_m, fabric.stretch_weft_n_m],
+            shear_n_m: fabric.shear_n_m,
+            bend_un_m,
+            bend_bias_un_m: fabric.bend_bias_un_m,
+            hysteresis: fabric.hysteresis.figures(),
+            residual_curvature_per_m: fabric.hysteresis.residual_curvatures(bend_un_m),
+            drape_percent: fabric.drape_percent,
+        }
+    }
+}
+
+impl FabricReport {
+    fn lines(&self) -> String {
+        let mut out = String::new();
+        let [warp, weft] = self.bend_un_m;
+        put_line!(out, "{} ({})", self.name, self.title);
+        put_line!(out, "source           {}", self.source.as_deref().unwrap_or("none stated"));
+        put_line!(out, "weight           {:.3} kg/m2", self.density_kg_m2);
+        put_line!(out, "stretch          warp {:.0}, weft {:.0} N/m", self.stretch_n_m[0], self.stretch_n_m[1]);
+        put_line!(out, "shear            {:.1} N/m a radian", self.shear_n_m);
+        let bias = self.bend_bias_un_m.map_or_else(String::new, |b| format!(", bias {b:.1}"));
+        put_line!(out, "bending          warp {warp:.2}, weft {weft:.2}{bias} uN m");
+        match self.hysteresis {
+            [0.0, 0.0, 0.0] => put_line!(out, "loops            none measured: nothing of it rubs"),
+            [warp, weft, shear] => {
+                put_line!(
+                    out,
+                    "loops            bending 2HB warp {warp:.3}, weft {weft:.3} mN; shear 2HG {shear:.2} N/m"
+                );
+                let [warp, weft] = self.residual_curvature_per_m;
+                put_line!(out, "stays bent at    warp {warp:.1}, weft {weft:.1} 1/m");
+            }
+        }
+        if let Some(drape) = self.drape_percent {
+            put_line!(out, "drape            {drape:.1} % measured; reported, not fitted to");
+        }
+        out
+    }
+}
+
+/// The body of `list`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct FabricList {
+    fabrics: Vec<FabricReport>,
+}
+
+/// The body of `show` and `import`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct ShownFabric {
+    fabric: FabricReport,
+    /// What the law of the file gives back when it is measured as the Kawabata system does.
+    loops: Vec<loops::LoopReport>,
+    files: Vec<PathBuf>,
+}
+
+/// Runs `toile fabric`.
+///
+/// # Errors
+/// A fabric or a sheet that cannot be read, a file that cannot be written.
+pub(crate) fn run(command: &FabricCommand) -> Result<(), AppError> {
+    match command {
+        FabricCommand::List(args) => list(args.printing),
+        FabricCommand::Show(args) => show(args),
+        FabricCommand::Import(args) => import(args),
+    }
+}
+
+fn list(printing: Printing) -> Result<(), AppError> {
+    let fabrics: Vec<FabricReport> =
+        Fabric::all().map_err(AppError::internal)?.iter().map(FabricReport::from).collect();
+    if printing.json {
+        return terminal::print_json(&Document::new("fabric", FabricList { fabrics }));
+    }
+    let mut out = String::new();
+    put_line!(out, "{:<20} {:>7} {:>15} {:>15}  source", "fabric", "kg/m2", "bending uN m", "stays at 1/m");
+    for f in &fabrics {
+        let pair = |[a, b]: [f32; 2]| format!("{a:.1} {b:.1}");
+        let source = f.source.as_deref().unwrap_or("");
+        let rubs = f.residual_curvature_per_m != [0.0; 2];
+        let (bend, stays) = (pair(f.bend_un_m), if rubs { pair(f.residual_curvature_per_m) } else { "-".into() });
+        put_line!(out, "{:<20} {:>7.3} {bend:>15} {stays:>15}  {source}", f.name, f.density_kg_m2);
+    }
+    terminal::print(&out)
+}
+
+/// A built-in fabric, or one of a file.
+fn fabric(name: &str) -> Result<Fabric, AppError> {
+    if !Path::new(name).extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) {
+        return Fabric::built_in(name).map_err(AppError::input);
+    }
+    Fabric::parse(name, &text_of(Path::new(name))?).map_err(AppError::input)
+}
+
+fn text_of(path: &Path) -> Result<String, AppError> {
+    let unread =
+        |e: std::io::Error| AppError::Input(format!("{} cannot be read ({e}); give a text file", path.display()));
+    std::fs::read_to_string(path).map_err(unread)
+}
+
+fn show(args: &ShowArgs) -> Result<(), AppError> {
+    let fabric = fabric(&args.fabric)?;
+    let files = match &args.picture {
+        Some(_) if fabric.hysteresis == LoopWidths::default() => {
+            return Err(AppError::Input(format!(
+                "{} has no measured loops to draw; leave `--picture` out",
+                fabric.name
+            )));
+        }
+        Some(path) => {
+            let file = OutputFile::prepare(path, Inputs::new([&args.fabric]))?;
+            let mut png = Vec::new();
+            raster::image(&loops::drawing(&fabric)).write_png(&mut png).map_err(AppError::internal)?;
+            file.write(&png)?
+        }
+        None => Vec::new(),
+    };
+    finish(&fabric, files, args.printing)
+}
+
+fn import(args: &ImportArgs) -> Result<(), AppError> {
+    let wrong = |e: &dyn std::fmt::Display| AppError::Input(format!("{}: {e}", args.sheet.display()));
+    let sheet = MeasuredSheet::parse(&text_of(&args.sheet)?).map_err(|e| wrong(&e))?;
+    let of_file = args.sheet.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+    let source = args.source.as_deref().unwrap_or(&of_file);
+    let text = sheet.file(&args.name, args.title.as_deref().unwrap_or(&args.name), &args.base, source);
+    let fabric = Fabric::parse(&args.name, &text).map_err(|e| wrong(&e))?;
+    let files = OutputFile::prepare(&args.out, Inputs::new([&args.sheet]))?.write(text.as_bytes())?;
+    finish(&fabric, files, args.printing)
+}
+
+fn finish(fabric: &Fabric, files: Vec<PathBuf>, printing: Printing) -> Result<(), AppError> {
+    let body = ShownFabric { fabric: fabric.into(), loops: loops::readings(fabric), files };
+    if printing.json {
+        return terminal::print_json(&Document::new("fabric", body));
+    }
+    let mut out = body.fabric.lines();
+    for l in &body.loops {
+        put_line!(out, "read off the law {}", l.line());
+    }
+    terminal::print(&out)?;
+    body.files.iter().for_each(|f| printing.words().print_line(&format!("{} written", f.display())));
+    Ok(())
+}
