@@ -1,14 +1,14 @@
 """What LiteRT computes of pictures, for tests/parity.rs: python3 reference.py FOLDER, the folder with the network's files.
 
 Needs `pip install ai-edge-litert numpy pillow`. Writes reference.bin: of each picture the outputs of lite, full and the
-detector, f32, little-endian; of the detector every eighth anchor.
+detector, f32, little-endian, first by its plain kernels and then by XNNPACK; of the detector every eighth anchor.
 """
 
 import pathlib
 import sys
 
 import numpy
-from ai_edge_litert.interpreter import Interpreter
+from ai_edge_litert.interpreter import Interpreter, OpResolverType
 from PIL import Image
 
 HERE = pathlib.Path(__file__).parent
@@ -26,15 +26,17 @@ def noise(count):
 
 
 def pictures(side):
-    """A person, noise and grey."""
-    person = numpy.asarray(Image.open(HERE / f"person_{side}.png").convert("RGB"), numpy.float32) / numpy.float32(255)
-    yield person
-    yield noise(side * side * 3).reshape(side, side, 3)
+    """A person from the front and from the side, grey, noise."""
+    for name in ["front", "side"]:
+        person = Image.open(HERE / f"{name}_{side}.png").convert("RGB")
+        yield numpy.asarray(person, numpy.float32) / numpy.float32(255)
     yield numpy.full((side, side, 3), 0.5, numpy.float32)
+    yield noise(side * side * 3).reshape(side, side, 3)
 
 
-def network(name):
-    interpreter = Interpreter(model_content=(FOLDER / name).read_bytes(), num_threads=1)
+def network(name, kernels):
+    content = (FOLDER / name).read_bytes()
+    interpreter = Interpreter(model_content=content, num_threads=1, experimental_op_resolver_type=kernels)
     interpreter.allocate_tensors()
     return interpreter
 
@@ -48,12 +50,13 @@ def run(interpreter, picture, shapes):
 
 
 parts = []
-for name in ["pose_landmark_lite.tflite", "pose_landmark_full.tflite"]:
-    interpreter = network(name)
-    for picture in pictures(256):
-        parts += [o.ravel() for o in run(interpreter, picture, [[1, 195], [1, 1], [1, 117]])]
-interpreter = network("pose_solution_packed_assets.data")
-for picture in pictures(224):
-    scaled = picture * numpy.float32(2) - numpy.float32(1)
-    parts += [o[0, ::8].ravel() for o in run(interpreter, scaled, [[1, 2254, 12], [1, 2254, 1]])]
+for kernels in [OpResolverType.BUILTIN_REF, OpResolverType.AUTO]:
+    for name in ["pose_landmark_lite.tflite", "pose_landmark_full.tflite"]:
+        interpreter = network(name, kernels)
+        for picture in pictures(256):
+            parts += [o.ravel() for o in run(interpreter, picture, [[1, 195], [1, 1], [1, 117]])]
+    interpreter = network("pose_solution_packed_assets.data", kernels)
+    for picture in pictures(224):
+        scaled = picture * numpy.float32(2) - numpy.float32(1)
+        parts += [o[0, ::8].ravel() for o in run(interpreter, scaled, [[1, 2254, 12], [1, 2254, 1]])]
 (HERE / "reference.bin").write_bytes(numpy.concatenate(parts).astype("<f4").tobytes())
