@@ -120,6 +120,17 @@ pub enum PoseError {
     },
 }
 
+impl PoseError {
+    /// What is wrong, without the cure.
+    pub fn what(&self) -> String {
+        match self {
+            Self::Missing { folder, file } => format!("{} holds no {file}", folder.display()),
+            Self::Unreadable { path, problem } => format!("{} cannot be read ({problem})", path.display()),
+            Self::Another { path, what } => format!("{} is another file: {what}", path.display()),
+        }
+    }
+}
+
 /// The folder of the environment, or Toile's own.
 pub fn folder() -> PathBuf {
     let given = env::var_os(FOLDER_VARIABLE).filter(|folder| !folder.is_empty());

@@ -89,7 +89,7 @@ fn compare(case: &Case<'_>, folder: &Path, plain: &mut Reference, xnnpack: &mut 
             let each = if case.every == 1 { 1 } else { shape[2] };
             let kept = network.output(i).chunks_exact(each).step_by(case.every).flatten();
             let ours: Vec<f32> = kept.map(|x| (case.units)(i, *x)).collect();
-            let mut of = |reference: &mut Reference| -> Vec<f32> {
+            let of = |reference: &mut Reference| -> Vec<f32> {
                 reference.take(ours.len()).iter().map(|x| (case.units)(i, *x)).collect()
             };
             let (plain, xnnpack) = (of(plain), of(xnnpack));

@@ -20,12 +20,14 @@ use toile_engine::triple_buffer::{Reader, TripleBuffer, Writer};
 use toile_sensors::clock::SECOND_NS;
 use toile_sensors::frame::{DepthFrame, Joints};
 use toile_sensors::segment::Zone;
+use toile_sensors::source::Session;
 use toile_sensors::source::live::{CameraCounts, CameraState, ColourImage, LiveDepth, PATIENCE_NS};
 use toile_track::fit::FitOptions;
 use toile_track::fit::measuring::FRAMES;
 use toile_track::fit::tracker::{BodyTracker, Company};
 
 use crate::dress::depth::{APART_NS, TURN_NS};
+use crate::dress::session;
 
 /// Time between two looks of the sensor thread (ns): half a step, so that no frame waits for longer.
 const LOOK_NS: u64 = SECOND_NS / 240;
@@ -50,11 +52,12 @@ struct CameraNews {
 
 /// A frame that was looked at, on its way to the sensor thread.
 #[derive(Debug, Clone)]
-struct TrackedFrame {
-    frame: Arc<DepthFrame>,
-    joints: Joints,
-    company: Company,
-    arrived_ns: u64,
+pub(super) struct TrackedFrame {
+    /// Its depth, where the camera has any.
+    pub frame: Option<Arc<DepthFrame>>,
+    pub joints: Joints,
+    pub company: Company,
+    pub arrived_ns: u64,
 }
 
 /// Figures of the camera and of who is seen through it.
@@ -92,6 +95,8 @@ struct Gathered {
     /// Whether somebody is measured.
     wanted: bool,
     frames: Vec<Arc<DepthFrame>>,
+    /// Joints, of a camera without depth.
+    joints: Vec<Joints>,
     next_ns: u64,
 }
 
@@ -107,8 +112,9 @@ pub struct CameraHandle {
 }
 
 impl CameraHandle {
-    fn new() -> Self {
-        let gathered = Gathered { wanted: false, frames: Vec::with_capacity(GATHERED), next_ns: 0 };
+    pub(super) fn new() -> Self {
+        let (frames, joints) = (Vec::with_capacity(GATHERED), Vec::with_capacity(FRAMES));
+        let gathered = Gathered { wanted: false, frames, joints, next_ns: 0 };
         Self {
             figures: Arc::default(),
             gathered: Arc::new(Mutex::new(gathered)),
@@ -136,6 +142,7 @@ impl CameraHandle {
     pub fn gather_anew(&self) {
         let mut gathered = self.lock();
         gathered.frames.clear();
+        gathered.joints.clear();
         (gathered.wanted, gathered.next_ns) = (true, 0);
     }
 
@@ -144,10 +151,17 @@ impl CameraHandle {
     pub fn forget(&self, sex: Sex) {
         let mut gathered = self.lock();
         gathered.frames.clear();
+        gathered.joints.clear();
         gathered.wanted = false;
         drop(gathered);
         self.figures.wipe.store(true, Relaxed);
         self.follow(sex);
+    }
+
+    /// What was gathered, as a session: depth, or of a camera without depth joints, whose scale nobody knows.
+    pub fn session(&self) -> Session {
+        let joints = self.lock().joints.clone();
+        if joints.is_empty() { session::of_depth(self.gathered()) } else { session::of_directions(joints) }
     }
 
     /// Copies of the frames that were gathered.
@@ -162,7 +176,7 @@ impl CameraHandle {
         self.colour.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    fn set_colour(&self, image: &ColourImage) {
+    pub(super) fn set_colour(&self, image: &ColourImage) {
         if image.width > 0 {
             self.figures.colours.fetch_add(1, Relaxed);
             self.colour.lock().unwrap_or_else(PoisonError::into_inner).clone_from(image);
@@ -174,9 +188,9 @@ impl CameraHandle {
         self.notes.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    fn set_notes(&self, notes: &[String]) {
+    pub(super) fn set_notes(&self, notes: &[String]) {
         let mut known = self.notes.lock().unwrap_or_else(PoisonError::into_inner);
-        if known.len() != notes.len() {
+        if *known != notes {
             known.clone_from(&notes.to_vec());
         }
     }
@@ -190,7 +204,7 @@ impl CameraHandle {
         self.gathered.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn publish(&self, state: CameraState, counts: CameraCounts) {
+    pub(super) fn publish(&self, state: CameraState, counts: CameraCounts) {
         let CameraCounts { frames, missing, half, repeated, empty, clock_jumps, lost, reopened } = counts;
         let numbers = [frames, missing, half, repeated, empty, clock_jumps, lost, reopened];
         self.figures.counts.iter().zip(numbers).for_each(|(to, n)| to.store(n, Relaxed));
@@ -210,7 +224,36 @@ impl CameraHandle {
         }
     }
 
-    fn is_over(&self) -> bool {
+    /// Takes joints for whoever is measured: a second of them.
+    pub(super) fn gather_joints(&self, joints: &Joints) {
+        let mut gathered = self.lock();
+        if gathered.wanted && gathered.joints.len() < FRAMES {
+            gathered.joints.push(*joints);
+        }
+    }
+
+    /// Counts a frame that was looked at, and whether somebody was found in it.
+    pub(super) fn count_tracked(&self, found: bool) {
+        let [looked, some] = &self.figures.tracked;
+        looked.fetch_add(1, Relaxed);
+        some.fetch_add(u64::from(found), Relaxed);
+    }
+
+    /// Whether what was kept of a shopper is to be wiped, once.
+    pub(super) fn takes_wipe(&self) -> bool {
+        let wipes = self.figures.wipe.swap(false, Relaxed);
+        if wipes {
+            self.colour.lock().unwrap_or_else(PoisonError::into_inner).rgb.fill(0);
+        }
+        wipes
+    }
+
+    /// The body model that is asked for.
+    pub(super) fn sex(&self) -> Sex {
+        if self.figures.sex.load(Relaxed) == 1 { Sex::Male } else { Sex::Female }
+    }
+
+    pub(super) fn is_over(&self) -> bool {
         self.figures.stop.load(Relaxed)
     }
 }
@@ -242,6 +285,11 @@ pub struct CameraThreads {
 }
 
 impl CameraThreads {
+    /// One thread, which waits for the camera and looks at what comes.
+    pub(super) fn one(handle: CameraHandle, tracker: JoinHandle<CameraMeters>) -> Self {
+        Self { handle, camera: None, tracker: Some(tracker) }
+    }
+
     /// Ends them; gives how long the tracker took.
     pub fn end(mut self) -> CameraMeters {
         self.stop().unwrap_or_default()
@@ -283,9 +331,7 @@ where
         .name("toile-camera".into())
         .spawn(move || wait_for_frames(depth, &own, &shared, news, &woken))?;
     let threads = CameraThreads { handle: handle.clone(), camera: Some(camera), tracker: Some(tracker) };
-    let next_ns = clock.now_ns();
-    let now: Box<dyn Fn() -> u64 + Send> = Box::new(move || clock.now_ns());
-    Ok((CameraFeed { reader, now, next_ns, threads }, handle))
+    Ok((CameraFeed::new(reader, threads, clock), handle))
 }
 
 /// What the camera thread runs.
@@ -300,7 +346,7 @@ fn wait_for_frames<C: Clock>(
     while !handle.is_over() {
         let update = depth.poll(&|| clock.now_ns(), patience);
         handle.publish(update.state, depth.counts());
-        if handle.figures.wipe.swap(false, Relaxed) {
+        if handle.takes_wipe() {
             depth.wipe();
         }
         match update.frame {
@@ -334,7 +380,7 @@ impl<C: Clock> Tracking<C> {
                 thread::park_timeout(NAP);
                 continue;
             };
-            let asked = if self.handle.figures.sex.load(Relaxed) == 1 { Sex::Male } else { Sex::Female };
+            let asked = self.handle.sex();
             if asked != sex {
                 sex = asked;
                 tracker.set_sex(sex, FitOptions::LIVE);
@@ -342,10 +388,8 @@ impl<C: Clock> Tracking<C> {
             self.handle.gather(&frame);
             let fitted = tracker.push(&frame);
             let joints = joints.unwrap_or(fitted.joints);
-            let [looked, found] = &self.handle.figures.tracked;
-            looked.fetch_add(1, Relaxed);
-            found.fetch_add(u64::from(fitted.found), Relaxed);
-            out.publish(Some(TrackedFrame { frame, joints, company: tracker.company(), arrived_ns }));
+            self.handle.count_tracked(fitted.found);
+            out.publish(Some(TrackedFrame { frame: Some(frame), joints, company: tracker.company(), arrived_ns }));
             let took = self.clock.now_ns().saturating_sub(arrived_ns);
             let meter =
                 if fitted.found && !fitted.started { &mut self.meters.followed } else { &mut self.meters.found };
@@ -370,6 +414,15 @@ impl std::fmt::Debug for CameraFeed {
 }
 
 impl CameraFeed {
+    pub(super) fn new<C: Clock + Send + 'static>(
+        reader: Reader<Option<TrackedFrame>>,
+        threads: CameraThreads,
+        clock: C,
+    ) -> Self {
+        let next_ns = clock.now_ns();
+        Self { reader, now: Box::new(move || clock.now_ns()), next_ns, threads }
+    }
+
     /// Ends the camera's threads; gives how long the tracker took.
     pub fn end(self) -> CameraMeters {
         self.threads.end()
@@ -384,10 +437,11 @@ impl FrameSource for CameraFeed {
     fn read(&mut self) -> Option<SourceFrame> {
         self.next_ns = (self.now)() + LOOK_NS;
         let TrackedFrame { frame, joints, company, arrived_ns } = self.reader.news()?.clone()?;
-        let joints = Joints { time_ns: frame.time_ns, ..joints };
-        let depth: Arc<dyn DepthImage> = frame;
+        let time_ns = frame.as_ref().map_or(joints.time_ns, |frame| frame.time_ns);
+        let joints = Joints { time_ns, ..joints };
+        let depth = frame.map(|frame| -> Arc<dyn DepthImage> { frame });
         let others = (company.others, company.nearer);
-        Some(SourceFrame { joints, depth: Some(depth), others, arrived_ns: Some(arrived_ns) })
+        Some(SourceFrame { joints, depth, others, arrived_ns: Some(arrived_ns) })
     }
 }
 

@@ -21,3 +21,4 @@ pub mod running;
 pub mod scene_changer;
 pub mod source;
 pub mod watchdog;
+pub mod webcam;
