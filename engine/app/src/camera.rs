@@ -91,7 +91,8 @@ pub fn watch(
         return Ok(Watched { device, gives: "depth", size: [k.width, k.height], feed, handle });
     }
     // Without the network no camera is switched on.
-    let joints = WebcamJoints::load(&files::folder(), mount.webcam(sex)).map_err(|e| AppError::Device(e.to_string()))?;
+    let joints =
+        WebcamJoints::load(&files::folder(), mount.webcam(sex)).map_err(|e| AppError::Device(e.to_string()))?;
     let (name, options) = (name.clone(), mount.options(true));
     let opener = Box::new(move || live::open(&name, &options));
     let camera = LiveColour::open(opener, clock.now_ns()).map_err(|e| error(&e))?;

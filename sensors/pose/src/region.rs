@@ -58,7 +58,14 @@ impl Region {
 
     /// Fills the network's square image `[side * side * 3]`: each value `scale * v + offset` of a v of 0 to 1, bilinear, by the centres
     /// of pixels.
-    pub fn sample(&self, picture: &ColourImage, border: Border, [scale, offset]: [f32; 2], out: &mut [f32], side: usize) {
+    pub fn sample(
+        &self,
+        picture: &ColourImage,
+        border: Border,
+        [scale, offset]: [f32; 2],
+        out: &mut [f32],
+        side: usize,
+    ) {
         let step = self.turn() * Vec2::new(self.side / side as f32, 0.0);
         let down = Vec2::new(-step.y, step.x);
         // Half a pixel from the square's corner, then in units in which whole numbers are centres of pixels.
@@ -102,7 +109,12 @@ impl PictureReader<'_> {
         } else {
             [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(dx, dy)| self.place(x.saturating_add(dx), y.saturating_add(dy)))
         };
-        let shares = [(1.0 - share.x) * (1.0 - share.y), share.x * (1.0 - share.y), (1.0 - share.x) * share.y, share.x * share.y];
+        let shares = [
+            (1.0 - share.x) * (1.0 - share.y),
+            share.x * (1.0 - share.y),
+            (1.0 - share.x) * share.y,
+            share.x * share.y,
+        ];
         let mut sum = [0.0; 3];
         for (corner, weight) in corners.into_iter().zip(shares) {
             let Some(rgb) = corner.and_then(|at| self.picture.rgb.get(at..at + 3)) else { continue };

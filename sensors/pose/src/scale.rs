@@ -61,8 +61,8 @@ toile_assets::named! {
     /// Where a stature comes from.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum StatureSource {
-        /// It was told.
-        Told = "told",
+        /// It was given.
+        Given = "as given",
         /// From the floor and the camera's height.
         Floor = "floor and camera height",
         /// It is nobody's: the middle of all people.
@@ -73,15 +73,15 @@ toile_assets::named! {
 /// Somebody's stature, from frame to frame.
 #[derive(Debug)]
 pub struct StatureEstimate {
-    told: Option<f32>,
+    given: Option<f32>,
     estimates: [f32; ESTIMATES],
     count: usize,
 }
 
 impl StatureEstimate {
     /// With what they say (m), where they say it.
-    pub fn new(told: Option<f32>) -> Self {
-        Self { told: told.filter(|m| STATURES.contains(m)), estimates: [0.0; ESTIMATES], count: 0 }
+    pub fn new(given: Option<f32>) -> Self {
+        Self { given: given.filter(|m| STATURES.contains(m)), estimates: [0.0; ESTIMATES], count: 0 }
     }
 
     /// Somebody else may stand there.
@@ -99,8 +99,8 @@ impl StatureEstimate {
 
     /// The stature (m), and where it comes from.
     pub fn stature(&self) -> (f32, StatureSource) {
-        if let Some(told) = self.told {
-            return (told, StatureSource::Told);
+        if let Some(given) = self.given {
+            return (given, StatureSource::Given);
         }
         let mut estimates = self.estimates;
         let found = median(&mut estimates[..self.count.min(ESTIMATES)]).filter(|_| self.count >= FEWEST);
@@ -161,11 +161,11 @@ mod tests {
     }
 
     #[test]
-    fn what_is_told_counts_and_what_cannot_be_does_not() {
+    fn what_is_given_counts_and_what_cannot_be_does_not() {
         let mount = WebcamMount { height_m: Some(1.2), ..WebcamMount::default() };
         let mut estimate = StatureEstimate::new(Some(1.62));
         (0..FEWEST).for_each(|_| estimate.push(&seen(1.9, 3.0, &mount), [1280, 720], &mount));
-        assert_eq!(estimate.stature(), (1.62, StatureSource::Told));
+        assert_eq!(estimate.stature(), (1.62, StatureSource::Given));
         assert_eq!(StatureEstimate::new(Some(17.0)).stature().1, StatureSource::Assumed);
         let mut hidden = seen(1.9, 3.0, &mount);
         hidden.points[HEELS[0]].confidence = 0.1;

@@ -135,7 +135,11 @@ fn the_fast_network_is_its_plain_twin_to_the_bit() {
         let picture: Vec<f32> = network.input().iter().map(|_| random.uniform()).collect();
         let mut bits = |plainly: bool| -> Vec<u32> {
             network.input().copy_from_slice(&picture);
-            if plainly { network.run_plainly() } else { network.run() }
+            if plainly {
+                network.run_plainly()
+            } else {
+                network.run()
+            }
             (0..wanted.len()).flat_map(|i| network.output(i)).map(|x| x.to_bits()).collect()
         };
         assert!(bits(false) == bits(true), "{file}");

@@ -9,6 +9,7 @@
 
 pub mod assembly;
 pub mod background;
+mod camera_handle;
 pub mod crash;
 pub mod depth_camera;
 pub mod dresser;

@@ -106,7 +106,7 @@ impl WebcamJoints {
     fn note(&self) -> String {
         let (stature, source) = self.stature();
         let cure = match source {
-            StatureSource::Told => "",
+            StatureSource::Given => "",
             StatureSource::Floor => "; a tape measure knows it better",
             StatureSource::Assumed => "; say it, or the camera's height",
         };

@@ -8,7 +8,14 @@ use super::op::Op;
 use super::reference;
 
 /// Runs an operator; a convolution with its packed weights and the memory that [`conv::scratch`] asks for.
-pub fn run(width: Width, op: &Op, packed: Option<&PackedConv>, inputs: &[&[f32]], out: &mut [f32], scratch: &mut [f32]) {
+pub fn run(
+    width: Width,
+    op: &Op,
+    packed: Option<&PackedConv>,
+    inputs: &[&[f32]],
+    out: &mut [f32],
+    scratch: &mut [f32],
+) {
     match (op, packed) {
         (Op::Add(activation), _) => {
             width.run(AddKernel { from: [inputs[0], inputs[1]], to: out, activation: *activation });

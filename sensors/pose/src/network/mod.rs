@@ -18,4 +18,6 @@ pub use running::Network;
 pub use shape::Shape;
 
 #[cfg(test)]
+mod small_file;
+#[cfg(test)]
 mod tests;

@@ -44,7 +44,9 @@ impl Plan {
         let mut outputs = Vec::new();
         for shape in wanted {
             let found = model.outputs.iter().find(|o| model.tensors[**o].shape == **shape);
-            outputs.push(*found.ok_or_else(|| NetworkFault::new(format!("it is another network: it gives no {shape:?}")))?);
+            outputs.push(
+                *found.ok_or_else(|| NetworkFault::new(format!("it is another network: it gives no {shape:?}")))?,
+            );
         }
         let needed = needed(&model, &outputs)?;
         // A reshaped image is the same numbers: both stand for one.
@@ -171,7 +173,8 @@ fn typed_op(operator: &Operator, tensors: &mut [TensorInfo]) -> Result<Op, Netwo
             let constant = operator.inputs.get(1).copied().flatten().and_then(|i| tensors[i].constant.as_ref());
             let Some(Constant::Ints(sides)) = constant else { return Err(unfit()) };
             let &[0, 0, top, bottom, left, right, 0, 0] = &sides[..] else { return Err(unfit()) };
-            let [top, bottom, left, right] = [top, bottom, left, right].map(|n| usize::try_from(n).unwrap_or(usize::MAX / 4));
+            let [top, bottom, left, right] =
+                [top, bottom, left, right].map(|n| usize::try_from(n).unwrap_or(usize::MAX / 4));
             let height = top.saturating_add(bottom).saturating_add(input.height);
             let width = left.saturating_add(right).saturating_add(input.width);
             fits(output == Shape { height, width, channels: input.channels })?;
@@ -280,7 +283,8 @@ impl Memory {
         if self.sizes.iter().try_fold(0_usize, |all, n| all.checked_add(*n)).is_none_or(|n| n > MOST_MEMORY) {
             return Err(NetworkFault::new(format!("it needs more than {MOST_MEMORY} numbers at once")));
         }
-        let given = |o: &usize| Ok((self.of[*o].ok_or_else(|| NetworkFault::new("an output is missing"))?, self.numbers[*o]));
+        let given =
+            |o: &usize| Ok((self.of[*o].ok_or_else(|| NetworkFault::new("an output is missing"))?, self.numbers[*o]));
         let outputs = outputs.iter().map(given).collect::<Result<_, NetworkFault>>()?;
         Ok(Plan { steps, buffers: self.sizes, input: (input, 0), outputs })
     }

@@ -112,7 +112,9 @@ pub fn operator(code: i32, options: Option<&Table<'_>>) -> Result<RawOp, Network
         4 => {
             dense(options, [5, 6])?;
             if side(options, 3, "a multiplier of channels")? != 1 {
-                return Err(NetworkFault::new("it has a depthwise convolution that multiplies channels, which is not known"));
+                return Err(NetworkFault::new(
+                    "it has a depthwise convolution that multiplies channels, which is not known",
+                ));
             }
             RawOp::Depthwise(window(options, 4)?)
         }

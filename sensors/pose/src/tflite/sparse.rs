@@ -33,9 +33,14 @@ fn dimension(table: &Table<'_>, size: usize) -> Result<Dimension, NetworkFault> 
         0 if table.int(1, 0)? as i64 == size as i64 => Ok(Dimension::Dense(size)),
         1 => {
             let (segments, places) = (numbers(table, 2, 3)?, numbers(table, 4, 5)?);
-            let ordered = segments.windows(2).all(|w| w[0] <= w[1]) && segments.last().is_none_or(|n| *n <= places.len());
+            let ordered =
+                segments.windows(2).all(|w| w[0] <= w[1]) && segments.last().is_none_or(|n| *n <= places.len());
             let inside = places.iter().all(|place| *place < size);
-            if ordered && inside { Ok(Dimension::Sparse { segments, places }) } else { Err(fault("places outside of it")) }
+            if ordered && inside {
+                Ok(Dimension::Sparse { segments, places })
+            } else {
+                Err(fault("places outside of it"))
+            }
         }
         _ => Err(fault("a dimension of another size")),
     }

@@ -85,7 +85,9 @@ impl FromStr for CameraName {
             return Err(CameraError::Unknown("which recording is the camera? give its path: recording:F".into()));
         }
         if kind == CameraKind::WebcamFile && which.is_none() {
-            return Err(CameraError::Unknown("which pictures are the camera? give their folder: webcam-file:DIR".into()));
+            return Err(CameraError::Unknown(
+                "which pictures are the camera? give their folder: webcam-file:DIR".into(),
+            ));
         }
         Ok(Self { kind, which })
     }

@@ -60,7 +60,7 @@ struct Capability {
 /// `v4l2_pix_format` within the union of `v4l2_format`, which begins at a multiple of 8.
 #[repr(C, align(8))]
 #[derive(Clone, Copy)]
-struct Format {
+struct PictureFormat {
     kind: u32,
     padding: u32,
     width: u32,
@@ -83,7 +83,7 @@ struct RequestBuffers {
 
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
-struct Buffer {
+struct VideoBuffer {
     index: u32,
     kind: u32,
     bytes_used: u32,
@@ -113,17 +113,18 @@ struct StreamParameters {
     rest: [u32; 46],
 }
 
-const _: () = assert!(size_of::<Capability>() == 104 && size_of::<Format>() == 208 && size_of::<RequestBuffers>() == 20);
-const _: () = assert!(size_of::<Buffer>() == 88 && size_of::<StreamParameters>() == 204);
+const _: () =
+    assert!(size_of::<Capability>() == 104 && size_of::<PictureFormat>() == 208 && size_of::<RequestBuffers>() == 20);
+const _: () = assert!(size_of::<VideoBuffer>() == 88 && size_of::<StreamParameters>() == 204);
 
 mod calls {
-    use super::{Buffer, Capability, Format, RequestBuffers, StreamParameters};
+    use super::{Capability, PictureFormat, RequestBuffers, StreamParameters, VideoBuffer};
     nix::ioctl_read!(query_capability, b'V', 0, Capability);
-    nix::ioctl_readwrite!(set_format, b'V', 5, Format);
+    nix::ioctl_readwrite!(set_format, b'V', 5, PictureFormat);
     nix::ioctl_readwrite!(request_buffers, b'V', 8, RequestBuffers);
-    nix::ioctl_readwrite!(query_buffer, b'V', 9, Buffer);
-    nix::ioctl_readwrite!(queue, b'V', 15, Buffer);
-    nix::ioctl_readwrite!(dequeue, b'V', 17, Buffer);
+    nix::ioctl_readwrite!(query_buffer, b'V', 9, VideoBuffer);
+    nix::ioctl_readwrite!(queue, b'V', 15, VideoBuffer);
+    nix::ioctl_readwrite!(dequeue, b'V', 17, VideoBuffer);
     nix::ioctl_write_ptr!(start, b'V', 18, i32);
     nix::ioctl_write_ptr!(stop, b'V', 19, i32);
     nix::ioctl_readwrite!(set_parameters, b'V', 22, StreamParameters);
@@ -147,7 +148,7 @@ impl Drop for Mapped {
 
 /// How pictures come.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Mode {
+pub(super) struct VideoMode {
     pub four_cc: FourCc,
     pub width: u32,
     pub height: u32,
@@ -166,13 +167,13 @@ pub(super) struct RawPicture<'a> {
 }
 
 /// A camera that streams.
-pub(super) struct Stream {
+pub(super) struct VideoStream {
     // Before the file, so that the memory is given back first.
     buffers: Vec<Mapped>,
     file: File,
     /// The buffer whose picture was handed out.
     shown: Option<u32>,
-    pub mode: Mode,
+    pub mode: VideoMode,
     /// The camera's own name.
     pub card: String,
 }
@@ -181,7 +182,7 @@ fn io_error(errno: Errno) -> io::Error {
     io::Error::from(errno)
 }
 
-impl Stream {
+impl VideoStream {
     /// Opens a camera in the first of these modes that it takes, and starts it.
     pub fn open(path: &Path, wanted: &[(FourCc, u32, u32)], rate_hz: u32) -> io::Result<Self> {
         let flags = (OFlag::O_NONBLOCK | OFlag::O_CLOEXEC).bits();
@@ -190,7 +191,7 @@ impl Stream {
         let format = wanted.iter().find_map(|wanted| format(&file, *wanted));
         let format = format.ok_or_else(|| io::Error::other("it gives neither YUYV nor MJPEG"))?;
         let rate_hz = rate(&file, rate_hz);
-        let mode = Mode {
+        let mode = VideoMode {
             four_cc: format.four_cc,
             width: format.width,
             height: format.height,
@@ -212,13 +213,15 @@ impl Stream {
         // SAFETY: the structure is the call's own.
         unsafe { calls::request_buffers(fd, &raw mut asked) }.map_err(io_error)?;
         for index in 0..asked.count.min(MOST_BUFFERS) {
-            let mut buffer = Buffer { index, kind: CAPTURE, memory: MMAP, ..Buffer::default() };
+            let mut buffer = VideoBuffer { index, kind: CAPTURE, memory: MMAP, ..VideoBuffer::default() };
             // SAFETY: as above.
             unsafe { calls::query_buffer(fd, &raw mut buffer) }.map_err(io_error)?;
             let length = NonZero::new(buffer.length as usize).filter(|_| buffer.length <= MOST_BYTES);
             let length = length.ok_or_else(|| io::Error::other(format!("a buffer of {} bytes", buffer.length)))?;
             // SAFETY: new memory at a place of the kernel's choice, of the length that the camera says.
-            let at = unsafe { mmap(None, length, ProtFlags::PROT_READ, MapFlags::MAP_SHARED, &self.file, buffer.offset as i64) };
+            let at = unsafe {
+                mmap(None, length, ProtFlags::PROT_READ, MapFlags::MAP_SHARED, &self.file, buffer.offset as i64)
+            };
             self.buffers.push(Mapped { at: at.map_err(io_error)?, length: length.get() });
         }
         if self.buffers.len() < 2 { Err(io::Error::other("it has fewer than two buffers")) } else { Ok(()) }
@@ -226,7 +229,7 @@ impl Stream {
 
     /// Gives a buffer to the camera to be filled.
     fn give(&mut self, index: u32) -> io::Result<()> {
-        let mut buffer = Buffer { index, kind: CAPTURE, memory: MMAP, ..Buffer::default() };
+        let mut buffer = VideoBuffer { index, kind: CAPTURE, memory: MMAP, ..VideoBuffer::default() };
         // SAFETY: the structure is the call's own; nothing is borrowed from this buffer's memory, since `next` borrows all of it.
         unsafe { calls::queue(self.file.as_raw_fd(), &raw mut buffer) }.map_err(io_error).map(|_| ())
     }
@@ -245,13 +248,14 @@ impl Stream {
         }
         let mut newest = None;
         while let Some(buffer) = self.take()? {
-            if let Some(Buffer { index, .. }) = newest.replace(buffer) {
+            if let Some(VideoBuffer { index, .. }) = newest.replace(buffer) {
                 self.give(index)?;
             }
         }
         let Some(buffer) = newest else { return Ok(None) };
         self.shown = Some(buffer.index);
-        let mapped = self.buffers.get(buffer.index as usize).ok_or_else(|| io::Error::other("a buffer of no number"))?;
+        let mapped =
+            self.buffers.get(buffer.index as usize).ok_or_else(|| io::Error::other("a buffer of no number"))?;
         let length = if buffer.flags & BROKEN != 0 { 0 } else { mapped.length.min(buffer.bytes_used as usize) };
         // SAFETY: the kernel does not write to a buffer that it was not given back, which happens at the next call of this function,
         // when nothing is borrowed any more; the length is not more than what is mapped.
@@ -262,8 +266,8 @@ impl Stream {
     }
 
     /// A filled buffer, if there is one.
-    fn take(&mut self) -> io::Result<Option<Buffer>> {
-        let mut buffer = Buffer { kind: CAPTURE, memory: MMAP, ..Buffer::default() };
+    fn take(&mut self) -> io::Result<Option<VideoBuffer>> {
+        let mut buffer = VideoBuffer { kind: CAPTURE, memory: MMAP, ..VideoBuffer::default() };
         // SAFETY: the structure is the call's own.
         match unsafe { calls::dequeue(self.file.as_raw_fd(), &raw mut buffer) } {
             Ok(_) => Ok(Some(buffer)),
@@ -273,7 +277,7 @@ impl Stream {
     }
 }
 
-impl Drop for Stream {
+impl Drop for VideoStream {
     fn drop(&mut self) {
         // SAFETY: the call reads one number. Whether it works makes no difference: the file is closed next.
         let _ = unsafe { calls::stop(self.file.as_raw_fd(), &(CAPTURE as i32)) };
@@ -296,8 +300,8 @@ fn capable(file: &File) -> io::Result<String> {
 }
 
 /// Sets a format; none where the camera has another in mind.
-fn format(file: &File, (four_cc, width, height): (FourCc, u32, u32)) -> Option<Format> {
-    let mut format = Format {
+fn format(file: &File, (four_cc, width, height): (FourCc, u32, u32)) -> Option<PictureFormat> {
+    let mut format = PictureFormat {
         kind: CAPTURE,
         padding: 0,
         width,
@@ -310,8 +314,9 @@ fn format(file: &File, (four_cc, width, height): (FourCc, u32, u32)) -> Option<F
     };
     // SAFETY: the structure is the call's own.
     unsafe { calls::set_format(file.as_raw_fd(), &raw mut format) }.ok()?;
-    (format.four_cc == four_cc && super::colour_decode::check_size(format.width as usize, format.height as usize).is_ok())
-        .then_some(format)
+    (format.four_cc == four_cc
+        && super::colour_decode::check_size(format.width as usize, format.height as usize).is_ok())
+    .then_some(format)
 }
 
 /// Asks for a rate (Hz) and gives the one that comes; what was asked for where the camera does not say.
@@ -334,21 +339,21 @@ mod tests {
     #[test]
     fn what_is_no_camera_is_refused() {
         let wanted = [(YUYV, 640, 480)];
-        let refused = |path: &str| Stream::open(Path::new(path), &wanted, 30).err().map(|e| e.raw_os_error());
+        let refused = |path: &str| VideoStream::open(Path::new(path), &wanted, 30).err().map(|e| e.raw_os_error());
         assert_eq!(refused("/dev/null"), Some(Some(Errno::ENOTTY as i32)));
         assert_eq!(refused("/dev/no-such-video"), Some(Some(Errno::ENOENT as i32)));
     }
 
     #[test]
     fn fields_lie_where_the_kernel_has_them() {
-        assert_eq!((std::mem::offset_of!(Format, width), std::mem::offset_of!(Format, size)), (8, 28));
+        assert_eq!((std::mem::offset_of!(PictureFormat, width), std::mem::offset_of!(PictureFormat, size)), (8, 28));
         assert_eq!(std::mem::offset_of!(StreamParameters, frame_time), 12);
         let places = [
-            std::mem::offset_of!(Buffer, stamp),
-            std::mem::offset_of!(Buffer, sequence),
-            std::mem::offset_of!(Buffer, memory),
-            std::mem::offset_of!(Buffer, offset),
-            std::mem::offset_of!(Buffer, length),
+            std::mem::offset_of!(VideoBuffer, stamp),
+            std::mem::offset_of!(VideoBuffer, sequence),
+            std::mem::offset_of!(VideoBuffer, memory),
+            std::mem::offset_of!(VideoBuffer, offset),
+            std::mem::offset_of!(VideoBuffer, length),
         ];
         assert_eq!(places, [24, 56, 60, 64, 72]);
     }

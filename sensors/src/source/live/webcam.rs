@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::colour_decode as decode;
 use super::error::CameraError;
 use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, LiveCamera};
-use super::v4l2::{FourCc, MJPG, Stream, YUYV};
+use super::v4l2::{FourCc, MJPG, VideoStream, YUYV};
 use crate::frame::Intrinsics;
 use crate::source::camera::Camera;
 
@@ -27,7 +27,7 @@ const FOCAL: f32 = 0.87;
 
 /// A webcam that is open.
 pub(super) struct Webcam {
-    stream: Stream,
+    stream: VideoStream,
     info: CameraInfo,
     scratch: Vec<u8>,
 }
@@ -64,7 +64,7 @@ impl Webcam {
                 },
             },
         };
-        let stream = Stream::open(Path::new(path), &MODES, RATE_HZ).map_err(refused)?;
+        let stream = VideoStream::open(Path::new(path), &MODES, RATE_HZ).map_err(refused)?;
         let mode = stream.mode;
         let device = format!("{} ({path})", stream.card);
         let info = info(device, [mode.width, mode.height], mode.rate_hz as f32);
@@ -123,7 +123,10 @@ mod tests {
         let of = |path: &str| Webcam::open(Some(path), &CameraOptions::default()).err().unwrap().to_string();
         assert_eq!(of("/dev/no-such-video"), "no webcam is connected; plug it in, and name it by webcam:/dev/videoN");
         let null = of("/dev/null");
-        assert!(null.starts_with("webcam: /dev/null cannot be opened (") && null.ends_with("webcam:/dev/videoN"), "{null}");
+        assert!(
+            null.starts_with("webcam: /dev/null cannot be opened (") && null.ends_with("webcam:/dev/videoN"),
+            "{null}"
+        );
         let turned = CameraOptions { quarter_turns: 1, ..CameraOptions::default() };
         assert!(Webcam::open(None, &turned).is_err_and(|e| e.is_input()));
     }

@@ -76,7 +76,8 @@ impl WebcamFile {
         let at = (self.next % self.count()) as usize;
         match &self.pictures {
             Pictures::Files(files) => {
-                self.bytes = fs::read(&files[at]).map_err(|e| format!("{} cannot be read ({e})", files[at].display()))?;
+                self.bytes =
+                    fs::read(&files[at]).map_err(|e| format!("{} cannot be read ({e})", files[at].display()))?;
                 decode::decode(&self.bytes, &mut self.scratch, &mut frame.colour)
             }
             Pictures::Jpegs(bytes, places) => {
