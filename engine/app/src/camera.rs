@@ -63,8 +63,9 @@ impl MountArgs {
 pub struct Watched {
     /// Its own name.
     pub device: String,
-    /// What it gives, in words, and the size of its images (px).
+    /// What it gives, in words.
     pub gives: &'static str,
+    /// Width and height of its images (px).
     pub size: [u32; 2],
     /// What the sensor thread reads.
     pub feed: CameraFeed,

@@ -94,10 +94,9 @@ impl Detector {
         Ok(Self { network, anchors: anchors(), boxes, people: Vec::with_capacity(MOST_PEOPLE) })
     }
 
-    /// Everybody in a picture, the largest first.
-    pub fn find(&mut self, picture: &ColourImage) -> &[Detection] {
-        let whole = Region::around(picture);
-        whole.sample(picture, Border::Black, [2.0, -1.0], self.network.input(), SIDE);
+    /// Everybody in an upright square of a picture, the largest first.
+    pub fn find(&mut self, picture: &ColourImage, square: &Region) -> &[Detection] {
+        square.sample(picture, Border::Black, [2.0, -1.0], self.network.input(), SIDE);
         self.network.run();
         self.boxes.clear();
         let (numbers, scores) = (self.network.output(0), self.network.output(1));
@@ -107,12 +106,12 @@ impl Detector {
                 self.boxes.push(raw_box(raw, *anchor, score));
             }
         }
-        self.merge(&whole, picture);
+        self.merge(square, picture);
         &self.people
     }
 
     /// One person of all boxes that lie on the best one, then of the rest.
-    fn merge(&mut self, whole: &Region, picture: &ColourImage) {
+    fn merge(&mut self, square: &Region, picture: &ColourImage) {
         self.people.clear();
         self.boxes.sort_unstable_by(|a, b| b.score.total_cmp(&a.score));
         self.boxes.truncate(MOST_BOXES);
@@ -131,7 +130,7 @@ impl Detector {
                 !same
             });
             let [.., hips_x, hips_y, above_x, above_y] = sum.map(|x| x / weight);
-            let [hips, above] = [Vec2::new(hips_x, hips_y), Vec2::new(above_x, above_y)].map(|p| whole.pixel(p));
+            let [hips, above] = [Vec2::new(hips_x, hips_y), Vec2::new(above_x, above_y)].map(|p| square.pixel(p));
             let region = Region::of_points(hips, above);
             if region.is_within(picture.width, picture.height) {
                 self.people.push(Detection { score: best.score, region });

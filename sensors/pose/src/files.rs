@@ -18,11 +18,11 @@ pub const OWN_FOLDER: &str = "/usr/local/lib/toile/pose";
 
 /// The one command that fetches the files and checks the package's hash.
 pub const FETCH: &str = "cd $(mktemp -d) && npm pack --silent @mediapipe/pose@0.5.1675469404 && \
-                         echo '8bb349a7b3a3ba699df23be804ddd3b3eab810b50b15406894be257859388a84  mediapipe-pose-0.5.1675469404.tgz' \
+                         echo '8bb349a7b3a3ba699df23be804ddd3b3eab810b50b15406894be257859388a84 *mediapipe-pose-0.5.1675469404.tgz' \
                          | sha256sum --check --quiet && sudo mkdir -p /usr/local/lib/toile/pose && sudo tar --extract --gzip \
-                         --file mediapipe-pose-0.5.1675469404.tgz --no-same-owner --mode=a+rX --strip-components=1 --directory \
+                         --file mediapipe-pose-0.5.1675469404.tgz --no-same-owner --strip-components=1 --directory \
                          /usr/local/lib/toile/pose package/pose_landmark_lite.tflite package/pose_landmark_full.tflite \
-                         package/pose_solution_packed_assets.data";
+                         package/pose_solution_packed_assets.data && sudo chmod --recursive a+rX /usr/local/lib/toile/pose";
 
 toile_assets::named! {
     /// Files of the network.
@@ -170,7 +170,7 @@ mod tests {
     fn a_network_that_is_not_there_is_named_with_the_command_that_fetches_it() {
         let error = check(Path::new("no/such")).unwrap_err().to_string();
         assert!(error.contains("no/such holds no pose_landmark_lite.tflite; fetch it: `cd $(mktemp"), "{error}");
-        assert!(!FETCH.contains("  -") && !FETCH.contains('\n'), "one line: {FETCH}");
+        assert!(!FETCH.contains("  ") && !FETCH.contains('\n'), "errors are one line with single spaces: {FETCH}");
     }
 
     #[test]

@@ -4,7 +4,7 @@
 //! of limbs are taken; every limb has the length that it has in the mean body of that stature, whoever stands there. A limb can be turned
 //! the wrong way, and never be stretched.
 
-use glam::{Mat3, Vec2, Vec3};
+use glam::{Mat3, Quat, Vec2, Vec3};
 use toile_assets::body::shape::Shapes;
 use toile_assets::body::{En, Sex};
 use toile_assets::skeleton::{Joint, Skeleton};
@@ -96,8 +96,7 @@ impl JointPlacer {
     /// Joints of landmarks in a picture of this size (px), for somebody of this stature (m).
     pub fn joints(&mut self, landmarks: &Landmarks, size: [u32; 2], stature: f32, time_ns: u64) -> Joints {
         let lengths = LimbLengths::of(&self.mean, stature / self.mean_stature);
-        // A camera that looks down has the floor's upright leaning away.
-        let level = Mat3::from_rotation_x(self.mount.down);
+        let level = self.level(landmarks, size);
         let world = landmarks.points.map(|p| level * p.world);
         let confidence = landmarks.points.map(|p| p.confidence);
         let mut points = with_lengths(&world, &confidence, &lengths);
@@ -108,6 +107,15 @@ impl JointPlacer {
             point.position = Vec3::new(p.x + camera.x, up - p.y, camera.y - p.z);
         }
         self.map.joints(time_ns, &points)
+    }
+
+    /// From the network's axes to level ones. It gives a body as seen along the ray to its hips: a camera that looks down, or has somebody
+    /// beside the middle of its picture, sees them turned by as much.
+    fn level(&self, landmarks: &Landmarks, [w, h]: [u32; 2]) -> Mat3 {
+        let focal = self.mount.focal * w.max(h) as f32;
+        let hips = (landmarks.points[HIPS[0]].pixel + landmarks.points[HIPS[1]].pixel) * 0.5;
+        let ray = (hips - Vec2::new(w as f32, h as f32) * 0.5).extend(focal).normalize_or(Vec3::Z);
+        Mat3::from_rotation_x(-self.mount.down) * Mat3::from_quat(Quat::from_rotation_arc(Vec3::Z, ray))
     }
 
     /// Where the hips are: to the left of the camera's axis and towards it from where they were first (m).
@@ -250,6 +258,21 @@ mod tests {
         let hip = joints.at(Joint::LeftHip).position;
         let own = placer.mean.at(Joint::LeftHip);
         assert!((hip.x - 0.4 - own.x).abs() < 0.01 && (hip.z - 0.5).abs() < 0.02, "{hip}");
+    }
+
+    #[test]
+    fn somebody_upright_is_upright_under_a_camera_that_looks_down() {
+        let down = 0.3;
+        let mut placer = JointPlacer::new(Sex::Female, WebcamMount { down, ..WebcamMount::default() });
+        let stature = placer.mean_stature;
+        let mut tilted = somebody(1.0, 2.5);
+        // What is above the hips comes nearer.
+        tilted.points.iter_mut().for_each(|p| p.world = Mat3::from_rotation_x(down) * p.world);
+        assert!(tilted.points[11].world.z < -0.1);
+        let joints = placer.joints(&tilted, [1280, 720], stature, 0);
+        let trunk = joints.at(Joint::LeftShoulder).position - joints.at(Joint::LeftHip).position;
+        let own = placer.mean.at(Joint::LeftShoulder) - placer.mean.at(Joint::LeftHip);
+        assert!(trunk.angle_between(own) < 0.02, "{trunk} instead of {own}");
     }
 
     #[test]

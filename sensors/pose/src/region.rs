@@ -71,14 +71,30 @@ impl Region {
         // Half a pixel from the square's corner, then in units in which whole numbers are centres of pixels.
         let first = self.pixel(Vec2::ZERO) + (step + down) * 0.5 - 0.5;
         let reader = PictureReader { picture, border, scale: scale / 255.0, offset };
+        // Where a pixel stands for several of the picture, as many places of it are averaged as leave none out.
+        let places = ((0.5 * self.side / side as f32).ceil() as usize).clamp(1, MOST_PLACES);
+        let within = |i: usize| (i as f32 + 0.5) / places as f32 - 0.5;
         for (y, row) in out.chunks_exact_mut(side * 3).enumerate() {
             let begin = first + down * y as f32;
             for (x, pixel) in row.as_chunks_mut().0.iter_mut().enumerate() {
-                *pixel = reader.at(begin + step * x as f32);
+                let middle = begin + step * x as f32;
+                if places == 1 {
+                    *pixel = reader.at(middle);
+                    continue;
+                }
+                let mut sum = [0.0; 3];
+                for i in 0..places * places {
+                    let at = middle + step * within(i % places) + down * within(i / places);
+                    sum.iter_mut().zip(reader.at(at)).for_each(|(sum, v)| *sum += v);
+                }
+                *pixel = sum.map(|v| v / (places * places) as f32);
             }
         }
     }
 }
+
+/// Most places a side that are averaged for a pixel: enough for a picture of 4096 columns.
+const MOST_PLACES: usize = 8;
 
 /// Smallest square of somebody (px): a head in it has 3 pixels.
 const SMALLEST_SIDE: f32 = 32.0;
@@ -163,6 +179,15 @@ mod tests {
         assert!((out[(3 * 8 + 2) * 3] - (2.0 * 2.0 / 255.0 - 1.0)).abs() < 1e-6);
         Region::around(&picture).sample(&picture, Border::Nearest, [1.0, 0.0], &mut out, 8);
         assert!((out[2] - 100.0 / 255.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn stripes_that_are_finer_than_a_pixel_are_grey() {
+        let rgb = (0..64 * 64).flat_map(|i| [if i % 2 == 0 { 0 } else { 200 }; 3]).collect();
+        let stripes = ColourImage { width: 64, height: 64, rgb };
+        let mut out = vec![0.0; 8 * 8 * 3];
+        Region::around(&stripes).sample(&stripes, Border::Nearest, [255.0, 0.0], &mut out, 8);
+        assert!(out.iter().all(|v| (v - 100.0).abs() < 5.0), "{out:?}");
     }
 
     #[test]

@@ -48,13 +48,13 @@ pub struct PictureFault {
 /// What was counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct TrackerCounts {
-    /// Whole pictures in which somebody was sought.
+    /// Pictures in which somebody was sought.
     pub searched: u64,
     /// Regions in which landmarks were found.
     pub followed: u64,
     /// Bodies that no person has.
     pub implausible: u64,
-    /// People in the last whole picture that was searched.
+    /// People in the last picture that was searched.
     pub people: u64,
 }
 
@@ -68,6 +68,8 @@ pub struct PoseTracker {
     size: [u32; 2],
     filter: LandmarkFilter,
     implausible: u32,
+    /// Searches since somebody was last seen.
+    tries: u32,
     /// What was counted.
     pub counts: TrackerCounts,
 }
@@ -92,6 +94,7 @@ impl PoseTracker {
             size: [0; 2],
             filter: LandmarkFilter::default(),
             implausible: 0,
+            tries: 0,
             counts: TrackerCounts::default(),
         })
     }
@@ -99,7 +102,7 @@ impl PoseTracker {
     /// Forgets whoever was seen.
     pub fn reset(&mut self) {
         self.region = None;
-        self.implausible = 0;
+        (self.implausible, self.tries) = (0, 0);
         self.filter.reset();
     }
 
@@ -146,9 +149,14 @@ impl PoseTracker {
         Ok(Seen::Somebody(landmarks))
     }
 
-    /// The largest person of a whole picture.
+    /// The largest person of a picture. In the whole of a wide one people are small, and the detector misses them: every second search is
+    /// of the middle square, where a shopper stands.
     fn search(&mut self, picture: &ColourImage) -> Option<Region> {
-        let people = self.detector.find(picture);
+        let whole = Region::around(picture);
+        let middle = Region { side: picture.width.min(picture.height) as f32, ..whole };
+        let square = if self.tries.is_multiple_of(2) { whole } else { middle };
+        self.tries = self.tries.wrapping_add(1);
+        let people = self.detector.find(picture, &square);
         self.counts.searched += 1;
         self.counts.people = people.len() as u64;
         people.first().map(|found| found.region)

@@ -16,20 +16,18 @@ use toile_pose::scale::WebcamMount;
 use toile_pose::tracker::{Model, PoseTracker, Seen};
 use toile_sensors::source::live::ColourImage;
 
-const FRONT: &[u8] = include_bytes!("data/front_256.png");
+const STANDING: &[u8] = include_bytes!("data/standing.png");
 
 /// Time between two pictures (ns).
 const PERIOD_NS: u64 = 33_000_000;
 
 /// Grey of the wall behind the person of the data.
-const WALL: Rgb<u8> = Rgb([220, 218, 215]);
+const WALL: Rgb<u8> = Rgb([184, 183, 180]);
 
-/// The person, so many pixels tall.
+/// The person with some wall around, so many pixels tall.
 fn person(side: u32) -> RgbImage {
-    let person = image::load_from_memory(FRONT).unwrap().to_rgb8();
-    // The middle of the square, which shows nothing else.
-    let person = imageops::crop_imm(&person, 55, 0, 146, 256).to_image();
-    imageops::resize(&person, side * 146 / 256, side, FilterType::Triangle)
+    let person = image::load_from_memory(STANDING).unwrap().to_rgb8();
+    imageops::resize(&person, side * person.width() / person.height(), side, FilterType::Triangle)
 }
 
 fn wall(width: u32, height: u32) -> RgbImage {
@@ -89,7 +87,7 @@ fn somebody_is_found_once_and_then_followed() {
     assert!(all.iter().all(Option::is_some));
     assert_eq!((tracker.counts.searched, tracker.counts.followed), (1, 10));
     let [x, y] = hips(all[9].as_ref().unwrap());
-    assert!((x - 325.0).abs() < 20.0 && (y - 250.0).abs() < 30.0, "{x} {y}");
+    assert!((x - 337.0).abs() < 20.0 && (y - 245.0).abs() < 30.0, "{x} {y}");
     is_whole(all[9].as_ref().unwrap(), [640, 480]);
     // They leave, and come back elsewhere.
     assert!(seen(&mut tracker, &picture(wall(640, 480)), 3).iter().all(Option::is_none));
@@ -114,23 +112,23 @@ fn of_three_people_the_nearest_is_followed_and_nobody_else_takes_their_place() {
     let (large, small) = (person(460), person(300));
     let three = with(with(with(wall(960, 480), &small, 40, 150), &large, 330, 10), &small, 720, 150);
     let shown = picture(three);
-    for landmarks in seen(&mut tracker, &shown, 10) {
+    for landmarks in seen(&mut tracker, &shown, 10).into_iter().skip(2) {
         let landmarks = landmarks.expect("somebody is seen");
-        assert!((330.0..600.0).contains(&hips(&landmarks)[0]), "{:?}", hips(&landmarks));
+        assert!((400.0..560.0).contains(&hips(&landmarks)[0]), "{:?}", hips(&landmarks));
         is_whole(&landmarks, [960, 480]);
     }
-    assert!(tracker.counts.people >= 2, "{:?}", tracker.counts);
+    assert!(tracker.counts.searched <= 3, "{:?}", tracker.counts);
 }
 
 #[test]
 fn a_photograph_on_a_shirt_is_not_who_wears_it() {
     let Some(mut tracker) = tracker() else { return };
-    let worn = with(person(460), &person(80), 108, 130);
+    let worn = with(person(460), &person(80), 119, 130);
     let shown = picture(with(wall(640, 480), &worn, 190, 10));
     for landmarks in seen(&mut tracker, &shown, 10) {
         let landmarks = landmarks.expect("somebody is seen");
         let tall = landmarks.points[27].pixel.y - landmarks.points[0].pixel.y;
-        assert!(tall > 250.0, "who is {tall} pixels tall is the photograph");
+        assert!(tall > 280.0, "who is {tall} pixels tall is the photograph");
         is_whole(&landmarks, [640, 480]);
     }
 }
