@@ -26,6 +26,7 @@ pub mod soak;
 pub mod torture;
 pub mod turns;
 pub mod validate;
+pub mod webcam;
 pub mod worn;
 
 pub mod contact;

@@ -40,6 +40,9 @@ pub const MAX_PIXELS: u64 = 4_194_304;
 /// Longest side of a depth image (px): no sensor is wider, and it keeps width * height within `u32`.
 pub const MAX_SIDE: u32 = 8_192;
 
+/// Most pixels of a colour picture: those of a camera of 4096 x 2160, and a third more.
+pub const MAX_COLOUR_PIXELS: u64 = 12_000_000;
+
 /// Most joints of a motion-capture skeleton: a full body with both hands has about 120.
 pub const MAX_BVH_JOINTS: usize = 1_024;
 

@@ -10,6 +10,7 @@ pub const FLOORS: &[(&str, &str)] = &[
     ("assets/sculpt", "toile-sculpt"),
     ("sensors", "toile-sensors"),
     ("engine/core", "toile-engine"),
+    ("sensors/pose", "toile-pose"),
     ("engine/track", "toile-track"),
     ("engine/gpu", "toile-gpu"),
     ("engine/view", "toile-view"),

@@ -8,7 +8,7 @@ use toile_tests::scan;
 use toile_tests::tree::{self, FLOORS};
 
 /// Files that may hold unsafe code, each with its reason.
-const UNSAFE_FILES: [(&str, &str); 23] = [
+const UNSAFE_FILES: [(&str, &str); 24] = [
     ("engine/app/src/heap.rs", "the program's allocator counts, for which it has to implement an unsafe trait"),
     ("engine/core/src/workers/per_share.rs", "what belongs to a share is lent to whoever works on it"),
     ("engine/core/src/workers/mod.rs", "a job that borrows the caller's stack is handed to another thread"),
@@ -30,6 +30,7 @@ const UNSAFE_FILES: [(&str, &str); 23] = [
     ("sensors/src/source/live/k4a.rs", "libk4a's C interface is called"),
     ("sensors/src/source/live/realsense.rs", "librealsense's C interface is called"),
     ("sensors/src/source/live/orbbec.rs", "OrbbecSDK's C interface is called"),
+    ("sensors/src/source/live/v4l2.rs", "the kernel's calls for webcams, and the memory that it shares"),
     ("sensors/tests/cameras/realsense_recorder.rs", "librealsense's recorder writes what the test plays"),
     ("tests/tests/allocations.rs", "a counting allocator has to implement an unsafe trait"),
 ];

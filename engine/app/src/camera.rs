@@ -1,8 +1,18 @@
 //! A live camera as the command line names it.
 
-use clap::builder::PossibleValuesParser;
-use toile_sensors::source::live::{self, CameraError, CameraName, CameraOptions, LiveDepth};
+use clap::builder::{PossibleValuesParser, RangedU64ValueParser};
+use clap::value_parser;
+use toile_assets::body::Sex;
+use toile_engine::clock::{Clock, RealClock};
+use toile_fitting::live::depth_camera::{self, CameraFeed, CameraHandle, TrackerOptions};
+use toile_fitting::live::webcam::{self, WebcamJoints, WebcamOptions};
+use toile_pose::files;
+use toile_pose::scale::WebcamMount;
+use toile_pose::tracker::Model;
+use toile_sensors::segment::Zone;
+use toile_sensors::source::live::{self, CameraError, CameraName, CameraOptions, LiveColour, LiveDepth};
 
+use crate::arguments::one_of;
 use crate::exit::AppError;
 
 /// Degrees by which a camera's images may be turned.
@@ -14,6 +24,21 @@ pub struct MountArgs {
     /// Turn its images clockwise by so many degrees, for a camera that lies on its side: 0, 90, 180 or 270
     #[arg(long, value_name = "DEG", value_parser = PossibleValuesParser::new(TURNS), default_value = "0")]
     pub turned: String,
+    /// Height of a webcam above the floor (mm), if it is to say how tall somebody is
+    #[arg(long, value_name = "MM", value_parser = RangedU64ValueParser::<u32>::new().range(200..=4_000))]
+    pub camera_height: Option<u32>,
+    /// By how much a webcam looks down (degrees)
+    #[arg(long, value_name = "DEG", value_parser = value_parser!(i8).range(-45..=60), default_value = "0", allow_hyphen_values = true)]
+    pub camera_tilt: i8,
+    /// What a webcam sees along the longer side of its picture (degrees)
+    #[arg(long, value_name = "DEG", value_parser = value_parser!(u8).range(30..=140), default_value = "60")]
+    pub camera_view: u8,
+    /// Stature of whoever stands before a webcam, which cannot see it (mm)
+    #[arg(long, value_name = "MM", value_parser = RangedU64ValueParser::<u32>::new().range(900..=2_300))]
+    pub stature: Option<u32>,
+    /// Network that finds joints in a webcam's pictures
+    #[arg(long, value_name = "N", value_parser = one_of(Model::ALL, Model::name), default_value = "lite")]
+    pub pose: Model,
 }
 
 impl MountArgs {
@@ -22,6 +47,59 @@ impl MountArgs {
         let quarter_turns = TURNS.iter().position(|t| *t == self.turned).unwrap_or(0) as u8;
         CameraOptions { colour, quarter_turns, libraries: live::folders() }
     }
+
+    fn webcam(&self, sex: Sex) -> WebcamOptions {
+        let metres = |mm: u32| mm as f32 * 1e-3;
+        let mount = WebcamMount {
+            focal: 0.5 / (0.5 * f32::from(self.camera_view)).to_radians().tan(),
+            height_m: self.camera_height.map(metres),
+            down: f32::from(self.camera_tilt).to_radians(),
+        };
+        WebcamOptions { sex, model: self.pose, mount, stature_m: self.stature.map(metres) }
+    }
+}
+
+/// A camera that is looked through.
+pub struct Watched {
+    /// Its own name.
+    pub device: String,
+    /// What it gives, in words.
+    pub gives: &'static str,
+    /// Width and height of its images (px).
+    pub size: [u32; 2],
+    /// What the sensor thread reads.
+    pub feed: CameraFeed,
+    /// What others ask.
+    pub handle: CameraHandle,
+}
+
+/// Opens a camera of any kind, and starts what sees through it.
+///
+/// # Errors
+/// A library or a network that is missing, a camera that is not connected, a recording that cannot be played.
+pub fn watch(
+    name: &CameraName,
+    mount: &MountArgs,
+    colour: bool,
+    sex: Sex,
+    clock: RealClock,
+) -> Result<Watched, AppError> {
+    if !name.kind.is_colour() {
+        let depth = open(name, mount.options(colour), 0)?;
+        let (device, k) = (depth.info().device.clone(), depth.intrinsics());
+        let options = TrackerOptions { zone: Zone::default(), sex };
+        let (feed, handle) = depth_camera::start(depth, clock, options).map_err(AppError::internal)?;
+        return Ok(Watched { device, gives: "depth", size: [k.width, k.height], feed, handle });
+    }
+    // Without the network no camera is switched on.
+    let joints =
+        WebcamJoints::load(&files::folder(), mount.webcam(sex)).map_err(|e| AppError::Device(e.to_string()))?;
+    let (name, options) = (name.clone(), mount.options(true));
+    let opener = Box::new(move || live::open(&name, &options));
+    let camera = LiveColour::open(opener, clock.now_ns()).map_err(|e| error(&e))?;
+    let (device, k) = (camera.info().device.clone(), camera.info().sensor());
+    let (feed, handle) = webcam::start(camera, joints, clock).map_err(AppError::internal)?;
+    Ok(Watched { device, gives: "colour", size: [k.width, k.height], feed, handle })
 }
 
 /// Reads a camera's name such as `kinect` or `k4a:visit.mkv`.
@@ -29,11 +107,11 @@ pub fn name(given: &str) -> Result<CameraName, String> {
     given.parse().map_err(|e: CameraError| e.to_string())
 }
 
-/// Opens a camera and whatever sees through it; so many of its images are kept at once.
+/// Opens a depth camera and whatever sees through it; so many of its images are kept at once.
 ///
 /// # Errors
 /// A library that is missing, a camera that is not connected, a recording that cannot be played.
-pub fn open(name: &CameraName, options: CameraOptions, kept: usize) -> Result<LiveDepth, AppError> {
+fn open(name: &CameraName, options: CameraOptions, kept: usize) -> Result<LiveDepth, AppError> {
     let name = name.clone();
     LiveDepth::open(Box::new(move || live::open(&name, &options)), kept, 0).map_err(|e| error(&e))
 }

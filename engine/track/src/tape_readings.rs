@@ -140,6 +140,11 @@ impl TapeReadings {
         self.values.get(index).copied().flatten()
     }
 
+    /// The stature that was taken (m).
+    pub fn stature(&self) -> Option<f32> {
+        MEASURES.iter().position(|measure| measure.0 == "stature").and_then(|index| self.at(index))
+    }
+
     /// The same without one of them, by its place in [`MEASURES`].
     #[must_use]
     pub fn without(mut self, index: usize) -> Self {

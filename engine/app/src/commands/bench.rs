@@ -20,6 +20,7 @@ mod skinning;
 mod skinning_report;
 mod skirt;
 mod skirt_summary;
+mod webcam;
 mod worn_summary;
 
 /// Time one part of the frame, with the error at that speed.
@@ -34,6 +35,7 @@ pub(crate) enum BenchCommand {
     Gestures(gestures::GesturesArgs),
     Depth(depth::DepthArgs),
     Contact(contact::ContactArgs),
+    Webcam(webcam::WebcamBenchArgs),
 }
 
 /// Runs `toile bench`.
@@ -50,5 +52,6 @@ pub(crate) fn run(command: &BenchCommand) -> Result<(), AppError> {
         BenchCommand::Gestures(args) => gestures::run(args),
         BenchCommand::Depth(args) => depth::run(args),
         BenchCommand::Contact(args) => contact::run(args),
+        BenchCommand::Webcam(args) => webcam::run(args),
     }
 }

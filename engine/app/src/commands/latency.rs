@@ -14,10 +14,8 @@ use toile_engine::frame_loop::threads;
 use toile_fitting::dress::measured;
 use toile_fitting::dress::recipe::Recipe;
 use toile_fitting::dress::session;
-use toile_fitting::live::depth_camera::{self, CameraFeed, TrackerOptions};
 use toile_fitting::live::report::Quantiles;
 use toile_perf::latency::{self, Goal, Latency, LatencyInputs, LatencyOptions, LatencySource};
-use toile_sensors::segment::Zone;
 use toile_sensors::source::live::CameraName;
 
 use crate::arguments::{CrashArg, Printing, WorkersArg, WornArgs, cores};
@@ -135,7 +133,7 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
     let clock = RealClock::default();
     let sex = if recipe.sex == "male" { Sex::Male } else { Sex::Female };
     let source = match &args.camera {
-        Some(name) => LatencySource::Camera(watch(name, &args.mount, sex, clock)?),
+        Some(name) => LatencySource::Camera(camera::watch(name, &args.mount, false, sex, clock)?.feed),
         None => LatencySource::Played(&session.joints[from..]),
     };
     let (crew, worker) = threads::worker_pool(args.workers.count()).map_err(AppError::input)?;
@@ -186,14 +184,6 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
         terminal::print(&table(&report, Paint::for_stdout()))?;
     }
     verdict.map_or(Ok(()), |verdict| Err(AppError::Threshold(verdict)))
-}
-
-/// Opens a camera and starts what sees through it.
-fn watch(name: &CameraName, mount: &MountArgs, sex: Sex, clock: RealClock) -> Result<CameraFeed, AppError> {
-    let depth = camera::open(name, mount.options(false), 0)?;
-    let options = TrackerOptions { zone: Zone::default(), sex };
-    let (feed, _) = depth_camera::start(depth, clock, options).map_err(AppError::internal)?;
-    Ok(feed)
 }
 
 /// The figures as people read them.

@@ -10,15 +10,14 @@ use toile_assets::body::Sex;
 use toile_assets::put_line;
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::frame_loop::sensor_thread::{FrameSource, SourceFrame};
-use toile_fitting::live::depth_camera::{self, CameraFeed, CameraFigures, CameraHandle, TrackerOptions};
+use toile_fitting::live::depth_camera::{CameraFeed, CameraFigures, CameraHandle};
 use toile_fitting::live::report::Quantiles;
 use toile_sensors::frame::DepthFrame;
-use toile_sensors::segment::Zone;
 use toile_sensors::source::live::{CameraName, CameraState, ColourImage};
 use toile_view::image::{Image, Size};
 
 use crate::arguments::Printing;
-use crate::camera::{self, MountArgs};
+use crate::camera::{self, MountArgs, Watched};
 use crate::exit::AppError;
 use crate::output::OutputFolder;
 use crate::pictures::write_png;
@@ -34,7 +33,7 @@ const EVERY: Duration = Duration::from_secs(1);
 /// Depth that is drawn white and black (mm).
 const SHOWN_MM: [f32; 2] = [500.0, 4_500.0];
 
-/// Show what a live depth camera gives: size, rates, losses, latency, people.
+/// Show what a live camera gives: size, rates, losses, latency, people.
 ///
 /// Opens the camera through its own library, which is loaded while the program runs, follows whoever stands before it, and says once a
 /// second what came. Nothing is stored but the pictures that --out asks for.
@@ -44,8 +43,8 @@ const SHOWN_MM: [f32; 2] = [500.0, 4_500.0];
                         --seconds 10 --out look"
 )]
 pub struct LiveArgs {
-    /// Camera: kinect, openni, k4a, realsense or orbbec, which one after a colon (kinect:SERIAL), or a recording in its place
-    /// (k4a:F.mkv, recording:F)
+    /// Camera: kinect, openni, k4a, realsense, orbbec or webcam, which one after a colon (kinect:SERIAL, webcam:/dev/video2), or a
+    /// recording in its place (k4a:F.mkv, recording:F, webcam-file:DIR)
     #[arg(long, value_name = "C", value_parser = camera::name, default_value = "kinect")]
     pub camera: CameraName,
     /// Length of the look
@@ -77,7 +76,7 @@ pub struct LiveRates {
 pub struct LiveReport {
     /// The camera's own name.
     pub device: String,
-    /// Width and height of its depth images, straightened (px).
+    /// Width and height of its images, those of depth straightened (px).
     pub size: [u32; 2],
     /// From the start until the camera was open (ms).
     pub opened_ms: f64,
@@ -123,14 +122,11 @@ struct Looked {
 pub fn run(args: &LiveArgs) -> Result<(), AppError> {
     let out = args.out.as_deref().map(OutputFolder::prepare).transpose()?;
     let begun = Instant::now();
-    let depth = camera::open(&args.camera, args.mount.options(true), 0)?;
+    let watched = camera::watch(&args.camera, &args.mount, true, Sex::Female, RealClock::default())?;
     let opened_ms = (begun.elapsed().as_secs_f64() * 1e4).round() / 10.0;
-    let (device, k) = (depth.info().device.clone(), depth.intrinsics());
+    let Watched { device, gives, size, mut feed, handle } = watched;
     let words = args.printing.words();
-    words.print_line(&format!("{device}: depth of {} x {} pixels, open after {opened_ms:.0} ms", k.width, k.height));
-    let clock = RealClock::default();
-    let options = TrackerOptions { zone: Zone::default(), sex: Sex::Female };
-    let (mut feed, handle) = depth_camera::start(depth, clock, options).map_err(AppError::internal)?;
+    words.print_line(&format!("{device}: {gives} of {} x {} pixels, open after {opened_ms:.0} ms", size[0], size[1]));
     let looked = look(&mut feed, &handle, Duration::from_secs(args.seconds.into()), words);
     let (figures, colour) = (handle.figures(), handle.colour());
     let meters = feed.end();
@@ -144,7 +140,7 @@ pub fn run(args: &LiveArgs) -> Result<(), AppError> {
     let rate = |n: u64| (n as f64 / seconds * 100.0).round() / 100.0;
     let report = LiveReport {
         device,
-        size: [k.width, k.height],
+        size,
         opened_ms,
         state: figures.state.name(),
         frames: counts.frames,
@@ -154,7 +150,7 @@ pub fn run(args: &LiveArgs) -> Result<(), AppError> {
         lost: counts.lost,
         reopened: counts.reopened,
         rates_hz: LiveRates {
-            depth: rate(counts.frames),
+            depth: if gives == "depth" { rate(counts.frames) } else { 0.0 },
             colour: rate(figures.colours),
             joints: rate(figures.tracked[1]),
         },
@@ -198,7 +194,7 @@ fn line(last: &CameraFigures, now: &CameraFigures) -> String {
     let who = if now.tracked[1] > last.tracked[1] { "somebody is followed" } else { "nobody is followed" };
     let state = if now.state == CameraState::Seeing { String::new() } else { format!(", {}", now.state) };
     format!(
-        "{} depth, {} colour, {} missing, {bad} unusable{state}; {who}",
+        "{} frames, {} colour, {} missing, {bad} unusable{state}; {who}",
         b.frames - a.frames,
         now.colours - last.colours,
         b.missing - a.missing

@@ -59,6 +59,10 @@ pub(super) struct CameraRequest<'a> {
 /// # Errors
 /// No consent; a camera that cannot be opened or shows nothing; a file that cannot be written.
 pub(super) fn run(args: &CameraRequest<'_>) -> Result<(), AppError> {
+    if args.name.kind.is_colour() {
+        let why = format!("a session holds depth, and {} gives none; record with a depth camera", args.name);
+        return Err(AppError::Input(why));
+    }
     ask(args.consent)?;
     let out = OutputFile::prepare(args.out, Inputs::default())?;
     let options = args.mount.options(false);

@@ -37,6 +37,11 @@ pub fn of_joints(joints: Vec<Joints>) -> Session {
     Session { name: "live".into(), joints, raw_scale_known: true, ..Session::default() }
 }
 
+/// A session of directions, as a camera of colour alone gives them: how large the body is, nobody has measured.
+pub fn of_directions(joints: Vec<Joints>) -> Session {
+    Session { name: "live".into(), joints, raw_scale_known: false, ..Session::default() }
+}
+
 /// A session of depth alone, as a live camera gives it.
 pub fn of_depth(depth: Vec<DepthFrame>) -> Session {
     Session { name: "live".into(), depth, raw_scale_known: true, ..Session::default() }

@@ -6,9 +6,7 @@
 //! tracker's thread and whoever begins to measure take: no thread of the loop does.
 
 use std::io;
-use std::sync::atomic::Ordering::Relaxed;
-use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
@@ -20,21 +18,14 @@ use toile_engine::triple_buffer::{Reader, TripleBuffer, Writer};
 use toile_sensors::clock::SECOND_NS;
 use toile_sensors::frame::{DepthFrame, Joints};
 use toile_sensors::segment::Zone;
-use toile_sensors::source::live::{CameraCounts, CameraState, ColourImage, LiveDepth, PATIENCE_NS};
+use toile_sensors::source::live::{LiveDepth, PATIENCE_NS};
 use toile_track::fit::FitOptions;
-use toile_track::fit::measuring::FRAMES;
 use toile_track::fit::tracker::{BodyTracker, Company};
 
-use crate::dress::depth::{APART_NS, TURN_NS};
+pub use super::camera_handle::{CameraFigures, CameraHandle, GATHERED};
 
 /// Time between two looks of the sensor thread (ns): half a step, so that no frame waits for longer.
 const LOOK_NS: u64 = SECOND_NS / 240;
-
-/// Most frames that are kept of a turn: one in each [`APART_NS`] of the longest that is looked at.
-const TURN_FRAMES: usize = (TURN_NS / APART_NS) as usize;
-
-/// Depth images that a measurement holds at most: the first second at full rate, and a turn.
-pub const GATHERED: usize = FRAMES + TURN_FRAMES;
 
 /// Longest that the tracker sleeps without being woken: so soon it sees that it is to end.
 const NAP: Duration = Duration::from_millis(50);
@@ -50,169 +41,12 @@ struct CameraNews {
 
 /// A frame that was looked at, on its way to the sensor thread.
 #[derive(Debug, Clone)]
-struct TrackedFrame {
-    frame: Arc<DepthFrame>,
-    joints: Joints,
-    company: Company,
-    arrived_ns: u64,
-}
-
-/// Figures of the camera and of who is seen through it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct CameraFigures {
-    /// How the camera stands.
-    pub state: CameraState,
-    /// What was counted of its frames.
-    pub counts: CameraCounts,
-    /// Frames in which somebody was looked for, and in which somebody was found.
-    pub tracked: [u64; 2],
-    /// Colour images that came.
-    pub colours: u64,
-}
-
-/// Numbers that the threads count up, to be looked at by others.
-///
-/// Relaxed throughout: each stands by itself and orders nothing.
-#[derive(Debug, Default)]
-struct SharedFigures {
-    state: AtomicU8,
-    counts: [AtomicU64; 8],
-    tracked: [AtomicU64; 2],
-    colours: AtomicU64,
-    /// The body model that is asked for: 0 female, 1 male.
-    sex: AtomicU8,
-    /// Whether images that nobody has are to be wiped.
-    wipe: AtomicBool,
-    stop: AtomicBool,
-}
-
-/// What is gathered for measuring.
-#[derive(Debug)]
-struct Gathered {
-    /// Whether somebody is measured.
-    wanted: bool,
-    frames: Vec<Arc<DepthFrame>>,
-    next_ns: u64,
-}
-
-/// What others know of the camera, and ask of it.
-#[derive(Debug, Clone)]
-pub struct CameraHandle {
-    figures: Arc<SharedFigures>,
-    gathered: Arc<Mutex<Gathered>>,
-    /// The last colour image, where colour is asked for.
-    colour: Arc<Mutex<ColourImage>>,
-    /// What was assumed of the camera.
-    notes: Arc<Mutex<Vec<String>>>,
-}
-
-impl CameraHandle {
-    fn new() -> Self {
-        let gathered = Gathered { wanted: false, frames: Vec::with_capacity(GATHERED), next_ns: 0 };
-        Self {
-            figures: Arc::default(),
-            gathered: Arc::new(Mutex::new(gathered)),
-            colour: Arc::default(),
-            notes: Arc::default(),
-        }
-    }
-
-    /// How the camera stands, and what was counted.
-    pub fn figures(&self) -> CameraFigures {
-        let shared = &self.figures;
-        let [frames, missing, half, repeated, empty, clock_jumps, lost, reopened] =
-            shared.counts.each_ref().map(|n| n.load(Relaxed));
-        let counts = CameraCounts { frames, missing, half, repeated, empty, clock_jumps, lost, reopened };
-        let state = CameraState::ALL[usize::from(shared.state.load(Relaxed)).min(CameraState::ALL.len() - 1)];
-        CameraFigures {
-            state,
-            counts,
-            tracked: shared.tracked.each_ref().map(|n| n.load(Relaxed)),
-            colours: shared.colours.load(Relaxed),
-        }
-    }
-
-    /// Somebody begins to be measured: from now on a second is gathered at full rate, and then a turn.
-    pub fn gather_anew(&self) {
-        let mut gathered = self.lock();
-        gathered.frames.clear();
-        (gathered.wanted, gathered.next_ns) = (true, 0);
-    }
-
-    /// The shopper has left: what was gathered is thrown away, and the camera's images are wiped. A body of this sex is fitted to whoever
-    /// comes next.
-    pub fn forget(&self, sex: Sex) {
-        let mut gathered = self.lock();
-        gathered.frames.clear();
-        gathered.wanted = false;
-        drop(gathered);
-        self.figures.wipe.store(true, Relaxed);
-        self.follow(sex);
-    }
-
-    /// Copies of the frames that were gathered.
-    pub fn gathered(&self) -> Vec<DepthFrame> {
-        // The images themselves are copied without the lock.
-        let frames: Vec<Arc<DepthFrame>> = self.lock().frames.clone();
-        frames.iter().map(|frame| (**frame).clone()).collect()
-    }
-
-    /// The last colour image; of no size where none came.
-    pub fn colour(&self) -> ColourImage {
-        self.colour.lock().unwrap_or_else(PoisonError::into_inner).clone()
-    }
-
-    fn set_colour(&self, image: &ColourImage) {
-        if image.width > 0 {
-            self.figures.colours.fetch_add(1, Relaxed);
-            self.colour.lock().unwrap_or_else(PoisonError::into_inner).clone_from(image);
-        }
-    }
-
-    /// What was assumed of the camera so far, one sentence each.
-    pub fn notes(&self) -> Vec<String> {
-        self.notes.lock().unwrap_or_else(PoisonError::into_inner).clone()
-    }
-
-    fn set_notes(&self, notes: &[String]) {
-        let mut known = self.notes.lock().unwrap_or_else(PoisonError::into_inner);
-        if known.len() != notes.len() {
-            known.clone_from(&notes.to_vec());
-        }
-    }
-
-    /// From now on a body of this sex is fitted.
-    pub fn follow(&self, sex: Sex) {
-        self.figures.sex.store(u8::from(sex == Sex::Male), Relaxed);
-    }
-
-    fn lock(&self) -> MutexGuard<'_, Gathered> {
-        self.gathered.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn publish(&self, state: CameraState, counts: CameraCounts) {
-        let CameraCounts { frames, missing, half, repeated, empty, clock_jumps, lost, reopened } = counts;
-        let numbers = [frames, missing, half, repeated, empty, clock_jumps, lost, reopened];
-        self.figures.counts.iter().zip(numbers).for_each(|(to, n)| to.store(n, Relaxed));
-        self.figures.state.store(state as u8, Relaxed);
-    }
-
-    /// Takes a frame for whoever is measured: the first second whole, then what a turn needs.
-    fn gather(&self, frame: &Arc<DepthFrame>) {
-        let mut gathered = self.lock();
-        let (count, time_ns) = (gathered.frames.len(), frame.time_ns);
-        if !gathered.wanted || count >= GATHERED || time_ns < gathered.next_ns {
-            return;
-        }
-        gathered.frames.push(frame.clone());
-        if count + 1 >= FRAMES {
-            gathered.next_ns = time_ns + APART_NS;
-        }
-    }
-
-    fn is_over(&self) -> bool {
-        self.figures.stop.load(Relaxed)
-    }
+pub(super) struct TrackedFrame {
+    /// Its depth, where the camera has any.
+    pub frame: Option<Arc<DepthFrame>>,
+    pub joints: Joints,
+    pub company: Company,
+    pub arrived_ns: u64,
 }
 
 /// How the shopper is found and followed.
@@ -242,13 +76,18 @@ pub struct CameraThreads {
 }
 
 impl CameraThreads {
+    /// One thread, which waits for the camera and looks at what comes.
+    pub(super) fn one(handle: CameraHandle, tracker: JoinHandle<CameraMeters>) -> Self {
+        Self { handle, camera: None, tracker: Some(tracker) }
+    }
+
     /// Ends them; gives how long the tracker took.
     pub fn end(mut self) -> CameraMeters {
         self.stop().unwrap_or_default()
     }
 
     fn stop(&mut self) -> Option<CameraMeters> {
-        self.handle.figures.stop.store(true, Relaxed);
+        self.handle.stop();
         if let Some(camera) = self.camera.take() {
             let _ = camera.join();
         }
@@ -283,9 +122,7 @@ where
         .name("toile-camera".into())
         .spawn(move || wait_for_frames(depth, &own, &shared, news, &woken))?;
     let threads = CameraThreads { handle: handle.clone(), camera: Some(camera), tracker: Some(tracker) };
-    let next_ns = clock.now_ns();
-    let now: Box<dyn Fn() -> u64 + Send> = Box::new(move || clock.now_ns());
-    Ok((CameraFeed { reader, now, next_ns, threads }, handle))
+    Ok((CameraFeed::new(reader, threads, clock), handle))
 }
 
 /// What the camera thread runs.
@@ -300,7 +137,7 @@ fn wait_for_frames<C: Clock>(
     while !handle.is_over() {
         let update = depth.poll(&|| clock.now_ns(), patience);
         handle.publish(update.state, depth.counts());
-        if handle.figures.wipe.swap(false, Relaxed) {
+        if handle.takes_wipe() {
             depth.wipe();
         }
         match update.frame {
@@ -334,7 +171,7 @@ impl<C: Clock> Tracking<C> {
                 thread::park_timeout(NAP);
                 continue;
             };
-            let asked = if self.handle.figures.sex.load(Relaxed) == 1 { Sex::Male } else { Sex::Female };
+            let asked = self.handle.sex();
             if asked != sex {
                 sex = asked;
                 tracker.set_sex(sex, FitOptions::LIVE);
@@ -342,10 +179,8 @@ impl<C: Clock> Tracking<C> {
             self.handle.gather(&frame);
             let fitted = tracker.push(&frame);
             let joints = joints.unwrap_or(fitted.joints);
-            let [looked, found] = &self.handle.figures.tracked;
-            looked.fetch_add(1, Relaxed);
-            found.fetch_add(u64::from(fitted.found), Relaxed);
-            out.publish(Some(TrackedFrame { frame, joints, company: tracker.company(), arrived_ns }));
+            self.handle.count_tracked(fitted.found);
+            out.publish(Some(TrackedFrame { frame: Some(frame), joints, company: tracker.company(), arrived_ns }));
             let took = self.clock.now_ns().saturating_sub(arrived_ns);
             let meter =
                 if fitted.found && !fitted.started { &mut self.meters.followed } else { &mut self.meters.found };
@@ -370,6 +205,15 @@ impl std::fmt::Debug for CameraFeed {
 }
 
 impl CameraFeed {
+    pub(super) fn new<C: Clock + Send + 'static>(
+        reader: Reader<Option<TrackedFrame>>,
+        threads: CameraThreads,
+        clock: C,
+    ) -> Self {
+        let next_ns = clock.now_ns();
+        Self { reader, now: Box::new(move || clock.now_ns()), next_ns, threads }
+    }
+
     /// Ends the camera's threads; gives how long the tracker took.
     pub fn end(self) -> CameraMeters {
         self.threads.end()
@@ -384,10 +228,11 @@ impl FrameSource for CameraFeed {
     fn read(&mut self) -> Option<SourceFrame> {
         self.next_ns = (self.now)() + LOOK_NS;
         let TrackedFrame { frame, joints, company, arrived_ns } = self.reader.news()?.clone()?;
-        let joints = Joints { time_ns: frame.time_ns, ..joints };
-        let depth: Arc<dyn DepthImage> = frame;
+        let time_ns = frame.as_ref().map_or(joints.time_ns, |frame| frame.time_ns);
+        let joints = Joints { time_ns, ..joints };
+        let depth = frame.map(|frame| -> Arc<dyn DepthImage> { frame });
         let others = (company.others, company.nearer);
-        Some(SourceFrame { joints, depth: Some(depth), others, arrived_ns: Some(arrived_ns) })
+        Some(SourceFrame { joints, depth, others, arrived_ns: Some(arrived_ns) })
     }
 }
 
@@ -396,9 +241,11 @@ mod tests {
     use super::*;
     use glam::Affine3A;
     use toile_engine::clock::RealClock;
+    use toile_sensors::source::live::CameraState;
     use toile_sensors::source::live::fault_injection::{
         CameraFault, FaultClock, FaultPlan, FaultyCamera, SimulatedCamera, TimedFault,
     };
+    use toile_track::fit::measuring::FRAMES;
 
     const MS: u64 = 1_000_000;
 

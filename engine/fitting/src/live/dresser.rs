@@ -29,7 +29,7 @@ pub enum ShopperSource {
     Recording(Arc<Session>),
     /// The joints of the last second, which are all that a live sender gives.
     Joints(Vec<Joints>),
-    /// A live depth camera: what it has gathered since somebody began to be measured.
+    /// A live camera: what it has gathered since somebody began to be measured.
     Camera(CameraHandle),
 }
 
@@ -61,7 +61,7 @@ impl ShopperSource {
         match self {
             Self::Recording(session) => session,
             Self::Joints(joints) => Arc::new(session::of_joints(joints)),
-            Self::Camera(camera) => Arc::new(session::of_depth(camera.gathered())),
+            Self::Camera(camera) => Arc::new(camera.session()),
         }
     }
 }

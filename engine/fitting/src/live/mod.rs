@@ -9,6 +9,7 @@
 
 pub mod assembly;
 pub mod background;
+mod camera_handle;
 pub mod crash;
 pub mod depth_camera;
 pub mod dresser;
@@ -21,3 +22,4 @@ pub mod running;
 pub mod scene_changer;
 pub mod source;
 pub mod watchdog;
+pub mod webcam;

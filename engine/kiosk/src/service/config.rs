@@ -121,12 +121,16 @@ pub struct SensorConfig {
     pub pause_s: f64,
     /// Where VMC messages arrive.
     pub vmc: SocketAddr,
-    /// A live depth camera, by its kind; it takes the place of `source`.
+    /// A live camera, by its kind; it takes the place of `source`.
     pub camera: Option<String>,
     /// Which camera of that kind: its serial number, or a recording of it.
     pub device: Option<String>,
     /// By how much its images are turned clockwise to be upright (degrees): 0, 90, 180 or 270.
     pub turned_degrees: u32,
+    /// Height of a webcam above the floor (mm), so that it says how tall somebody is.
+    pub camera_height_mm: Option<f64>,
+    /// By how much a webcam looks down (degrees).
+    pub camera_tilt_degrees: f64,
 }
 
 impl SensorConfig {
@@ -145,6 +149,13 @@ impl SensorConfig {
         let degrees = self.turned_degrees;
         if !(degrees.is_multiple_of(90) && degrees < 360) {
             return Some(format!("sensor.turned_degrees = {degrees} is not 0, 90, 180 or 270; correct it"));
+        }
+        if let Some(mm) = self.camera_height_mm.filter(|mm| !(200.0..=4_000.0).contains(mm)) {
+            return Some(format!("sensor.camera_height_mm = {mm} is not within 200 to 4000; correct it"));
+        }
+        let tilt = self.camera_tilt_degrees;
+        if !(-45.0..=60.0).contains(&tilt) {
+            return Some(format!("sensor.camera_tilt_degrees = {tilt} is not within -45 to 60; correct it"));
         }
         self.camera().err().map(|why| format!("sensor.camera: {why}"))
     }
@@ -258,6 +269,8 @@ impl Default for SensorConfig {
             camera: None,
             device: None,
             turned_degrees: 0,
+            camera_height_mm: None,
+            camera_tilt_degrees: 0.0,
         }
     }
 }
@@ -448,7 +461,9 @@ mod tests {
             ("[shopper]\nage = \"12\"", "shopper.age"),
             ("[shopper]\nmeasures = [\"chest=91\"]", "centimetres"),
             ("[wear]\nquality = \"best\"", "wear.quality"),
-            ("[sensor]\ncamera = \"webcam\"", "sensor.camera"),
+            ("[sensor]\ncamera = \"cctv\"", "sensor.camera"),
+            ("[sensor]\ncamera_height_mm = 12.0", "sensor.camera_height_mm"),
+            ("[sensor]\ncamera_tilt_degrees = nan", "sensor.camera_tilt_degrees"),
             ("[sensor]\nturned_degrees = 45", "sensor.turned_degrees"),
             ("[display]\nlanguage = \"tlh\"", "display.language"),
             ("[display]\npicture_minutes = 0.0", "display.picture_minutes"),

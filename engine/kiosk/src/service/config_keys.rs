@@ -9,7 +9,20 @@ use crate::error::KioskError;
 pub const KEYS: [(&str, &[&str]); 10] = [
     ("wear", &["garments", "catalogue", "size", "quality"]),
     ("shopper", &["sex", "age", "measures"]),
-    ("sensor", &["source", "session", "pause_s", "vmc", "camera", "device", "turned_degrees"]),
+    (
+        "sensor",
+        &[
+            "source",
+            "session",
+            "pause_s",
+            "vmc",
+            "camera",
+            "device",
+            "turned_degrees",
+            "camera_height_mm",
+            "camera_tilt_degrees",
+        ],
+    ),
     ("session", &["step_in_s", "measure_s", "step_out_s", "wipe_s"]),
     ("health", &["every_s"]),
     ("machine", &["workers", "lock_memory"]),

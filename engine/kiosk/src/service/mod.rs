@@ -8,6 +8,7 @@
 //! [`session`] is the state machine that a window drives too, [`controller`] decides by it, and [`runner`] polls the loop. How the
 //! loop's threads are joined, and how one dressed body takes another's place in them, is `toile_fitting::live`.
 
+mod camera;
 pub mod config;
 mod config_keys;
 pub mod controller;
@@ -28,8 +29,6 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use glam::Vec2;
-use toile_assets::body::Sex;
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::frame::Frame;
 use toile_engine::frame_loop::physics_thread::FrameScene;
@@ -39,7 +38,6 @@ use toile_engine::triple_buffer::Writer;
 use toile_fitting::dress::dressed;
 use toile_fitting::dress::session as sessions;
 use toile_fitting::live::assembly::{HeadlessRenderer, LoopOptions, LoopParts};
-use toile_fitting::live::depth_camera::{self, CameraHandle, TrackerOptions};
 use toile_fitting::live::dresser::{Dresser, ShopperSource};
 use toile_fitting::live::lateness::ThreadAccount;
 use toile_fitting::live::live_loop::LiveLoop;
@@ -48,9 +46,7 @@ use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
 use toile_fitting::live::source::{Feed, Visits};
 use toile_fitting::live::{crash, recording};
 use toile_sensors::frame::Joints;
-use toile_sensors::segment::Zone;
 use toile_sensors::source::Session;
-use toile_sensors::source::live::{self, CameraError, CameraName, CameraOptions, LiveDepth};
 
 use crate::error::KioskError;
 use config::{Config, SensorSource};
@@ -263,7 +259,7 @@ fn played_session(config: &Config) -> Result<Session, KioskError> {
 /// What the sensor reads, and what shoppers are then measured from.
 fn feed(config: &Config, session: Session, clock: RealClock) -> Result<(Feed, Option<ShopperSource>), KioskError> {
     if let Some(name) = config.sensor.camera().map_err(KioskError::input)? {
-        let (feed, handle) = camera_feed(config, name, clock)?;
+        let (feed, handle) = camera::feed(config, name, clock)?;
         return Ok((feed, Some(ShopperSource::Camera(handle))));
     }
     let address = config.sensor.vmc;
@@ -276,24 +272,6 @@ fn feed(config: &Config, session: Session, clock: RealClock) -> Result<(Feed, Op
     let session = Arc::new(session);
     let visits = Visits::of(&session, clock.now_ns(), config::ns(config.sensor.pause_s));
     Ok((Feed::Played(visits), Some(ShopperSource::Recording(session))))
-}
-
-/// A live camera, with the threads that see through it.
-fn camera_feed(config: &Config, name: CameraName, clock: RealClock) -> Result<(Feed, CameraHandle), KioskError> {
-    let mark = config.display.mark_m.map(Vec2::from);
-    let sex = config.shopper.facts().ok().and_then(|facts| facts.sex).unwrap_or(Sex::Female);
-    let options = TrackerOptions { zone: Zone { mark, ..Zone::default() }, sex };
-    let quarter_turns = (config.sensor.turned_degrees / 90) as u8;
-    let how = CameraOptions { colour: false, quarter_turns, libraries: live::folders() };
-    let opener = Box::new(move || live::open(&name, &how));
-    let depth = LiveDepth::open(opener, depth_camera::GATHERED, clock.now_ns()).map_err(camera_error)?;
-    let (feed, handle) = depth_camera::start(depth, clock, options).map_err(KioskError::internal)?;
-    Ok((Feed::Camera(feed), handle))
-}
-
-/// Why a camera cannot be used: what was given, or the device.
-fn camera_error(error: CameraError) -> KioskError {
-    if error.is_input() { KioskError::input(error) } else { KioskError::Device(error.to_string()) }
 }
 
 fn workers() -> usize {

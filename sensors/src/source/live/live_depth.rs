@@ -19,10 +19,10 @@ use crate::source::placement::{PlacedCamera, Placement};
 pub const PATIENCE_NS: u64 = 10_000_000;
 
 /// Time between two tries to open a camera that is gone (ns).
-const RETRY_NS: u64 = 250_000_000;
+pub(super) const RETRY_NS: u64 = 250_000_000;
 
 /// A camera from which nothing came for so long is closed and opened anew (ns): its library may not have noticed that it was unplugged.
-const SILENT_NS: u64 = 2_000_000_000;
+pub(super) const SILENT_NS: u64 = 2_000_000_000;
 
 /// Opens the camera, the first time and whenever it was gone.
 pub type CameraOpener = Box<dyn FnMut() -> Result<Box<dyn LiveCamera>, CameraError> + Send>;

@@ -12,8 +12,11 @@
 //! | `k4a` | libk4a, libk4arecord | millimetres and the lens of the calibration; an `.mkv` plays |
 //! | `realsense` | librealsense2 | units of the device; a recorded `.bag` or `.db3` plays |
 //! | `orbbec` | libOrbbecSDK | units of the device; a recorded `.bag` plays |
+//! | `webcam` | none (the kernel's Video for Linux) | colour pictures, YUYV or JPEG; through [`LiveColour`] |
+//! | `webcam-file` | none | pictures of files in a webcam's place |
 //! | `recording` | none | any recording that [`super::open`] reads, played in time, again and again |
 
+mod colour_decode;
 mod device_clock;
 pub(in crate::source) mod error;
 pub mod fault_injection;
@@ -23,6 +26,7 @@ mod k4a;
 mod kinect;
 pub(in crate::source) mod library;
 mod live_camera;
+mod live_colour;
 mod live_depth;
 mod open;
 mod openni;
@@ -30,6 +34,10 @@ mod orbbec;
 mod realsense;
 mod recorded;
 mod recorder;
+#[cfg(target_os = "linux")]
+mod v4l2;
+mod webcam;
+mod webcam_file;
 
 pub use device_clock::DeviceClock;
 pub use error::CameraError;
@@ -37,6 +45,8 @@ pub use frame_check::{CameraCounts, CameraState, FrameCheck, Verdict};
 pub use frame_pool::{FramePool, POOL_FRAMES, POOL_FRAMES_NAME};
 pub use library::{FOLDERS_VARIABLE, LibraryName, OWN_FOLDER, folders};
 pub use live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourImage, LiveCamera};
+pub use live_colour::{ColourUpdate, LiveColour};
 pub use live_depth::{CameraOpener, LiveDepth, LiveUpdate, PATIENCE_NS};
 pub use open::{CameraKind, CameraName, open};
 pub use recorder::CameraRecorder;
+pub use webcam::webcams;

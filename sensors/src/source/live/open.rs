@@ -6,7 +6,7 @@ use std::str::FromStr;
 use super::error::CameraError;
 use super::library::{self, LibraryName};
 use super::live_camera::{CameraOptions, LiveCamera};
-use super::{k4a, kinect, openni, orbbec, realsense, recorded};
+use super::{k4a, kinect, openni, orbbec, realsense, recorded, webcam, webcam_file};
 use crate::source::openni_library;
 
 toile_assets::named! {
@@ -23,6 +23,10 @@ toile_assets::named! {
         RealSense = "realsense",
         /// Orbbec Gemini, Astra 2, Femto.
         Orbbec = "orbbec",
+        /// Any webcam: colour alone, joints by a network.
+        Webcam = "webcam",
+        /// Pictures of files in a webcam's place.
+        WebcamFile = "webcam-file",
         /// A recording, played in time as a camera.
         Recording = "recording",
     }
@@ -37,8 +41,13 @@ impl CameraKind {
             Self::K4a => &k4a::LIBRARIES,
             Self::RealSense => &[realsense::LIBRARY],
             Self::Orbbec => &[orbbec::LIBRARY],
-            Self::Recording => &[],
+            Self::Webcam | Self::WebcamFile | Self::Recording => &[],
         }
+    }
+
+    /// Whether it gives colour and no depth: it is seen through [`LiveColour`](super::LiveColour).
+    pub const fn is_colour(self) -> bool {
+        matches!(self, Self::Webcam | Self::WebcamFile)
     }
 
     /// The file of its first library, if it is installed and can be loaded.
@@ -75,6 +84,11 @@ impl FromStr for CameraName {
         if kind == CameraKind::Recording && which.is_none() {
             return Err(CameraError::Unknown("which recording is the camera? give its path: recording:F".into()));
         }
+        if kind == CameraKind::WebcamFile && which.is_none() {
+            return Err(CameraError::Unknown(
+                "which pictures are the camera? give their folder: webcam-file:DIR".into(),
+            ));
+        }
         Ok(Self { kind, which })
     }
 }
@@ -100,6 +114,8 @@ pub fn open(name: &CameraName, options: &CameraOptions) -> Result<Box<dyn LiveCa
         CameraKind::K4a => Box::new(k4a::K4a::open(which, options)?),
         CameraKind::RealSense => Box::new(realsense::RealSense::open(which, options)?),
         CameraKind::Orbbec => Box::new(orbbec::Orbbec::open(which, options)?),
+        CameraKind::Webcam => Box::new(webcam::Webcam::open(which, options)?),
+        CameraKind::WebcamFile => Box::new(webcam_file::WebcamFile::open(which.unwrap_or_default(), options)?),
         CameraKind::Recording => Box::new(recorded::RecordedCamera::open(which.unwrap_or_default(), options)?),
     })
 }
@@ -114,9 +130,10 @@ mod tests {
         assert_eq!((name.kind, name.which.as_deref()), (CameraKind::K4a, Some("visit.mkv")));
         assert_eq!(name.to_string(), "k4a:visit.mkv");
         assert_eq!("kinect".parse::<CameraName>().unwrap().to_string(), "kinect");
-        let error = "webcam".parse::<CameraName>().unwrap_err().to_string();
-        assert!(error.starts_with("there is no camera named \"webcam\"; give one of kinect, openni"), "{error}");
-        assert!("recording".parse::<CameraName>().is_err());
+        assert_eq!("webcam:/dev/video2".parse::<CameraName>().unwrap().to_string(), "webcam:/dev/video2");
+        let error = "cctv".parse::<CameraName>().unwrap_err().to_string();
+        assert!(error.starts_with("there is no camera named \"cctv\"; give one of kinect, openni"), "{error}");
+        assert!("recording".parse::<CameraName>().is_err() && "webcam-file:".parse::<CameraName>().is_err());
     }
 
     #[test]

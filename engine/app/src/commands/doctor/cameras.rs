@@ -1,5 +1,6 @@
 //! Libraries of live cameras: which are there, and the exact command for those that are not.
 
+use toile_pose::files;
 use toile_sensors::source::live::{self, CameraError, CameraKind};
 
 use super::check::Check;
@@ -14,8 +15,29 @@ const fn words(kind: CameraKind) -> (&'static str, &'static str) {
         CameraKind::K4a => ("camera k4a", "a live Azure Kinect, Femto Bolt or Femto Mega"),
         CameraKind::RealSense => ("camera realsense", "a live RealSense"),
         CameraKind::Orbbec => ("camera orbbec", "a live Gemini, Astra 2 or Femto"),
+        CameraKind::Webcam | CameraKind::WebcamFile => ("camera webcam", "joints by any webcam"),
         CameraKind::Recording => ("camera recording", "a recording that plays as a camera"),
     }
+}
+
+/// The network that finds joints in a webcam's pictures, and the one command that fetches it.
+pub fn pose_network() -> Check {
+    let (name, needed_for) = ("pose network", "joints by any webcam");
+    let folder = files::folder();
+    match files::check(&folder) {
+        Ok(()) => Check::ok(name, needed_for, folder.display().to_string()),
+        Err(error) => Check::missing(name, needed_for, error.what(), format!("`{}`", files::FETCH)),
+    }
+}
+
+/// Webcams that the kernel knows.
+pub fn webcams() -> Check {
+    let (name, needed_for) = words(CameraKind::Webcam);
+    let found: Vec<String> = live::webcams().iter().map(|path| path.display().to_string()).collect();
+    if found.is_empty() {
+        return Check::missing(name, needed_for, "no /dev/video is there", "plug a webcam in".to_owned());
+    }
+    Check::ok(name, needed_for, found.join(", "))
 }
 
 /// One check for each kind that needs a library.

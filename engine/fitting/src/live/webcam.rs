@@ -1,0 +1,178 @@
+//! A webcam in the loop: one thread waits for its pictures, makes them red, green and blue, and finds the joints in them, in about half of
+//! the time between two. It hands on the latest joints as a depth camera's threads do; neither the sensor thread nor a step waits for it.
+
+use std::io;
+use std::path::Path;
+use std::thread;
+use std::time::Duration;
+
+use toile_assets::body::Sex;
+use toile_engine::clock::Clock;
+use toile_engine::triple_buffer::{TripleBuffer, Writer};
+use toile_pose::files::PoseError;
+use toile_pose::joints::JointPlacer;
+use toile_pose::scale::{StatureEstimate, StatureSource, WebcamMount};
+use toile_pose::tracker::{Model, PoseTracker, Seen};
+use toile_sensors::frame::Joints;
+use toile_sensors::source::live::{ColourImage, LiveColour, PATIENCE_NS};
+use toile_track::fit::tracker::Company;
+
+use super::depth_camera::{CameraFeed, CameraHandle, CameraMeters, CameraThreads, TrackedFrame};
+
+/// How somebody is seen through a webcam.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WebcamOptions {
+    /// Whose mean body has the lengths of the limbs.
+    pub sex: Sex,
+    /// Which network finds the landmarks.
+    pub model: Model,
+    /// How the camera stands.
+    pub mount: WebcamMount,
+    /// Their stature, where they say it (m).
+    pub stature_m: Option<f32>,
+}
+
+impl Default for WebcamOptions {
+    fn default() -> Self {
+        Self { sex: Sex::Female, model: Model::Lite, mount: WebcamMount::default(), stature_m: None }
+    }
+}
+
+/// From pictures to joints.
+#[derive(Debug)]
+pub struct WebcamJoints {
+    tracker: PoseTracker,
+    placer: JointPlacer,
+    stature: StatureEstimate,
+    options: WebcamOptions,
+    /// Whether somebody was seen in the last picture.
+    pub found: bool,
+}
+
+impl WebcamJoints {
+    /// With the network's files of a folder. Called at load: it allocates.
+    ///
+    /// # Errors
+    /// Files that are missing or others than those that are known, with the command that fetches them.
+    pub fn load(folder: &Path, options: WebcamOptions) -> Result<Self, PoseError> {
+        Ok(Self {
+            tracker: PoseTracker::load(folder, options.model)?,
+            placer: JointPlacer::new(options.sex, options.mount),
+            stature: StatureEstimate::new(options.stature_m),
+            options,
+            found: false,
+        })
+    }
+
+    /// Joints of a picture that was taken at a time (ns); all of them absent where nobody is seen, or the picture cannot be looked at.
+    pub fn push(&mut self, picture: &ColourImage, time_ns: u64) -> Joints {
+        let seen = self.tracker.push(picture, time_ns);
+        let Ok(Seen::Somebody(landmarks)) = seen else {
+            if self.found && self.tracker.region().is_none() {
+                self.reset();
+            }
+            self.found = false;
+            return Joints::absent(time_ns);
+        };
+        self.found = true;
+        let size = [picture.width, picture.height];
+        self.stature.push(&landmarks, size, &self.options.mount);
+        self.placer.joints(&landmarks, size, self.stature.stature().0, time_ns)
+    }
+
+    /// How large whoever is seen is taken to be (m), and why.
+    pub fn stature(&self) -> (f32, StatureSource) {
+        self.stature.stature()
+    }
+
+    /// People in the last whole picture that was searched, beside the one who is followed.
+    pub fn others(&self) -> u8 {
+        self.tracker.counts.people.saturating_sub(1).min(u64::from(u8::MAX)) as u8
+    }
+
+    /// Somebody else may stand there.
+    fn reset(&mut self) {
+        self.stature.reset();
+        self.placer.reset();
+    }
+
+    fn set_sex(&mut self, sex: Sex) {
+        if self.options.sex != sex {
+            self.options.sex = sex;
+            self.placer = JointPlacer::new(sex, self.options.mount);
+        }
+    }
+
+    fn note(&self) -> String {
+        let (stature, source) = self.stature();
+        let cure = match source {
+            StatureSource::Given => "",
+            StatureSource::Floor => "; a tape measure knows it better",
+            StatureSource::Assumed => "; say it, or the camera's height",
+        };
+        format!("A picture has no scale: the stature is {stature:.2} m ({source}){cure}.")
+    }
+}
+
+/// Starts the thread of a webcam that is open. Gives what the sensor thread reads, and what others ask.
+///
+/// # Errors
+/// Where the system gives no thread.
+pub fn start<C>(colour: LiveColour, joints: WebcamJoints, clock: C) -> io::Result<(CameraFeed, CameraHandle)>
+where
+    C: Clock + Clone + Send + 'static,
+{
+    let handle = CameraHandle::new();
+    handle.follow(joints.options.sex);
+    let TripleBuffer { writer, reader } = TripleBuffer::new(&None);
+    let (shared, own) = (handle.clone(), clock.clone());
+    let thread = thread::Builder::new()
+        .name("toile-webcam".into())
+        .spawn(move || look_at_pictures(colour, joints, &own, &shared, writer))?;
+    let threads = CameraThreads::one(handle.clone(), thread);
+    Ok((CameraFeed::new(reader, threads, clock), handle))
+}
+
+/// What the webcam's thread runs.
+fn look_at_pictures<C: Clock>(
+    mut colour: LiveColour,
+    mut joints: WebcamJoints,
+    clock: &C,
+    handle: &CameraHandle,
+    mut out: Writer<Option<TrackedFrame>>,
+) -> CameraMeters {
+    let patience = Duration::from_nanos(PATIENCE_NS);
+    let mut meters = CameraMeters::default();
+    let mut noted = None;
+    while !handle.is_over() {
+        joints.set_sex(handle.sex());
+        let update = colour.poll(&|| clock.now_ns(), patience);
+        handle.publish(update.state, colour.counts());
+        if handle.takes_wipe() {
+            colour.wipe();
+        }
+        let (Some(taken_ns), Some(arrived_ns)) = (update.taken_ns, update.arrived_ns) else {
+            if update.is_closed {
+                thread::sleep(patience);
+            }
+            continue;
+        };
+        let had = joints.found;
+        let found = joints.push(colour.picture(), taken_ns);
+        handle.count_tracked(joints.found);
+        handle.set_colour(colour.picture());
+        if joints.found {
+            handle.gather_joints(&found);
+            let source = Some(joints.stature().1);
+            if noted != source {
+                handle.set_notes(&[joints.note()]);
+                noted = source;
+            }
+        }
+        let company = Company { others: joints.others(), nearer: false };
+        out.publish(Some(TrackedFrame { frame: None, joints: found, company, arrived_ns }));
+        let meter = if had && joints.found { &mut meters.followed } else { &mut meters.found };
+        meter.add(clock.now_ns().saturating_sub(arrived_ns));
+    }
+    meters
+}

@@ -1,0 +1,291 @@
+//! From landmarks to joints in our world: directions from the network, lengths from a body of the stature that is known.
+//!
+//! A network that saw a picture knows no size: people report legs 60 mm apart, and shoulders that are not theirs. So only the directions
+//! of limbs are taken; every limb has the length that it has in the mean body of that stature, whoever stands there. A limb can be turned
+//! the wrong way, and never be stretched.
+
+use glam::{Mat3, Quat, Vec2, Vec3};
+use toile_assets::body::shape::Shapes;
+use toile_assets::body::{En, Sex};
+use toile_assets::skeleton::{Joint, Skeleton};
+use toile_sensors::frame::{Joints, TrackedJoint};
+use toile_sensors::source::joint_map::{Format, JointMap};
+
+use crate::landmarks::{Landmarks, POINTS};
+use crate::plausible::{HIPS, SHOULDERS};
+use crate::scale::WebcamMount;
+
+/// Ears, left and right.
+const EARS: [usize; 2] = [7, 8];
+
+/// How sure landmarks have to be to say where somebody stands.
+const SURE: f32 = 0.5;
+
+/// Fewest landmarks that say it.
+const FEWEST: usize = 4;
+
+/// Distances of somebody from the camera (m).
+const DISTANCES: std::ops::RangeInclusive<f32> = 0.3..=12.0;
+
+/// Landmarks of an arm: shoulder, elbow, wrist; and of the hand, whose middle is taken: little finger, forefinger.
+const ARMS: [([usize; 3], [usize; 2]); 2] = [([11, 13, 15], [17, 19]), ([12, 14, 16], [18, 20])];
+
+/// Landmarks of a leg: hip, knee, ankle, tip of the foot.
+const LEGS: [[usize; 4]; 2] = [[23, 25, 27, 31], [24, 26, 28, 32]];
+
+/// Lengths of the limbs of one body (m).
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct LimbLengths {
+    hips: f32,
+    shoulders: f32,
+    trunk: f32,
+    head: f32,
+    arm: [f32; 3],
+    leg: [f32; 3],
+    /// Heights of ankle and toes above the floor, and of the hips.
+    ankle: f32,
+    toe: f32,
+    hip: f32,
+}
+
+impl LimbLengths {
+    fn of(skeleton: &Skeleton, scale: f32) -> Self {
+        use Joint::*;
+        let at = |joint: Joint| skeleton.at(joint) * scale;
+        let apart = |a: Joint, b: Joint| at(a).distance(at(b));
+        let (hips, shoulders) = ((at(LeftHip) + at(RightHip)) * 0.5, (at(LeftShoulder) + at(RightShoulder)) * 0.5);
+        Self {
+            hips: apart(LeftHip, RightHip),
+            shoulders: apart(LeftShoulder, RightShoulder),
+            trunk: hips.distance(shoulders),
+            head: shoulders.distance(at(Head)),
+            arm: [apart(LeftShoulder, LeftElbow), apart(LeftElbow, LeftWrist), apart(LeftWrist, LeftHand)],
+            leg: [apart(LeftHip, LeftKnee), apart(LeftKnee, LeftAnkle), apart(LeftAnkle, LeftToe)],
+            ankle: at(LeftAnkle).y,
+            toe: at(LeftToe).y,
+            hip: hips.y,
+        }
+    }
+}
+
+/// Puts landmarks into our world.
+#[derive(Debug)]
+pub struct JointPlacer {
+    mean: Skeleton,
+    mean_stature: f32,
+    map: JointMap,
+    mount: WebcamMount,
+    /// Distance at which whoever is followed was first seen (m): they begin at the middle of our world.
+    first: Option<f32>,
+}
+
+impl JointPlacer {
+    /// For bodies like the mean of a sex, and a camera that stands so.
+    pub fn new(sex: Sex, mount: WebcamMount) -> Self {
+        let shapes = Shapes::of(sex);
+        let mean_stature = shapes.read(shapes.mean()).readings.of(En::Stature);
+        let mean = shapes.skeleton(shapes.mean());
+        Self { mean, mean_stature, map: JointMap::of(Format::MediaPipe33), mount, first: None }
+    }
+
+    /// Somebody else may stand there.
+    pub fn reset(&mut self) {
+        self.first = None;
+    }
+
+    /// Joints of landmarks in a picture of this size (px), for somebody of this stature (m).
+    pub fn joints(&mut self, landmarks: &Landmarks, size: [u32; 2], stature: f32, time_ns: u64) -> Joints {
+        let lengths = LimbLengths::of(&self.mean, stature / self.mean_stature);
+        let level = self.level(landmarks, size);
+        let world = landmarks.points.map(|p| level * p.world);
+        let confidence = landmarks.points.map(|p| p.confidence);
+        let mut points = with_lengths(&world, &confidence, &lengths);
+        let camera = self.place(landmarks, size, &points, level);
+        let up = above_floor(&points, &lengths);
+        for point in &mut points {
+            let p = point.position;
+            point.position = Vec3::new(p.x + camera.x, up - p.y, camera.y - p.z);
+        }
+        self.map.joints(time_ns, &points)
+    }
+
+    /// From the network's axes to level ones. It gives a body as seen along the ray to its hips: a camera that looks down, or has somebody
+    /// beside the middle of its picture, sees them turned by as much.
+    fn level(&self, landmarks: &Landmarks, [w, h]: [u32; 2]) -> Mat3 {
+        let focal = self.mount.focal * w.max(h) as f32;
+        let hips = (landmarks.points[HIPS[0]].pixel + landmarks.points[HIPS[1]].pixel) * 0.5;
+        let ray = (hips - Vec2::new(w as f32, h as f32) * 0.5).extend(focal).normalize_or(Vec3::Z);
+        Mat3::from_rotation_x(-self.mount.down) * Mat3::from_quat(Quat::from_rotation_arc(Vec3::Z, ray))
+    }
+
+    /// Where the hips are: to the left of the camera's axis and towards it from where they were first (m).
+    fn place(&mut self, landmarks: &Landmarks, [w, h]: [u32; 2], points: &[TrackedJoint; POINTS], level: Mat3) -> Vec2 {
+        let focal = self.mount.focal * w.max(h) as f32;
+        let unlevel = level.transpose();
+        let seen = |k: &usize| landmarks.points[*k].confidence.min(points[*k].confidence) >= SURE;
+        let known = || (SHOULDERS[0]..POINTS).filter(seen);
+        let count = known().count();
+        let flat = |k: usize| (unlevel * points[k].position).truncate();
+        let mean = |of: &dyn Fn(usize) -> Vec2| known().map(of).sum::<Vec2>() / count.max(1) as f32;
+        let (pixel, metre) = (mean(&|k| landmarks.points[k].pixel), mean(&flat));
+        let (mut along, mut square) = (0.0, 0.0);
+        for k in known() {
+            let m = flat(k) - metre;
+            along += m.dot(landmarks.points[k].pixel - pixel);
+            square += m.length_squared();
+        }
+        let distance = focal * square / along;
+        if count < FEWEST || !DISTANCES.contains(&distance) {
+            return Vec2::ZERO;
+        }
+        let first = *self.first.get_or_insert(distance);
+        let across = (pixel.x - 0.5 * w as f32) * distance / focal - metre.x;
+        Vec2::new(across, first - distance)
+    }
+}
+
+/// Points with the lengths of a body, from the middle of the hips; camera axes: x right, y down, z away.
+fn with_lengths(world: &[Vec3; POINTS], confidence: &[f32; POINTS], lengths: &LimbLengths) -> [TrackedJoint; POINTS] {
+    let mut out = [TrackedJoint::default(); POINTS];
+    let middle = |[a, b]: [usize; 2]| (world[a] + world[b]) * 0.5;
+    let both = |[a, b]: [usize; 2]| confidence[a].min(confidence[b]);
+    let joint = |position: Vec3, confidence: f32| TrackedJoint { position, confidence };
+    // A direction of no length is none: what hangs from it is not seen.
+    let along = |from: TrackedJoint, towards: Vec3, length: f32, seen: f32| {
+        let direction = towards.normalize_or_zero();
+        let seen = if direction == Vec3::ZERO { 0.0 } else { seen.min(from.confidence) };
+        joint(from.position + direction * length, seen)
+    };
+    let pair = |out: &mut [TrackedJoint; POINTS], middle: Vec3, [a, b]: [usize; 2], apart: f32| {
+        let half = (world[a] - world[b]).normalize_or_zero() * (0.5 * apart);
+        out[a] = joint(middle + half, confidence[a]);
+        out[b] = joint(middle - half, confidence[b]);
+    };
+    pair(&mut out, Vec3::ZERO, HIPS, lengths.hips);
+    let root = joint(Vec3::ZERO, 1.0);
+    let chest = along(root, middle(SHOULDERS) - middle(HIPS), lengths.trunk, both(SHOULDERS));
+    pair(&mut out, chest.position, SHOULDERS, lengths.shoulders);
+    let head = along(chest, middle(EARS) - middle(SHOULDERS), lengths.head, both(EARS));
+    EARS.iter().for_each(|k| out[*k] = head);
+    for ([shoulder, elbow, wrist], hand) in ARMS {
+        out[elbow] = along(out[shoulder], world[elbow] - world[shoulder], lengths.arm[0], confidence[elbow]);
+        out[wrist] = along(out[elbow], world[wrist] - world[elbow], lengths.arm[1], confidence[wrist]);
+        let end = along(out[wrist], middle(hand) - world[wrist], lengths.arm[2], both(hand));
+        hand.iter().for_each(|k| out[*k] = end);
+    }
+    for [hip, knee, ankle, toe] in LEGS {
+        out[knee] = along(out[hip], world[knee] - world[hip], lengths.leg[0], confidence[knee]);
+        out[ankle] = along(out[knee], world[ankle] - world[knee], lengths.leg[1], confidence[ankle]);
+        out[toe] = along(out[ankle], world[toe] - world[ankle], lengths.leg[2], confidence[toe]);
+    }
+    out
+}
+
+/// Height of the middle of the hips (m): the lower foot stands on the floor.
+fn above_floor(points: &[TrackedJoint; POINTS], lengths: &LimbLengths) -> f32 {
+    let feet = LEGS.iter().flat_map(|[.., ankle, toe]| [(*ankle, lengths.ankle), (*toe, lengths.toe)]);
+    let lowest = feet.filter(|(k, _)| points[*k].confidence >= SURE).map(|(k, rest)| points[k].position.y + rest);
+    lowest.reduce(f32::max).unwrap_or(lengths.hip)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::landmarks::PoseLandmark;
+
+    /// Somebody of the network's own idea of size, upright before a level camera, seen from a distance.
+    fn somebody(scale: f32, distance: f32) -> Landmarks {
+        let shapes = Shapes::of(Sex::Female);
+        let skeleton = shapes.skeleton(shapes.mean());
+        let places = [
+            (7, Joint::Head),
+            (8, Joint::Head),
+            (11, Joint::LeftShoulder),
+            (12, Joint::RightShoulder),
+            (13, Joint::LeftElbow),
+            (14, Joint::RightElbow),
+            (15, Joint::LeftWrist),
+            (16, Joint::RightWrist),
+            (17, Joint::LeftHand),
+            (18, Joint::RightHand),
+            (19, Joint::LeftHand),
+            (20, Joint::RightHand),
+            (23, Joint::LeftHip),
+            (24, Joint::RightHip),
+            (25, Joint::LeftKnee),
+            (26, Joint::RightKnee),
+            (27, Joint::LeftAnkle),
+            (28, Joint::RightAnkle),
+            (31, Joint::LeftToe),
+            (32, Joint::RightToe),
+        ];
+        let hips = (skeleton.at(Joint::LeftHip) + skeleton.at(Joint::RightHip)) * 0.5;
+        let mut points = [PoseLandmark::default(); POINTS];
+        for (k, joint) in places {
+            let p = skeleton.at(joint) - hips;
+            let world = Vec3::new(p.x, -p.y, -p.z);
+            let pixel = Vec2::new(640.0, 360.0) + world.truncate() * (0.87 * 1280.0 / distance);
+            points[k] = PoseLandmark { pixel, world: world * scale, confidence: 0.9 };
+        }
+        Landmarks { presence: 1.0, points, next: Default::default() }
+    }
+
+    #[test]
+    fn the_same_body_comes_out_whatever_size_the_network_gives_it() {
+        let mut placer = JointPlacer::new(Sex::Female, WebcamMount::default());
+        let stature = placer.mean_stature;
+        let one = placer.joints(&somebody(1.0, 2.5), [1280, 720], stature, 7);
+        let other = placer.joints(&somebody(0.7, 2.5), [1280, 720], stature, 7);
+        for joint in Joint::ALL {
+            assert!(one.at(joint).position.distance(other.at(joint).position) < 1e-4, "{joint:?}");
+        }
+        let mean = placer.mean.clone();
+        for joint in [Joint::LeftShoulder, Joint::RightWrist, Joint::LeftHip, Joint::RightAnkle] {
+            let apart = one.at(joint).position.distance(mean.at(joint) - Vec3::Z * mean.at(Joint::LeftHip).z);
+            assert!(apart < 0.02, "{joint:?} is {apart} m from where it is at rest");
+        }
+        assert!(one.is_valid() && one.time_ns == 7);
+    }
+
+    #[test]
+    fn a_step_to_the_side_and_towards_the_camera_is_seen() {
+        let mut placer = JointPlacer::new(Sex::Female, WebcamMount::default());
+        let stature = placer.mean_stature;
+        placer.joints(&somebody(1.0, 3.0), [1280, 720], stature, 0);
+        let mut near = somebody(1.0, 2.5);
+        near.points.iter_mut().for_each(|p| p.pixel.x += 0.4 * 0.87 * 1280.0 / 2.5);
+        let joints = placer.joints(&near, [1280, 720], stature, 0);
+        let hip = joints.at(Joint::LeftHip).position;
+        let own = placer.mean.at(Joint::LeftHip);
+        assert!((hip.x - 0.4 - own.x).abs() < 0.01 && (hip.z - 0.5).abs() < 0.02, "{hip}");
+    }
+
+    #[test]
+    fn somebody_upright_is_upright_under_a_camera_that_looks_down() {
+        let down = 0.3;
+        let mut placer = JointPlacer::new(Sex::Female, WebcamMount { down, ..WebcamMount::default() });
+        let stature = placer.mean_stature;
+        let mut tilted = somebody(1.0, 2.5);
+        // What is above the hips comes nearer.
+        tilted.points.iter_mut().for_each(|p| p.world = Mat3::from_rotation_x(down) * p.world);
+        assert!(tilted.points[11].world.z < -0.1);
+        let joints = placer.joints(&tilted, [1280, 720], stature, 0);
+        let trunk = joints.at(Joint::LeftShoulder).position - joints.at(Joint::LeftHip).position;
+        let own = placer.mean.at(Joint::LeftShoulder) - placer.mean.at(Joint::LeftHip);
+        assert!(trunk.angle_between(own) < 0.02, "{trunk} instead of {own}");
+    }
+
+    #[test]
+    fn what_is_not_seen_is_absent_and_nothing_is_stretched() {
+        let mut placer = JointPlacer::new(Sex::Male, WebcamMount::default());
+        let mut hidden = somebody(1.0, 3.0);
+        hidden.points[25].confidence = 0.1;
+        hidden.points[14].world = hidden.points[12].world;
+        hidden.points[28].world = Vec3::splat(50.0);
+        let joints = placer.joints(&hidden, [1280, 720], 1.8, 0);
+        assert!(!joints.at(Joint::LeftKnee).is_believed() && !joints.at(Joint::LeftAnkle).is_believed());
+        assert!(!joints.at(Joint::RightElbow).is_believed());
+        let shin = joints.at(Joint::RightKnee).position.distance(joints.at(Joint::RightAnkle).position);
+        assert!((0.3..0.5).contains(&shin), "{shin}");
+    }
+}

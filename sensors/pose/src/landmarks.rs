@@ -1,0 +1,88 @@
+//! The body's landmarks within a region of a picture.
+
+use glam::{Vec2, Vec3};
+use toile_sensors::source::live::ColourImage;
+
+use crate::network::{Network, logistic};
+use crate::region::{Border, Region};
+use crate::tflite::NetworkFault;
+
+/// Landmarks of a body.
+pub const POINTS: usize = 33;
+
+/// Landmarks of the network, the last of which say where the body will be next, and of its body in metres.
+const ALL: usize = 39;
+
+/// Numbers of a landmark: place, visibility, presence.
+const NUMBERS: usize = 5;
+
+/// Side of the network's image (px).
+const SIDE: usize = 256;
+
+/// One landmark.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PoseLandmark {
+    /// Place in the picture (px).
+    pub pixel: Vec2,
+    /// Place from the middle of the hips (m, of a body of the network's own idea of size): x right, y down, z away from the camera.
+    pub world: Vec3,
+    /// How likely it is in view, not hidden, and within the picture: 0 to 1.
+    pub confidence: f32,
+}
+
+/// What the network says of a region.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Landmarks {
+    /// How likely somebody is there, 0 to 1.
+    pub presence: f32,
+    /// The landmarks, in the network's order.
+    pub points: [PoseLandmark; POINTS],
+    /// Middle of the hips and a point of the circle around the body (px): where to look next.
+    pub next: [Vec2; 2],
+}
+
+impl Landmarks {
+    /// Whether every number is finite.
+    pub fn is_finite(&self) -> bool {
+        let finite = |p: &PoseLandmark| p.pixel.is_finite() && p.world.is_finite() && p.confidence.is_finite();
+        self.presence.is_finite() && self.points.iter().all(finite) && self.next.iter().all(|p| p.is_finite())
+    }
+}
+
+/// Finds landmarks in regions.
+#[derive(Debug)]
+pub struct Landmarker(Network);
+
+impl Landmarker {
+    /// Of the file of one of the two networks. Called at load: it allocates.
+    ///
+    /// # Errors
+    /// A file of another network.
+    pub fn load(bytes: &[u8]) -> Result<Self, NetworkFault> {
+        let network = Network::load(bytes, &[&[1, ALL * NUMBERS], &[1, 1], &[1, ALL * 3]])?;
+        let shape = network.input_shape();
+        if [shape.height, shape.width, shape.channels] != [SIDE, SIDE, 3] {
+            return Err(NetworkFault::new(format!("it takes an image of {} x {} pixels", shape.width, shape.height)));
+        }
+        Ok(Self(network))
+    }
+
+    /// The landmarks in a region.
+    pub fn find(&mut self, picture: &ColourImage, region: &Region) -> Landmarks {
+        region.sample(picture, Border::Nearest, [1.0, 0.0], self.0.input(), SIDE);
+        self.0.run();
+        let (raw, world) = (self.0.output(0).as_chunks::<NUMBERS>().0, self.0.output(2).as_chunks::<3>().0);
+        let pixel = |k: usize| region.pixel(Vec2::new(raw[k][0], raw[k][1]) / SIDE as f32);
+        let size = Vec2::new(picture.width as f32, picture.height as f32);
+        let turn = region.turn();
+        let points = std::array::from_fn(|k| {
+            let pixel = pixel(k);
+            let [x, y, z] = world[k];
+            let within = pixel.cmpge(Vec2::ZERO).all() && pixel.cmple(size).all();
+            let [.., visibility, presence] = raw[k].map(logistic);
+            let confidence = if within { visibility.min(presence) } else { 0.0 };
+            PoseLandmark { pixel, world: (turn * Vec2::new(x, y)).extend(z), confidence }
+        });
+        Landmarks { presence: self.0.output(1)[0], points, next: [pixel(POINTS), pixel(POINTS + 1)] }
+    }
+}

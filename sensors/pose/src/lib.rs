@@ -1,0 +1,24 @@
+//! A person's joints in a plain colour picture: the pose network of MediaPipe (BlazePose) on the processor.
+//!
+//! Reads: colour pictures; the network's files, which are fetched and are no part of this program. Writes: landmarks and
+//! directions of the body's segments, never its scale.
+//! Budget: 30 ms a picture; nothing is allocated once the first one was seen.
+//! Thread: the camera's thread.
+
+// Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
+pub mod files;
+pub mod region;
+pub mod tflite;
+
+pub mod network;
+
+pub mod detector;
+pub mod landmarks;
+
+pub mod plausible;
+pub mod smoothing;
+
+pub mod scale;
+pub mod tracker;
+
+pub mod joints;

@@ -1,0 +1,44 @@
+//! Operators as they run, each by its kernel at a width of lanes.
+
+use toile_engine::lanes::Width;
+
+use super::conv::{self, PackedConv, Product};
+use super::kernels::{AddKernel, DepthwiseKernel, ResizeKernel};
+use super::op::Op;
+use super::reference;
+
+/// Runs an operator; a convolution with its packed weights and the memory that [`conv::scratch`] asks for.
+pub fn run(
+    width: Width,
+    op: &Op,
+    packed: Option<&PackedConv>,
+    inputs: &[&[f32]],
+    out: &mut [f32],
+    scratch: &mut [f32],
+) {
+    match (op, packed) {
+        (Op::Add(activation), _) => {
+            width.run(AddKernel { from: [inputs[0], inputs[1]], to: out, activation: *activation });
+        }
+        (Op::Conv { sliding, .. }, Some(packed)) => {
+            let (outs, activation) = (sliding.output.channels, sliding.activation);
+            if conv::is_direct(sliding) {
+                width.run(Product { packed, from: inputs[0], to: out, outs, activation });
+                return;
+            }
+            let scratch = &mut scratch[..conv::scratch(sliding)];
+            for (y, row) in out.chunks_exact_mut(sliding.output.width * outs).enumerate() {
+                conv::windows(sliding, y, inputs[0], scratch);
+                width.run(Product { packed, from: scratch, to: row, outs, activation });
+            }
+        }
+        (Op::Depthwise { sliding, weights, bias }, _) => {
+            width.run(DepthwiseKernel { sliding, weights, bias, from: inputs[0], to: out });
+        }
+        (Op::Resize(small, large), _) => {
+            width.run(ResizeKernel { shapes: [*small, *large], from: inputs[0], to: out });
+        }
+        // These copy, or are a handful of numbers: their twin is as fast as can be.
+        _ => reference::run(op, inputs, out),
+    }
+}

@@ -1,0 +1,178 @@
+//! Depthwise convolution and what moves or adds numbers, on lanes of channels.
+
+use toile_engine::lanes::{Kernel, Lanes, ReadColumn, WriteColumn};
+
+use super::op::Sliding;
+use super::reference;
+use super::shape::Shape;
+use crate::tflite::Activation;
+
+/// Pixels that a vector of weights serves at once.
+const PIXELS: usize = 4;
+
+/// Numbers after their activation; of a NaN it makes the lower bound, as its twin does.
+#[inline(always)]
+pub fn activated<L: Lanes>(x: L, activation: Activation) -> L {
+    match activation {
+        Activation::None => x,
+        Activation::Relu => x.max(L::splat(0.0)),
+        Activation::Relu6 => x.max(L::splat(0.0)).min(L::splat(6.0)),
+    }
+}
+
+/// Runs `each` with the first channel and their number, vector by vector.
+#[inline(always)]
+fn vectors<L: Lanes>(channels: usize, mut each: impl FnMut(usize, usize)) {
+    for c in (0..channels).step_by(L::N) {
+        each(c, L::N.min(channels - c));
+    }
+}
+
+#[inline(always)]
+fn load<L: Lanes>(from: ReadColumn<'_>, at: usize, n: usize) -> L {
+    if n == L::N { L::load(from, at) } else { L::load_part(from, at, n) }
+}
+
+#[inline(always)]
+fn store<L: Lanes>(value: L, to: WriteColumn<'_>, at: usize, n: usize) {
+    if n == L::N { value.store(to, at) } else { value.store_part(to, at, n) }
+}
+
+/// Convolution of each channel by itself.
+pub struct DepthwiseKernel<'a> {
+    /// The window.
+    pub sliding: &'a Sliding,
+    /// Weights `[height][width][channel]`.
+    pub weights: &'a [f32],
+    /// Bias `[channel]`.
+    pub bias: &'a [f32],
+    /// The image.
+    pub from: &'a [f32],
+    /// The result.
+    pub to: &'a mut [f32],
+}
+
+impl Kernel for DepthwiseKernel<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let (s, to) = (self.sliding, WriteColumn::new(self.to));
+        let [weights, bias, from] = [self.weights, self.bias, self.from].map(ReadColumn::new);
+        let channels = s.input.channels;
+        for y in 0..s.output.height {
+            let (first_row, rows) = s.within(0, y);
+            let mut x = 0;
+            while x < s.output.width {
+                let (first_column, columns) = s.within(1, x);
+                // Several pixels at once where the whole windows of all of them lie within the image.
+                let last = s.within(1, (x + PIXELS - 1).min(s.output.width - 1)).1;
+                let inside = x + PIXELS <= s.output.width && columns.len() == s.size[1] && last.len() == s.size[1];
+                let taps = Taps { s, rows: &rows, first_row, columns: &columns, first_column };
+                let at = (y * s.output.width + x) * channels;
+                vectors::<L>(channels, |c, n| {
+                    if inside {
+                        taps.sum::<L, PIXELS>([weights, bias, from], to, [at + c, c, n]);
+                    } else {
+                        taps.sum::<L, 1>([weights, bias, from], to, [at + c, c, n]);
+                    }
+                });
+                x += if inside { PIXELS } else { 1 };
+            }
+        }
+    }
+}
+
+/// The part of a window that lies within the image.
+struct Taps<'a> {
+    s: &'a Sliding,
+    rows: &'a std::ops::Range<usize>,
+    first_row: usize,
+    columns: &'a std::ops::Range<usize>,
+    first_column: usize,
+}
+
+impl Taps<'_> {
+    /// Sums of `P` neighbouring pixels for `n` channels from `c` on, written from `at` on.
+    #[inline(always)]
+    fn sum<L: Lanes, const P: usize>(
+        &self,
+        [weights, bias, from]: [ReadColumn<'_>; 3],
+        to: WriteColumn<'_>,
+        [at, c, n]: [usize; 3],
+    ) {
+        let (s, channels) = (self.s, self.s.input.channels);
+        let step = s.stride[1] * channels;
+        let mut sums = [load::<L>(bias, c, n); P];
+        for (row, iy) in self.rows.clone().enumerate() {
+            let tap = (self.first_row + row) * s.size[1] + self.first_column;
+            let begin = (iy * s.input.width + self.columns.start) * channels + c;
+            for column in 0..self.columns.len() {
+                let weight = load::<L>(weights, (tap + column) * channels + c, n);
+                for (p, sum) in sums.iter_mut().enumerate() {
+                    *sum = *sum + load::<L>(from, begin + column * channels + p * step, n) * weight;
+                }
+            }
+        }
+        for (p, sum) in sums.into_iter().enumerate() {
+            store(activated(sum, s.activation), to, at + p * channels, n);
+        }
+    }
+}
+
+/// Sum of two images.
+pub struct AddKernel<'a> {
+    /// Both.
+    pub from: [&'a [f32]; 2],
+    /// The result.
+    pub to: &'a mut [f32],
+    /// What happens to each sum.
+    pub activation: Activation,
+}
+
+impl Kernel for AddKernel<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let ([a, b], count) = (self.from.map(ReadColumn::new), self.to.len());
+        let to = WriteColumn::new(self.to);
+        vectors::<L>(count, |i, n| {
+            store(activated(load::<L>(a, i, n) + load::<L>(b, i, n), self.activation), to, i, n);
+        });
+    }
+}
+
+/// An image of another size, bilinear.
+pub struct ResizeKernel<'a> {
+    /// Sizes of both.
+    pub shapes: [Shape; 2],
+    /// The image.
+    pub from: &'a [f32],
+    /// The result.
+    pub to: &'a mut [f32],
+}
+
+impl Kernel for ResizeKernel<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let ([small, large], from, to) = (self.shapes, ReadColumn::new(self.from), WriteColumn::new(self.to));
+        let channels = small.channels;
+        for y in 0..large.height {
+            let (top, bottom, down) = reference::between(y, small.height, large.height);
+            for x in 0..large.width {
+                let (left, right, across) = reference::between(x, small.width, large.width);
+                let at = |row: usize, column: usize| (row * small.width + column) * channels;
+                let places = [at(top, left), at(bottom, left), at(top, right), at(bottom, right)];
+                let shares = reference::shares(down, across).map(L::splat);
+                let pixel = (y * large.width + x) * channels;
+                vectors::<L>(channels, |c, n| {
+                    let [a, b, d, e] = places.map(|place| load::<L>(from, place + c, n));
+                    store(a * shares[0] + b * shares[1] + d * shares[2] + e * shares[3], to, pixel + c, n);
+                });
+            }
+        }
+    }
+}
