@@ -73,7 +73,7 @@ fn what_a_camera_gives_is_shown() {
 #[test]
 fn a_camera_that_is_not_there_ends_with_the_code_of_a_device_and_a_bad_name_with_that_of_usage() {
     let scratch = Scratch::new("camera-missing");
-    let none = scratch.toile(&["live", "--camera", "webcam"]);
+    let none = scratch.toile(&["live", "--camera", "cctv"]);
     assert_eq!(none.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&none.stderr).contains("give one of kinect, openni"));
     let file = scratch.toile(&["live", "--camera", "recording:no-such-file.mcap"]);

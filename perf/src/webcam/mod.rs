@@ -30,6 +30,9 @@ use scene::{Moment, Performer};
 /// Pictures a second (Hz): every second one of a webcam's.
 const RATE_HZ: u64 = 15;
 
+/// Pictures a second of a film (Hz): a webcam's.
+const FILM_HZ: u64 = 30;
+
 /// What is performed: standing, arms lifted, walking on the spot, hips swung; and from then on a turn all around (s).
 const TURN_S: f32 = 7.0;
 const LENGTH_S: f32 = 9.4;
@@ -116,20 +119,30 @@ struct ModelRecord {
     stature_mm: Vec<f32>,
 }
 
-/// Shows so many people to the networks of a folder; `progress` is given each one's name, `picture` every picture of the first as a webcam
-/// sends it.
+/// Draws ten seconds of a woman who performs, at a webcam's 30 Hz: `picture` is given each one as a webcam sends it, in YUYV.
+///
+/// # Errors
+/// A body that cannot be made.
+pub fn film(picture: &mut dyn FnMut(&[u8])) -> Result<(), BodyError> {
+    let mut performer = Performer::new(&sizes()[1], 0)?;
+    let mut bytes = Vec::new();
+    for number in 0..(LENGTH_S * FILM_HZ as f32) as u64 {
+        let moment = performer.at(number as f32 / FILM_HZ as f32, number, FILM_HZ);
+        bytes.clear();
+        scene::yuyv(&moment.picture, &mut bytes);
+        picture(&bytes);
+    }
+    Ok(())
+}
+
+/// Shows so many people to the networks of a folder; `progress` is given each one's name.
 ///
 /// # Errors
 /// A body that cannot be made, a network that is not fetched.
-pub fn run(
-    folder: &Path,
-    count: usize,
-    progress: &mut dyn FnMut(&str),
-    picture: &mut dyn FnMut(&[u8]),
-) -> Result<WebcamTable, WebcamError> {
+pub fn run(folder: &Path, count: usize, progress: &mut dyn FnMut(&str)) -> Result<WebcamTable, WebcamError> {
     let mut angles: Angles = LIMBS.iter().map(|_| Default::default()).collect();
     let mut records: [ModelRecord; 2] = Default::default();
-    let (mut pictures, mut bytes) = (0, Vec::new());
+    let mut pictures = 0;
     // A woman and a man of the middle sizes first.
     let people = [1, 4, 2, 3, 0, 5].map(|i| sizes().swap_remove(i));
     let people = &people[..count.clamp(1, people.len())];
@@ -145,11 +158,6 @@ pub fn run(
         for number in 0..(LENGTH_S * RATE_HZ as f32) as u64 {
             let seconds = number as f32 / RATE_HZ as f32;
             let moment = performer.at(seconds, number, RATE_HZ);
-            if i == 0 {
-                bytes.clear();
-                scene::yuyv(&moment.picture, &mut bytes);
-                picture(&bytes);
-            }
             pictures += 1;
             let by_webcam = look(&mut webcams, &moment, &mut records);
             let fitted = depth.push(&moment.depth);

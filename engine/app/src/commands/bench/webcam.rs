@@ -1,6 +1,6 @@
 //! `toile bench webcam`: joints by a webcam, against the truth and the body fitted to depth.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::value_parser;
 use toile_perf::webcam::{self, WebcamError};
@@ -21,9 +21,9 @@ pub struct WebcamBenchArgs {
     /// People
     #[arg(long, value_name = "N", value_parser = value_parser!(u8).range(1..=6), default_value = "2")]
     people: u8,
-    /// Write the first one's pictures too, as a webcam sends them, for webcam-file:F; the name has to end in _640x480.yuyv
+    /// Draw ten seconds of somebody at 30 Hz instead, for webcam-file:F; the name has to end in _640x480.yuyv
     #[arg(long, value_name = "F")]
-    pictures: Option<PathBuf>,
+    film: Option<PathBuf>,
     /// Print one JSON object, and nothing else, on stdout
     #[arg(long)]
     json: bool,
@@ -35,23 +35,28 @@ pub struct WebcamBenchArgs {
 /// A network that is not fetched, a file that cannot be written, a closed stdout.
 pub fn run(args: &WebcamBenchArgs) -> Result<(), AppError> {
     let words = Words::new(args.json);
-    let out = args.pictures.as_deref().map(|file| OutputFile::prepare(file, Inputs::default())).transpose()?;
-    let mut bytes = Vec::new();
-    let mut keep = |picture: &[u8]| {
-        if out.is_some() {
-            bytes.extend_from_slice(picture);
-        }
-    };
-    let table = webcam::run(&files::folder(), args.people.into(), &mut |who| words.print_line(who), &mut keep);
+    if let Some(file) = &args.film {
+        return film(file);
+    }
+    let table = webcam::run(&files::folder(), args.people.into(), &mut |who| words.print_line(who));
     let table = table.map_err(|error| match error {
         WebcamError::Pose(error) => AppError::Device(error.to_string()),
         WebcamError::Body(error) => AppError::internal(error),
     })?;
-    if let Some(out) = out {
-        out.write(&bytes)?;
-    }
     if args.json {
         return terminal::print_json(&Document::new("bench-webcam", table));
     }
     terminal::print(&table.markdown())
+}
+
+/// Draws a film.
+fn film(file: &Path) -> Result<(), AppError> {
+    if !file.to_string_lossy().ends_with("_640x480.yuyv") {
+        return Err(AppError::Input(format!("{}: name it so that it ends in _640x480.yuyv", file.display())));
+    }
+    let out = OutputFile::prepare(file, Inputs::default())?;
+    let mut bytes = Vec::new();
+    webcam::film(&mut |picture| bytes.extend_from_slice(picture)).map_err(AppError::internal)?;
+    out.write(&bytes)?;
+    terminal::print(&format!("{}: {} pictures\n", file.display(), bytes.len() / (2 * 640 * 480)))
 }
