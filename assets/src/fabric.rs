@@ -151,7 +151,7 @@ pub enum FabricError {
 }
 
 /// The fabrics that are built in.
-const BUILT_IN: [&str; 14] = [
+const BUILT_IN: [&str; 18] = [
     include_str!("../data/fabrics/cotton-lawn.toml"),
     include_str!("../data/fabrics/cotton-jersey.toml"),
     include_str!("../data/fabrics/linen-twill.toml"),
@@ -166,6 +166,10 @@ const BUILT_IN: [&str; 14] = [
     include_str!("../data/fabrics/wool-houndstooth.toml"),
     include_str!("../data/fabrics/wool-herringbone.toml"),
     include_str!("../data/fabrics/wool-windowpane.toml"),
+    include_str!("../data/fabrics/scarf-wool.toml"),
+    include_str!("../data/fabrics/scarf-tartan.toml"),
+    include_str!("../data/fabrics/scarf-college.toml"),
+    include_str!("../data/fabrics/scarf-camel.toml"),
 ];
 
 /// The name in the text of a built-in fabric, whose file has it in a line of its own.

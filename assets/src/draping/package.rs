@@ -59,7 +59,8 @@ pub struct PatternPackage {
     pub spacing_mm: f64,
     /// A fabric that is built in.
     pub fabric: String,
-    /// The layer that it is worn in, where it says so: 1 underwear, 2 skirts and trousers, 3 tops and dresses, 4 jackets, 5 coats.
+    /// The layer that it is worn in, where it says so: 1 underwear, 2 skirts and trousers, 3 tops and dresses, 4 jackets, 5 coats,
+    /// 6 scarves.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layer: Option<u8>,
     /// For whom its drafts are, where that is known.
