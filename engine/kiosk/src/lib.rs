@@ -7,6 +7,8 @@
 
 // Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
 pub mod error;
+#[cfg(any(test, feature = "metrics", feature = "window"))]
+mod http;
 
 pub mod service;
 

@@ -167,6 +167,8 @@ entry-contradiction = { $measure }: { $given } passt nicht zu Ihren anderen Maß
 picture-heading = Ihr Bild
 picture-taking = Das Bild wird gemacht
 picture-scan = Scannen Sie den Code mit Ihrem Telefon. Er enthält das Bild selbst; nichts wird gesendet.
+picture-served = Scannen Sie den Code, während Ihr Telefon im Netz dieses Ladens ist. Dort wird das Bild unverschlüsselt bereitgestellt; es verlässt den Laden nicht.
+picture-served-in = Scannen Sie den Code, während Ihr Telefon im Netz { $network } ist. Dort wird das Bild unverschlüsselt bereitgestellt; es verlässt den Laden nicht.
 picture-until =
     { $minutes ->
         [0] Es wird in weniger als einer Minute gelöscht.
@@ -221,6 +223,8 @@ do-fit-map = Passform in Farben
 do-picture = Bild machen
 do-show-picture = Bild zeigen
 do-delete-picture = Jetzt löschen
+do-picture-link = Großes Bild
+do-picture-own = Nicht in diesem Netz
 do-settings = Sprache und Einstellungen
 do-large = Große Schrift
 do-wear = Größe { $size } tragen

@@ -168,6 +168,8 @@ entry-contradiction = { $measure }: { $given } does not go with your other measu
 picture-heading = Your picture
 picture-taking = Taking the picture
 picture-scan = Scan the code with your phone. It holds the picture itself; nothing is sent.
+picture-served = Scan the code while your phone is in this shop’s network. The picture is offered there without encryption; it does not leave the shop.
+picture-served-in = Scan the code while your phone is in the network { $network }. The picture is offered there without encryption; it does not leave the shop.
 picture-until =
     { $minutes ->
         [0] It is deleted in less than a minute.
@@ -222,6 +224,8 @@ do-fit-map = Fit map
 do-picture = Take a picture
 do-show-picture = Show the picture
 do-delete-picture = Delete now
+do-picture-link = Large picture
+do-picture-own = Not in this network
 do-settings = Language and settings
 do-large = Large type
 do-wear = Wear size { $size }

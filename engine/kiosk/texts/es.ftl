@@ -167,6 +167,8 @@ entry-contradiction = { $measure }: { $given } no concuerda con sus otras medida
 picture-heading = Su imagen
 picture-taking = Haciendo la imagen
 picture-scan = Escanee el código con su teléfono. Contiene la propia imagen; no se envía nada.
+picture-served = Escanee el código con un teléfono conectado a la red de esta tienda. La imagen se ofrece allí sin cifrar; no sale de la tienda.
+picture-served-in = Escanee el código con un teléfono conectado a la red { $network }. La imagen se ofrece allí sin cifrar; no sale de la tienda.
 picture-until =
     { $minutes ->
         [0] Se borra en menos de un minuto.
@@ -221,6 +223,8 @@ do-fit-map = Mapa de ajuste
 do-picture = Hacer una imagen
 do-show-picture = Mostrar la imagen
 do-delete-picture = Borrar ahora
+do-picture-link = Imagen grande
+do-picture-own = No en esta red
 do-settings = Idioma y ajustes
 do-large = Letra grande
 do-wear = Llevar la talla { $size }

@@ -167,6 +167,8 @@ entry-contradiction = { $measure } : { $given } ne va pas avec vos autres mesure
 picture-heading = Votre image
 picture-taking = L’image est en cours
 picture-scan = Scannez le code avec votre téléphone. Il contient l’image elle-même ; rien n’est envoyé.
+picture-served = Scannez le code avec un téléphone connecté au réseau de ce magasin. L’image y est servie sans chiffrement ; elle ne quitte pas le magasin.
+picture-served-in = Scannez le code avec un téléphone connecté au réseau { $network }. L’image y est servie sans chiffrement ; elle ne quitte pas le magasin.
 picture-until =
     { $minutes ->
         [0] Elle sera effacée dans moins d’une minute.
@@ -221,6 +223,8 @@ do-fit-map = Carte d’ajustement
 do-picture = Prendre une image
 do-show-picture = Montrer l’image
 do-delete-picture = Effacer maintenant
+do-picture-link = Grande image
+do-picture-own = Pas dans ce réseau
 do-settings = Langue et réglages
 do-large = Grands caractères
 do-wear = Porter la taille { $size }

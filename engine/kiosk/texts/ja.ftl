@@ -167,6 +167,8 @@ entry-contradiction = { $measure }：{ $given }は、ほかの寸法と合いま
 picture-heading = お客様の画像
 picture-taking = 画像を作っています
 picture-scan = スマートフォンでコードを読み取ってください。画像はコードの中にあり、何も送信しません。
+picture-served = スマートフォンがここのネットワークにあるとき、コードを読み取ってください。画像はここだけで送信し、ほかには送信しません。
+picture-served-in = スマートフォンがネットワーク { $network } にあるとき、コードを読み取ってください。画像はここだけで送信し、ほかには送信しません。
 picture-until =
     { $minutes ->
         [0] 1分以内に削除されます。
@@ -217,6 +219,8 @@ do-fit-map = フィットマップ
 do-picture = 画像を作る
 do-show-picture = 画像を見る
 do-delete-picture = 今すぐ削除
+do-picture-link = 大きい画像
+do-picture-own = 小さい画像
 do-settings = 言語と設定
 do-large = 大きな文字
 do-wear = サイズ{ $size }を着る

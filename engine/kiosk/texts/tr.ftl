@@ -167,6 +167,8 @@ entry-contradiction = { $measure }: { $given } öbür ölçülerinizle uyuşmuyo
 picture-heading = Resminiz
 picture-taking = Resim çekiliyor
 picture-scan = Kodu telefonunuzla okutun. Resim kodun içindedir; hiçbir şey gönderilmez.
+picture-served = Telefonunuz bu mağazanın ağındayken kodu okutun. Resim orada şifresiz sunulur; mağazadan çıkmaz.
+picture-served-in = Telefonunuz { $network } ağındayken kodu okutun. Resim orada şifresiz sunulur; mağazadan çıkmaz.
 picture-until =
     { $minutes ->
         [0] Bir dakikadan kısa sürede silinir.
@@ -221,6 +223,8 @@ do-fit-map = Uyum haritası
 do-picture = Resim çek
 do-show-picture = Resmi göster
 do-delete-picture = Şimdi sil
+do-picture-link = Büyük resim
+do-picture-own = Bu ağda değil
 do-settings = Dil ve ayarlar
 do-large = Büyük yazı
 do-wear = { $size } bedeni giy

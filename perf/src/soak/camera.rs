@@ -9,13 +9,14 @@ use toile_engine::frame_loop::sensor_thread::{FrameSource, SourceFrame};
 use toile_sensors::clock::SECOND_NS;
 use toile_sensors::frame::{Joints, TrackedJoint};
 
-use super::scenario::{CAMERA_HZ, Fault, FaultKind, Scenario};
+use super::fault_kind::FaultKind;
+use super::scenario::{CAMERA_HZ, Fault, Scenario};
 
 /// From a frame's stamp to its arrival (ns).
 const DELAY_NS: u64 = 20_000_000;
 
 /// Noise of a joint (m).
-const NOISE_M: f32 = 0.002;
+pub(super) const NOISE_M: f32 = 0.002;
 
 /// Frames that wait in the camera while nobody reads; older ones are lost.
 const WAITING: u64 = 4;

@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 use toile_engine::frame::FrameError;
+use toile_sensors::source::live::CameraError;
 
 use super::options::LEAST_APART_S;
 
@@ -27,6 +28,9 @@ pub enum SoakError {
     /// A frame that cannot be set up.
     #[error(transparent)]
     Frame(#[from] FrameError),
+    /// A depth camera that cannot be opened.
+    #[error(transparent)]
+    Camera(#[from] CameraError),
     /// The system gave no thread, or no file.
     #[error("the run could not be started ({0}); raise the limits of threads and files")]
     Start(#[from] std::io::Error),

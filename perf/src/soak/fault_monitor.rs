@@ -10,10 +10,14 @@ use toile_engine::frame_loop::queue::{Capacity, Receiver};
 use toile_engine::meter::PERIOD_NS;
 use toile_fitting::heap::HeapProbe;
 use toile_sensors::clock::SECOND_NS;
+use toile_sensors::source::live::CameraState;
+use toile_sensors::source::live::fault_injection::CameraFault;
 
+use super::depth_camera::CameraWatch;
+use super::fault_kind::{FaultKind, RecoverySign};
 use super::memory::MemorySample;
 use super::observed_loops::{Observation, ObservedStep, RenderHealth, RunContext};
-use super::scenario::{Fault, FaultKind, RecoverySign};
+use super::scenario::Fault;
 
 /// A step follows the shopper whose joints are this far from theirs on average (m): twice what they are at worst while nothing is
 /// wrong, which the report says.
@@ -80,6 +84,23 @@ pub struct FaultOutcome {
     pub kind: FaultKind,
     /// From its end to what shows that it is over (ns); none where nothing did.
     pub recovered_ns: Option<u64>,
+    /// From its begin until the camera was known to see nothing (ns); none where it never was, and of what blinds no camera.
+    pub noticed_ns: Option<u64>,
+}
+
+/// A fault that is not over.
+#[derive(Debug, Clone, Copy)]
+struct OpenFault {
+    fault: Fault,
+    /// Whether the broken files were refused.
+    refused: bool,
+    noticed_ns: Option<u64>,
+}
+
+impl OpenFault {
+    fn ended(&self, recovered_ns: Option<u64>) -> FaultOutcome {
+        FaultOutcome { kind: self.fault.kind, recovered_ns, noticed_ns: self.noticed_ns }
+    }
 }
 
 /// What steps came to.
@@ -101,7 +122,7 @@ pub struct FaultMonitor<C> {
     heap: HeapProbe,
     /// The next fault of the scenario, and those that are not over.
     next: usize,
-    open: Vec<(Fault, bool)>,
+    open: Vec<OpenFault>,
     /// What became of those that are.
     pub outcomes: Vec<FaultOutcome>,
     /// What steps came to.
@@ -117,6 +138,8 @@ pub struct FaultMonitor<C> {
     pub health: Option<Arc<RenderHealth>>,
     /// How often it was restarted.
     pub revived: u64,
+    /// Tells how the depth camera stands, where there is one.
+    pub camera: Option<CameraWatch>,
 }
 
 /// Time after a fault, and after somebody came, in which joints may be off (ns).
@@ -146,6 +169,7 @@ impl<C: JumpableClock> FaultMonitor<C> {
             calm_ns: CALM_NS,
             health: None,
             revived: 0,
+            camera: None,
             context,
         }
     }
@@ -173,7 +197,7 @@ impl<C: JumpableClock> FaultMonitor<C> {
                 }
                 _ => {}
             }
-            self.open.push((fault, false));
+            self.open.push(OpenFault { fault, refused: false, noticed_ns: None });
         }
         self.pressure
             .take_if(|(until, _)| *until <= self.context.clock.now_ns().saturating_sub(self.context.origin_ns));
@@ -190,13 +214,26 @@ impl<C: JumpableClock> FaultMonitor<C> {
             }
         }
         let (now, outcomes) = (self.now(), &mut self.outcomes);
-        self.open.retain(|(fault, _)| {
-            let waits = now < fault.until_ns + GIVEN_UP_NS;
+        self.open.retain(|open| {
+            let waits = now < open.fault.until_ns + GIVEN_UP_NS;
             if !waits {
-                outcomes.push(FaultOutcome { kind: fault.kind, recovered_ns: None });
+                outcomes.push(open.ended(None));
             }
             waits
         });
+    }
+
+    /// Looks at how the depth camera stands: one that is known to see nothing is a fault that was noticed.
+    fn watch_camera(&mut self) {
+        let Some(camera) = &self.camera else { return };
+        let (now, state) = (self.now(), camera());
+        if matches!(state, CameraState::Seeing | CameraState::Starting) {
+            return;
+        }
+        let blind = |fault: &Fault| fault.kind.camera_fault().is_some_and(CameraFault::is_blind);
+        for open in self.open.iter_mut().filter(|open| blind(&open.fault)) {
+            open.noticed_ns.get_or_insert(now.saturating_sub(open.fault.from_ns));
+        }
     }
 
     /// Whether nothing was wrong at a step and long before it, and nobody had just come.
@@ -213,11 +250,11 @@ impl<C: JumpableClock> FaultMonitor<C> {
     /// Closes the faults that an observation shows to be over.
     fn recover(&mut self, observation: &Observation) {
         let (origin, outcomes) = (self.context.origin_ns, &mut self.outcomes);
-        self.open.retain_mut(|(fault, refused)| {
-            let until = origin + fault.until_ns;
-            let over = over(fault.kind.recovered_by(), until, refused, observation);
+        self.open.retain_mut(|open| {
+            let until = origin + open.fault.until_ns;
+            let over = over(open.fault.kind.recovered_by(), until, &mut open.refused, observation);
             if let Some(at) = over {
-                outcomes.push(FaultOutcome { kind: fault.kind, recovered_ns: Some(at.saturating_sub(until)) });
+                outcomes.push(open.ended(Some(at.saturating_sub(until))));
             }
             over.is_none()
         });
@@ -242,8 +279,8 @@ impl<C: JumpableClock> FaultMonitor<C> {
     pub fn close(&mut self) {
         self.look();
         let now = self.now();
-        let late = self.open.drain(..).filter(|(fault, _)| fault.until_ns + SECOND_NS <= now);
-        self.outcomes.extend(late.map(|(fault, _)| FaultOutcome { kind: fault.kind, recovered_ns: None }));
+        let late = self.open.drain(..).filter(|open| open.fault.until_ns + SECOND_NS <= now);
+        self.outcomes.extend(late.map(|open| open.ended(None)));
     }
 
     /// How full the queues of observations were.
@@ -295,6 +332,7 @@ impl StepTotals {
 impl<C: JumpableClock> ThreadLoop for FaultMonitor<C> {
     fn run_due(&mut self) -> Option<u64> {
         self.begin();
+        self.watch_camera();
         self.look();
         self.revive();
         self.sample();

@@ -5,10 +5,12 @@
 //! Thread: the caller's, all loops one after the other against a simulated clock; or the loop's own threads.
 //!
 //! Scenes are made outside of the physics' turn and handed over whole. What a fault does and when it counts as recovered
-//! stands with [`scenario::FaultKind`].
+//! stands with [`fault_kind::FaultKind`].
 
 mod camera;
+mod depth_camera;
 mod error;
+pub mod fault_kind;
 mod fault_monitor;
 mod html;
 mod memory;
@@ -24,7 +26,7 @@ mod scene_maker;
 pub use error::SoakError;
 pub use html::page;
 pub use memory::MemorySample;
-pub use options::{LEAST_APART_S, SceneWeight, SoakOptions, SoakPlan};
+pub use options::{LEAST_APART_S, SceneWeight, SoakCamera, SoakOptions, SoakPlan};
 pub use report::{FaultFigures, FaultKindFigures, MemoryFigures, RecoveryTicks, Soak, SoakCheck};
 pub use run::{SoakRun, SoakTools, run};
 pub use scene_maker::SceneMaker;

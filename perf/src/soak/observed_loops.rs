@@ -18,7 +18,8 @@ use toile_engine::meter::PERIOD_NS;
 use toile_fitting::live::assembly::{PhysicsLoop, RenderLoop};
 use toile_fitting::live::running::Restart;
 
-use super::scenario::{FaultKind, Scenario};
+use super::fault_kind::FaultKind;
+use super::scenario::Scenario;
 
 /// Allocations of the calling thread so far.
 pub type Allocations = fn() -> u64;

@@ -13,6 +13,9 @@ pub struct SoakPlan {
     pub faults: usize,
     /// How heavy the scenes are.
     pub scene: SceneWeight,
+    /// What sees the shoppers.
+    #[serde(default)]
+    pub camera: SoakCamera,
 }
 
 /// How it is run.
@@ -37,6 +40,20 @@ toile_assets::named! {
         Light = "light",
         /// The wardrobe as shoppers wear it.
         Full = "full",
+    }
+}
+
+toile_assets::named! {
+    /// What sees the shoppers, and so what can be wrong with it.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum SoakCamera {
+        /// A sensor that hands on joints.
+        #[default]
+        Joints = "joints",
+        /// A depth camera with all that stands between it and the joints but the fit, which would take hours: the joints are the camera's
+        /// own. On the system's clock the tracker's thread runs beside the others.
+        Depth = "depth",
     }
 }
 

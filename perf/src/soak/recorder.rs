@@ -10,8 +10,8 @@ use toile_engine::frame_loop::ThreadLoop;
 use toile_engine::frame_loop::flight_recorder::FlightRecorder;
 use toile_engine::frame_loop::recording::{self, Entry};
 
+use super::fault_kind::FaultKind;
 use super::observed_loops::{Observation, ObservedLoop, RunContext};
-use super::scenario::FaultKind;
 
 /// Time between two looks at the queue (ns).
 const LOOK_NS: u64 = 20_000_000;

@@ -6,15 +6,19 @@ use std::collections::BTreeSet;
 use serde::Serialize;
 use toile_engine::meter::PERIOD_NS;
 use toile_fitting::live::report::QueueUse;
+use toile_sensors::source::live::fault_injection::CameraFault;
 
+use super::fault_kind::FaultKind;
 use super::fault_monitor::FaultOutcome;
 use super::memory::{MemorySample, growth};
-use super::options::{SceneWeight, SoakOptions};
+use super::options::{SceneWeight, SoakCamera, SoakOptions};
 use super::run::SoakRun;
-use super::scenario::FaultKind;
 
 /// Longest that the pipeline may take to recover (ticks): 1 s.
 const PIPELINE_TICKS: f64 = 120.0;
+
+/// Longest until a camera that sees nothing is known to (ms).
+const NOTICED_MS: f64 = 200.0;
 
 /// Longest that the solver may take to recover (ticks).
 const SOLVER_TICKS: f64 = 2.0;
@@ -63,6 +67,10 @@ pub struct FaultKindFigures {
     pub mean_ms: f64,
     /// The longest such time (ms).
     pub max_ms: f64,
+    /// The longest from the begin of one until the camera was known to see nothing (ms); none of what blinds no camera.
+    pub noticed_max_ms: Option<f64>,
+    /// How many of those that blind the camera were never noticed.
+    pub unnoticed: u64,
 }
 
 /// The faults of the run, in all and by kind.
@@ -111,6 +119,8 @@ pub struct Soak {
     pub seed: u64,
     /// `light` or `full`.
     pub scene: SceneWeight,
+    /// `joints` or `depth`: what saw the shoppers.
+    pub camera: SoakCamera,
     /// On threads and the system's clock.
     pub real_time: bool,
     /// Workers of a step.
@@ -175,6 +185,7 @@ impl Soak {
         let mut soak = Self {
             seed: options.plan.seed,
             scene: options.plan.scene,
+            camera: options.plan.camera,
             real_time: options.real_time,
             workers: options.workers,
             uptime_hours: options.uptime_hours,
@@ -222,24 +233,30 @@ fn sizes(ran: &SoakRun) -> [usize; 2] {
 }
 
 fn faults(outcomes: &[FaultOutcome]) -> FaultFigures {
-    let mut by_kind: BTreeMap<FaultKind, Vec<Option<u64>>> = BTreeMap::new();
-    outcomes.iter().for_each(|o| by_kind.entry(o.kind).or_default().push(o.recovered_ns));
-    let kinds: Vec<FaultKindFigures> = by_kind
-        .into_iter()
-        .map(|(kind, all)| {
-            let times: Vec<f64> = all.iter().flatten().map(|ns| *ns as f64 * 1e-6).collect();
-            FaultKindFigures {
-                name: kind.name(),
-                recovered_when: kind.recovered_by().words(),
-                injected: all.len() as u64,
-                recovered: times.len() as u64,
-                mean_ms: times.iter().sum::<f64>() / times.len().max(1) as f64,
-                max_ms: times.iter().copied().fold(0.0, f64::max),
-            }
-        })
-        .collect();
+    let mut by_kind: BTreeMap<FaultKind, Vec<&FaultOutcome>> = BTreeMap::new();
+    outcomes.iter().for_each(|o| by_kind.entry(o.kind).or_default().push(o));
+    let kinds: Vec<FaultKindFigures> = by_kind.into_iter().map(|(kind, all)| kind_figures(kind, &all)).collect();
     let sum = |of: fn(&FaultKindFigures) -> u64| kinds.iter().map(of).sum();
     FaultFigures { injected: sum(|k| k.injected), recovered: sum(|k| k.recovered), kinds }
+}
+
+fn kind_figures(kind: FaultKind, all: &[&FaultOutcome]) -> FaultKindFigures {
+    let ms = |of: fn(&FaultOutcome) -> Option<u64>| -> Vec<f64> {
+        all.iter().filter_map(|o| of(o)).map(|ns| ns as f64 * 1e-6).collect()
+    };
+    let longest = |times: &[f64]| times.iter().copied().fold(0.0, f64::max);
+    let (recovered, noticed) = (ms(|o| o.recovered_ns), ms(|o| o.noticed_ns));
+    let is_blind = kind.camera_fault().is_some_and(CameraFault::is_blind);
+    FaultKindFigures {
+        name: kind.name(),
+        recovered_when: kind.recovered_by().words(),
+        injected: all.len() as u64,
+        recovered: recovered.len() as u64,
+        mean_ms: recovered.iter().sum::<f64>() / recovered.len().max(1) as f64,
+        max_ms: longest(&recovered),
+        noticed_max_ms: is_blind.then(|| longest(&noticed)),
+        unnoticed: if is_blind { (all.len() - noticed.len()) as u64 } else { 0 },
+    }
 }
 
 fn memory(samples: &[MemorySample], hours: f64, real_time: bool) -> MemoryFigures {
@@ -274,8 +291,11 @@ fn checks(soak: &Soak, accepted: u64) -> Vec<SoakCheck> {
     let judged = |growth: Option<f64>| growth.map(|g| g * behind).filter(|_| behind >= LEAST_JUDGED_H);
     let [heap, resident] = [memory.heap_growth_kib_h, memory.rss_growth_kib_h].map(judged);
     let differs = soak.second_state_hash.as_ref().map(|second| f64::from(u8::from(*second != soak.state_hash)));
+    let unnoticed: u64 = faults.kinds.iter().map(|k| k.unnoticed).sum();
+    let noticed = faults.kinds.iter().filter_map(|k| k.noticed_max_ms).reduce(f64::max);
+    let has_camera = soak.camera == SoakCamera::Depth;
     let pipeline = (faults.injected > 0).then_some(soak.recovery_ticks.max as f64);
-    vec![
+    let mut checks = vec![
         SoakCheck::new("values published that are not finite", 0.0, Some(soak.nonfinite as f64)),
         SoakCheck::new("allocations in the loop", 0.0, soak.allocations.map(|n| n as f64)),
         SoakCheck::new("memory handed out, growth behind the warm-up (KiB)", most, heap),
@@ -288,5 +308,11 @@ fn checks(soak: &Soak, accepted: u64) -> Vec<SoakCheck> {
         SoakCheck::new("broken garments that were accepted", 0.0, Some(accepted as f64)),
         SoakCheck::new("entries lost by full queues", 0.0, Some(soak.capacities.iter().map(|c| c.lost as f64).sum())),
         SoakCheck::new("states of a second run that differ", 0.0, differs),
-    ]
+    ];
+    if has_camera {
+        let missed = noticed.map(|_| unnoticed as f64);
+        checks.push(SoakCheck::new("times that a blind camera was not noticed", 0.0, missed));
+        checks.push(SoakCheck::new("longest until a blind camera was noticed (ms)", NOTICED_MS, noticed));
+    }
+    checks
 }

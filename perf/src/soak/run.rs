@@ -12,7 +12,7 @@ use toile_engine::frame_loop::flight_recorder::FlightRecorder;
 use toile_engine::frame_loop::physics_thread::FrameScene;
 use toile_engine::frame_loop::queue::{Capacity, bounded};
 use toile_engine::frame_loop::recording::{ENTRIES, ENTRIES_NAME, Entry};
-use toile_engine::frame_loop::simulate::simulate;
+use toile_engine::frame_loop::simulate::{MAX_SIMULATED, simulate};
 use toile_engine::frame_loop::thread_roles::Placement;
 use toile_engine::frame_loop::threads::{self, Stop};
 use toile_engine::meter::PERIOD_NS;
@@ -23,15 +23,17 @@ use toile_fitting::live::scene_changer::DressedScene;
 use toile_sensors::clock::SECOND_NS;
 
 use super::camera::Camera;
+use super::depth_camera::{self, CameraLoop, SoakSource};
 use super::error::SoakError;
+use super::fault_kind::FaultKind;
 use super::fault_monitor::{FaultMonitor, JumpClock, JumpableClock};
 use super::observed_loops::{
     Allocations, CheckingRenderer, OBSERVATIONS, OBSERVATIONS_NAME, Observation, ObservedPhysics, ObservedRender,
     RestartableRender, RunContext, ScriptedLoop,
 };
-use super::options::SoakOptions;
+use super::options::{SoakCamera, SoakOptions};
 use super::recorder::RecorderLoop;
-use super::scenario::{FaultKind, Scenario};
+use super::scenario::Scenario;
 use super::scene_loop::SceneLoop;
 use super::scene_maker::SceneMaker;
 
@@ -107,7 +109,9 @@ pub(super) struct MonitorFindings {
 
 /// The loops, before they run.
 struct SoakLoops<C: Clock> {
-    sensor: ScriptedLoop<SensorLoop<Camera<C>, C>, C>,
+    /// The depth camera on the simulated clock, where there is one.
+    camera: Option<CameraLoop<C>>,
+    sensor: ScriptedLoop<SensorLoop<SoakSource<C>, C>, C>,
     physics: ScriptedLoop<ObservedPhysics<C>, C>,
     render: ScriptedLoop<ObservedRender<C>, C>,
     recorder: ScriptedLoop<RecorderLoop<C>, C>,
@@ -135,7 +139,7 @@ pub fn run(options: &SoakOptions, tools: &SoakTools<'_>) -> Result<SoakRun, Soak
     ran.map(|ran| SoakRun { wall_s: begun.elapsed().as_secs_f64(), ..ran })
 }
 
-impl<C: JumpableClock + Clone + Send> SoakLoops<C> {
+impl<C: JumpableClock + Clone + Send + Sync + 'static> SoakLoops<C> {
     fn new(
         options: &SoakOptions,
         scenario: Arc<Scenario>,
@@ -157,7 +161,19 @@ impl<C: JumpableClock + Clone + Send> SoakLoops<C> {
         let (recording, entries) = bounded(ENTRIES_NAME, ENTRIES);
         let scene = FrameScene::new(frame);
         let first = DressedScene { scene, reader, outfit: (), still: None, note: None, number: None };
-        let source = Camera::new(scenario.clone(), clock.clone(), origin_ns);
+        let (source, camera, watch) = match (options.plan.camera, options.real_time) {
+            (SoakCamera::Joints, _) => {
+                (SoakSource::Joints(Camera::new(scenario.clone(), clock.clone(), origin_ns)), None, None)
+            }
+            (SoakCamera::Depth, false) => {
+                let (camera, source, watch) = depth_camera::simulated(&scenario, clock, origin_ns)?;
+                (source, Some(camera), Some(watch))
+            }
+            (SoakCamera::Depth, true) => {
+                let (source, watch) = depth_camera::live(&scenario, clock, origin_ns)?;
+                (source, None, Some(watch))
+            }
+        };
         let renderer = CheckingRenderer::default();
         let parts = LoopParts { first, renderer, source, account: NoCounters, recording: Some(recording) };
         let assembly = assemble(parts, clock, LoopOptions { begin_ns: origin_ns, ..LoopOptions::default() });
@@ -185,8 +201,9 @@ impl<C: JumpableClock + Clone + Send> SoakLoops<C> {
         let scenes = SceneLoop::new(context.clone(), scene_maker, handover);
         let scenes = ScriptedLoop::new(scenes, FaultKind::SceneStall, &context, queue());
         let every = SAMPLE_NS[usize::from(options.real_time)];
-        let monitor = FaultMonitor::new(context, observations, tools.heap, every);
-        Ok(Self { sensor, physics, render, recorder, scenes, monitor, queues, flight_recorder, worker })
+        let mut monitor = FaultMonitor::new(context, observations, tools.heap, every);
+        monitor.camera = watch;
+        Ok(Self { camera, sensor, physics, render, recorder, scenes, monitor, queues, flight_recorder, worker })
     }
 
     /// What they came to, once they have ended.
@@ -233,6 +250,7 @@ impl<C: JumpableClock + Clone + Send> SoakLoops<C> {
 /// One after the other.
 fn simulated(loops: SoakLoops<SimClock>, clock: &SimClock, options: &SoakOptions, tools: &SoakTools<'_>) -> SoakRun {
     let SoakLoops {
+        mut camera,
         mut sensor,
         mut physics,
         render,
@@ -250,13 +268,17 @@ fn simulated(loops: SoakLoops<SimClock>, clock: &SimClock, options: &SoakOptions
     while until < end {
         until = end.min(until + SLICE_NS);
         let mut emptied = QueueDrain(&mut queues, clock.clone());
-        let all: &mut [&mut dyn ThreadLoop] =
-            &mut [&mut sensor, &mut physics, &mut restartable, &mut recorder, &mut scenes, &mut monitor, &mut emptied];
-        simulate(clock, all, until);
+        let mut all: Vec<&mut dyn ThreadLoop> = Vec::with_capacity(MAX_SIMULATED);
+        all.extend(camera.as_mut().map(|camera| camera as &mut dyn ThreadLoop));
+        let others: [&mut dyn ThreadLoop; 7] =
+            [&mut sensor, &mut physics, &mut restartable, &mut recorder, &mut scenes, &mut monitor, &mut emptied];
+        all.extend(others);
+        simulate(clock, &mut all, until);
         (tools.progress)((until - monitor.context().origin_ns) / SECOND_NS);
     }
     let Some(render) = restartable.render else { unreachable!("it is taken only within a turn") };
-    SoakLoops { sensor, physics, render, recorder, scenes, monitor, queues, flight_recorder, worker }.ended(Vec::new())
+    SoakLoops { camera, sensor, physics, render, recorder, scenes, monitor, queues, flight_recorder, worker }
+        .ended(Vec::new())
 }
 
 /// Empties the queues, whose readers in a kiosk do not run here.
@@ -294,8 +316,18 @@ fn beside<T: ThreadLoop + Send + 'static>(
 
 /// Each on its thread; the fault monitor on this one.
 fn real(loops: SoakLoops<JumpClock>, options: &SoakOptions, tools: &SoakTools<'_>) -> Result<SoakRun, SoakError> {
-    let SoakLoops { sensor, physics, render, recorder, scenes, mut monitor, mut queues, flight_recorder, worker } =
-        loops;
+    let SoakLoops {
+        camera: _,
+        sensor,
+        physics,
+        render,
+        recorder,
+        scenes,
+        mut monitor,
+        mut queues,
+        flight_recorder,
+        worker,
+    } = loops;
     let (clock, stop) = (monitor.context().clock.clone(), Stop::default());
     let mut threads = RunningLoop::start(Loops { sensor, physics, render }, clock.clone())?;
     let recorder = beside("record", recorder, clock.clone(), stop.clone())?;
@@ -325,6 +357,17 @@ fn real(loops: SoakLoops<JumpClock>, options: &SoakOptions, tools: &SoakTools<'_
     let render = render.ok_or(died("render"))?;
     let recorder = recorder.join().map_err(|_| died("recorder"))?;
     let scenes = scenes.join().map_err(|_| died("scene"))?;
-    let loops = SoakLoops { sensor, physics, render, recorder, scenes, monitor, queues, flight_recorder, worker: None };
+    let loops = SoakLoops {
+        camera: None,
+        sensor,
+        physics,
+        render,
+        recorder,
+        scenes,
+        monitor,
+        queues,
+        flight_recorder,
+        worker: None,
+    };
     Ok(loops.ended(placed))
 }

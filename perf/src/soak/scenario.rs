@@ -13,6 +13,7 @@ use toile_engine::body::JointFrames;
 use toile_sensors::clock::SECOND_NS;
 
 use super::error::SoakError;
+use super::fault_kind::FaultKind;
 use super::options::{LEAST_APART_S, SoakPlan};
 
 /// Length of a visit (s), least and most.
@@ -24,121 +25,8 @@ const GAP_S: [f32; 2] = [3.0, 20.0];
 /// Time between two garments of a visit (s).
 const WORN_S: [f32; 2] = [25.0, 150.0];
 
-/// Length of a fault (s), where it has one and is not a stall.
-const FAULT_S: [f32; 2] = [0.5, 3.0];
-
-/// Length of a stall (s).
-const STALL_S: f32 = 2.0;
-
 /// Frames of the camera each second.
 pub const CAMERA_HZ: u64 = 30;
-
-toile_assets::named! {
-    /// What goes wrong. `until` is the end of the fault: from then on the time to its recovery counts.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-    pub enum FaultKind {
-        /// No frames come.
-        CameraLost = "camera lost",
-        /// The joints of the first frame again and again, with new stamps.
-        Frozen = "frames frozen",
-        /// Each frame four times, stamp and all.
-        Repeated = "frames repeated",
-        /// Every two frames change places.
-        OutOfOrder = "frames out of order",
-        /// Half of the joints are NaN, and sure of it.
-        NanJoints = "NaN joints",
-        /// Half of the joints are infinite or beyond all measure.
-        Infinite = "infinite joints",
-        /// The skeleton of somebody else, who stands beside.
-        Swapped = "another's skeleton",
-        /// Stamps from the next day.
-        StampsAhead = "stamps a day ahead",
-        /// Stamps from the day before.
-        StampsBehind = "stamps a day behind",
-        /// Particles of every garment that are NaN, infinite, beyond all measure or violent, from one step to the next.
-        ClothSpoilt = "cloth spoilt",
-        /// The loop's clock jumps ahead, as after a suspended machine.
-        ClockJump = "clock jump",
-        /// The sensor's thread does nothing for two seconds.
-        SensorStall = "sensor stall",
-        /// The physics thread does nothing for two seconds.
-        PhysicsStall = "physics stall",
-        /// The render thread does nothing for two seconds.
-        RenderStall = "render stall",
-        /// The thread that records does nothing for two seconds.
-        RecorderStall = "recorder stall",
-        /// The thread that makes scenes does nothing for two seconds.
-        SceneStall = "scene thread stall",
-        /// The recording's disk is full.
-        DiskFull = "disk full",
-        /// Garment files that are broken in several ways are to be worn.
-        BrokenGarment = "broken garment file",
-        /// The render thread panics.
-        RenderPanic = "render thread dies",
-        /// 64 MiB are taken and written to.
-        MemoryPressure = "memory pressure",
-    }
-}
-
-impl FaultKind {
-    /// By what it is seen to be over.
-    pub fn recovered_by(self) -> RecoverySign {
-        match self {
-            Self::RenderStall | Self::RenderPanic => RecoverySign::Picture,
-            Self::RecorderStall | Self::DiskFull => RecoverySign::Recording,
-            Self::SceneStall => RecoverySign::SceneMaker,
-            Self::BrokenGarment => RecoverySign::Refusal,
-            Self::PhysicsStall | Self::MemoryPressure => RecoverySign::Step,
-            Self::ClothSpoilt => RecoverySign::Calm,
-            _ => RecoverySign::Following,
-        }
-    }
-
-    /// Length of one (s).
-    fn length(self, rng: &mut SplitMix64) -> f32 {
-        match self {
-            Self::SensorStall | Self::PhysicsStall | Self::RenderStall | Self::RecorderStall | Self::SceneStall => {
-                STALL_S
-            }
-            Self::BrokenGarment | Self::RenderPanic | Self::ClothSpoilt => 0.0,
-            _ => between(rng, FAULT_S),
-        }
-    }
-}
-
-/// What shows that a fault is over.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum RecoverySign {
-    /// A step in time that knows a frame of after the fault, whose joints are within 80 mm of where the shopper is on average.
-    Following,
-    /// A step published in time that was due after it.
-    Step,
-    /// A step in time in which every particle is finite and none is faster than cloth that a person moves.
-    Calm,
-    /// A picture of a snapshot of after it.
-    Picture,
-    /// The recorder wrote all that it had.
-    Recording,
-    /// The thread that makes scenes takes its turn.
-    SceneMaker,
-    /// All the broken files were refused, with a word, and the next step was in time.
-    Refusal,
-}
-
-impl RecoverySign {
-    /// In words, for the page.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Following => "the shopper is followed again",
-            Self::Step => "a step is published in time",
-            Self::Calm => "no particle is out of measure or violent",
-            Self::Picture => "a picture of a newer snapshot is taken",
-            Self::Recording => "all that waited is written",
-            Self::SceneMaker => "the scene thread takes its turn",
-            Self::Refusal => "all are refused, the next step is in time",
-        }
-    }
-}
 
 /// One fault, in time since the run's begin (ns).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -242,10 +130,10 @@ impl Scenario {
             let mut outfit = wardrobe.outfits[first].0.clone();
             while at < visit.until_ns.min(plan.seconds * SECOND_NS) {
                 requests.push(SceneRequest { at_ns: at, visit: visits.len(), outfit, afresh: at == from });
-                at += ns(between(&mut rng, WORN_S));
+                at += ns(rng.between(WORN_S[0], WORN_S[1]));
                 outfit = wardrobe.near(visit.sex, &visit.measures[1], &mut rng);
             }
-            from = visit.until_ns + ns(between(&mut rng, GAP_S));
+            from = visit.until_ns + ns(rng.between(GAP_S[0], GAP_S[1]));
             visits.push(visit);
         }
         Ok(Self { plan, visits, requests, faults })
@@ -312,9 +200,9 @@ impl Wardrobe {
         };
         let (stature, average) = &self.skeletons[usize::from(sex == Sex::Male)];
         let skeleton = Skeleton { rest: average.rest.map(|p| p * (own.stature / stature)) };
-        let until_ns = from_ns + ns(between(rng, VISIT_S));
-        let pace = f64::from(between(rng, [0.6, 1.1]));
-        let place = Vec3::new(between(rng, [-0.4, 0.4]), 0.0, between(rng, [-0.3, 0.3]));
+        let until_ns = from_ns + ns(rng.between(VISIT_S[0], VISIT_S[1]));
+        let pace = f64::from(rng.between(0.6, 1.1));
+        let place = Vec3::new(rng.between(-0.4, 0.4), 0.0, rng.between(-0.3, 0.3));
         Visit { from_ns, until_ns, sex, measures: [own, *near], skeleton, pace, place }
     }
 
@@ -344,12 +232,12 @@ fn faults(plan: &SoakPlan) -> Result<Vec<Fault>, SoakError> {
     }
     let mut rng = SplitMix64::new(seed ^ 0x000f_a017);
     let apart = seconds as f64 / faults.max(1) as f64;
-    let mut order = Vec::new();
+    let (kinds, mut order) = (FaultKind::of(plan.camera), Vec::new());
     let place = |i: usize| {
         if order.is_empty() {
-            order = shuffled(FaultKind::ALL.len(), &mut rng);
+            order = shuffled(kinds.len(), &mut rng);
         }
-        let kind = FaultKind::ALL[order.pop().unwrap_or(0)];
+        let kind = kinds[order.pop().unwrap_or(0)];
         let begin = (i as f64 + 0.15 + 0.1 * f64::from(rng.uniform())) * apart;
         let from_ns = (begin * SECOND_NS as f64) as u64;
         Fault { kind, from_ns, until_ns: from_ns + ns(kind.length(&mut rng)) }
@@ -365,10 +253,6 @@ fn shuffled(count: usize, rng: &mut SplitMix64) -> Vec<usize> {
     all
 }
 
-fn between(rng: &mut SplitMix64, [least, most]: [f32; 2]) -> f32 {
-    least + (most - least) * rng.uniform()
-}
-
 fn ns(seconds: f32) -> u64 {
     (f64::from(seconds) * SECOND_NS as f64) as u64
 }
@@ -378,10 +262,14 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
-    use crate::soak::SceneWeight;
+    use crate::soak::{SceneWeight, SoakCamera};
+
+    fn plan(seed: u64, seconds: u64, faults: usize) -> SoakPlan {
+        SoakPlan { seed, seconds, faults, scene: SceneWeight::Light, camera: SoakCamera::Joints }
+    }
 
     fn scenario(seed: u64) -> Scenario {
-        Scenario::write(SoakPlan { seed, seconds: 8 * 3_600, faults: 1_000, scene: SceneWeight::Light }).unwrap()
+        Scenario::write(plan(seed, 8 * 3_600, 1_000)).unwrap()
     }
 
     #[test]
@@ -389,24 +277,34 @@ mod tests {
         let scenario = scenario(7);
         let worn: BTreeSet<&WornSize> = scenario.requests.iter().map(|d| &d.outfit).collect();
         assert_eq!(worn.len(), Wardrobe::read().unwrap().outfits.len());
-        for kind in FaultKind::ALL {
+        for kind in FaultKind::of(SoakCamera::Joints) {
             assert_eq!(scenario.faults_of(kind).count(), 50, "{kind:?}");
         }
         assert!(scenario.visits.windows(2).all(|v| v[0].until_ns + 3 * SECOND_NS <= v[1].from_ns));
         assert!(scenario.requests.windows(2).all(|d| d[0].at_ns < d[1].at_ns));
-        let crowded = SoakPlan { seed: 1, seconds: 600, faults: 100, scene: SceneWeight::Light };
-        let crowded = faults(&crowded).unwrap();
+        let crowded = faults(&plan(1, 600, 100)).unwrap();
         // A second and a half to recover in, at least.
         assert!(crowded.windows(2).all(|f| f[0].until_ns + SECOND_NS * 3 / 2 <= f[1].from_ns), "{crowded:?}");
+    }
+
+    #[test]
+    fn a_depth_camera_has_faults_of_its_own_each_as_often_as_the_others() {
+        let depth = SoakPlan { camera: SoakCamera::Depth, ..plan(7, 8 * 3_600, 1_000) };
+        let all = faults(&depth).unwrap();
+        let counts: Vec<usize> = FaultKind::of(SoakCamera::Depth)
+            .iter()
+            .map(|kind| all.iter().filter(|f| f.kind == *kind).count())
+            .collect();
+        assert_eq!((counts.len(), counts.iter().sum::<usize>()), (9, 1_000));
+        assert!(counts.iter().all(|n| (111..=112).contains(n)), "{counts:?}");
     }
 
     #[test]
     fn a_seed_decides_on_everything_and_too_many_faults_are_refused() {
         assert_eq!(scenario(3), scenario(3));
         assert_ne!(scenario(3).faults, scenario(4).faults);
-        let plan = SoakPlan { seed: 1, seconds: 60, faults: 11, scene: SceneWeight::Light };
         assert_eq!(
-            Scenario::write(plan).unwrap_err().to_string(),
+            Scenario::write(plan(1, 60, 11)).unwrap_err().to_string(),
             "11 faults do not fit into 60 s; ask for 10 at most, or for a longer run"
         );
     }

@@ -7,8 +7,8 @@ use toile_engine::frame_loop::physics_thread::FrameScene;
 use toile_fitting::live::live_scene::SceneHandover;
 use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
 
+use super::fault_kind::FaultKind;
 use super::observed_loops::{Observation, ObservedLoop, RunContext};
-use super::scenario::FaultKind;
 use super::scene_maker::SceneMaker;
 
 /// A garment that was asked for is handed over no sooner than this (ns): what making it takes, on the simulated clock.

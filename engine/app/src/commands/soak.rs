@@ -16,7 +16,8 @@ use toile_fitting::heap::HeapProbe;
 use toile_fitting::live::crash;
 use toile_perf::soak::scenario::Scenario;
 use toile_perf::soak::{
-    self, LEAST_APART_S, SceneMaker, SceneWeight, Soak, SoakCheck, SoakError, SoakOptions, SoakPlan, SoakTools,
+    self, LEAST_APART_S, SceneMaker, SceneWeight, Soak, SoakCamera, SoakCheck, SoakError, SoakOptions, SoakPlan,
+    SoakTools,
 };
 
 use crate::arguments::{CrashArg, Printing, WorkersArg, one_of};
@@ -69,6 +70,9 @@ pub struct SoakArgs {
     /// light: coarse garments, hours in minutes; full: the wardrobe as it is worn (default: full in real time, else light)
     #[arg(long, value_name = "S", value_parser = one_of(SceneWeight::ALL, SceneWeight::name))]
     pub scene: Option<SceneWeight>,
+    /// joints: a sensor that hands on joints; depth: a depth camera, with the faults that such cameras have
+    #[arg(long, value_name = "C", value_parser = one_of(SoakCamera::ALL, SoakCamera::name), default_value = "joints")]
+    pub camera: SoakCamera,
     #[command(flatten)]
     workers: WorkersArg,
     /// Make no second run to compare the bits with
@@ -110,7 +114,7 @@ impl SoakArgs {
         }
         let scene = self.scene.unwrap_or(if self.real_time { SceneWeight::Full } else { SceneWeight::Light });
         Ok(SoakOptions {
-            plan: SoakPlan { seed: self.seed, seconds, faults: faults as usize, scene },
+            plan: SoakPlan { seed: self.seed, seconds, faults: faults as usize, scene, camera: self.camera },
             uptime_hours: self.uptime_hours,
             real_time: self.real_time,
             workers: if self.real_time { self.workers.count() } else { 1 },
@@ -270,6 +274,9 @@ fn typed(args: &SoakArgs, options: &SoakOptions) -> String {
     if real_time {
         line += &format!(" --real-time --workers {workers}");
     }
+    if plan.camera != SoakCamera::default() {
+        line += &format!(" --camera {}", plan.camera.name());
+    }
     line += &format!(" --scene {}", plan.scene.name());
     if args.once { line + " --once" } else { line }
 }
@@ -278,12 +285,13 @@ fn typed(args: &SoakArgs, options: &SoakOptions) -> String {
 fn table(report: &SoakDocument, paint: Paint) -> String {
     let found = &report.found;
     let title = format!(
-        "Soak: {:.2} h, {} steps in {:.0} s ({:.0} us a step), {} scene, seed {}",
+        "Soak: {:.2} h, {} steps in {:.0} s ({:.0} us a step), {} scene, {} seen, seed {}",
         found.hours,
         found.ticks,
         found.wall_s,
         found.us_per_step,
         found.scene.name(),
+        found.camera.name(),
         found.seed
     );
     let mut lines = vec![paint.tone(&title, Tone::Strong).into_owned()];
@@ -302,13 +310,14 @@ fn table(report: &SoakDocument, paint: Paint) -> String {
     }
     if !found.faults.kinds.is_empty() {
         lines.push(format!(
-            "\n  {:<22} {:>9} {:>10} {:>9} {:>9}",
-            "fault", "injected", "recovered", "mean ms", "max ms"
+            "\n  {:<30} {:>9} {:>10} {:>9} {:>9} {:>11}",
+            "fault", "injected", "recovered", "mean ms", "max ms", "noticed ms"
         ));
     }
     for k in &found.faults.kinds {
+        let noticed = k.noticed_max_ms.map_or_else(|| "-".to_owned(), |ms| format!("{ms:.0}"));
         lines.push(format!(
-            "  {:<22} {:>9} {:>10} {:>9.0} {:>9.0}",
+            "  {:<30} {:>9} {:>10} {:>9.0} {:>9.0} {noticed:>11}",
             k.name, k.injected, k.recovered, k.mean_ms, k.max_ms
         ));
     }
@@ -330,7 +339,10 @@ mod tests {
     #[test]
     fn ten_simulated_minutes_without_faults_are_the_default() {
         let SoakOptions { plan, uptime_hours, real_time, workers } = options("soak").unwrap();
-        assert_eq!(plan, SoakPlan { seed: 1, seconds: 600, faults: 0, scene: SceneWeight::Light });
+        assert_eq!(
+            plan,
+            SoakPlan { seed: 1, seconds: 600, faults: 0, scene: SceneWeight::Light, camera: SoakCamera::Joints }
+        );
         assert_eq!((uptime_hours, real_time, workers), (0, false, 1));
     }
 

@@ -11,6 +11,7 @@ use toile_engine::cloth::Quality;
 use toile_engine::workers::SHARES;
 
 use super::config_keys;
+use super::picture_config::PictureConfig;
 use super::session::SessionTimes;
 use crate::error::KioskError;
 use toile_fitting::dress::measured::ShopperFacts;
@@ -47,6 +48,8 @@ pub struct Config {
     pub machine: MachineConfig,
     /// The display, where there is one.
     pub display: DisplayConfig,
+    /// The picture that a shopper takes away.
+    pub picture: PictureConfig,
     /// Figures for Prometheus.
     pub metrics: MetricsConfig,
     /// What is kept of a crash.
@@ -366,6 +369,7 @@ impl Config {
             .or_else(|| self.sensor.fault())
             .or_else(|| self.shopper.facts().err())
             .or_else(|| self.display.fault())
+            .or_else(|| self.picture.fault())
             .or_else(|| self.wear.quality.parse::<Quality>().err().map(|e| format!("wear.quality: {e}")))
     }
 

@@ -6,7 +6,7 @@ use toml::de::{DeTable, DeValue};
 use crate::error::KioskError;
 
 /// Every table and its keys.
-pub const KEYS: [(&str, &[&str]); 9] = [
+pub const KEYS: [(&str, &[&str]); 10] = [
     ("wear", &["garments", "catalogue", "size", "quality"]),
     ("shopper", &["sex", "age", "measures"]),
     ("sensor", &["source", "session", "pause_s", "vmc", "camera", "device", "turned_degrees"]),
@@ -27,6 +27,7 @@ pub const KEYS: [(&str, &[&str]); 9] = [
             "hair",
         ],
     ),
+    ("picture", &["serve", "network"]),
     ("metrics", &["port"]),
     ("crash", &["recording"]),
 ];

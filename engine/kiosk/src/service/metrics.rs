@@ -2,10 +2,9 @@
 //! request, a second a response.
 
 use std::fmt::Write as _;
-use std::io::{self, Read, Write};
+use std::io::{self, Write};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
 use std::thread;
-use std::time::{Duration, Instant};
 
 use toile_engine::triple_buffer::Reader;
 use toile_fitting::live::depth_camera::CameraFigures;
@@ -13,12 +12,7 @@ use toile_sensors::source::live::CameraState;
 
 use super::health::HealthFigures;
 use super::session::SessionState;
-
-/// Longest request (bytes).
-const MOST_BYTES: usize = 2048;
-
-/// Longest time that a request may take.
-const LONGEST: Duration = Duration::from_secs(1);
+use crate::http::{LONGEST, read_request};
 
 /// Answers on this port of 127.0.0.1 (0 is any that is free) for as long as the program runs; gives where.
 ///
@@ -39,7 +33,7 @@ pub fn serve(port: u16, mut figures: Reader<HealthFigures>) -> io::Result<Socket
 
 fn answer(mut stream: TcpStream, figures: &HealthFigures) -> io::Result<()> {
     stream.set_write_timeout(Some(LONGEST))?;
-    let question = question(&mut stream)?;
+    let question = read_request(&mut stream)?;
     let mut words = question.split(|b| *b == b' ');
     let (status, body) = match (words.next(), words.next()) {
         (Some(b"GET"), Some(b"/metrics")) => ("200 OK", text(figures)),
@@ -53,25 +47,6 @@ fn answer(mut stream: TcpStream, figures: &HealthFigures) -> io::Result<()> {
     );
     stream.write_all(head.as_bytes())?;
     stream.write_all(body.as_bytes())
-}
-
-/// Reads until the empty line, for a bounded time and length.
-fn question(stream: &mut TcpStream) -> io::Result<Vec<u8>> {
-    let end = Instant::now() + LONGEST;
-    let mut bytes = Vec::with_capacity(MOST_BYTES);
-    while !bytes.windows(4).any(|w| w == b"\r\n\r\n") {
-        let left = end.saturating_duration_since(Instant::now());
-        if left.is_zero() || bytes.len() >= MOST_BYTES {
-            return Err(io::ErrorKind::InvalidData.into());
-        }
-        stream.set_read_timeout(Some(left))?;
-        let mut some = [0; 512];
-        match stream.read(&mut some)? {
-            0 => return Err(io::ErrorKind::UnexpectedEof.into()),
-            n => bytes.extend_from_slice(&some[..n]),
-        }
-    }
-    Ok(bytes)
 }
 
 /// The figures in Prometheus' text format.
@@ -129,7 +104,11 @@ fn text(figures: &HealthFigures) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::io::Read;
+    use std::time::Instant;
+
     use super::*;
+    use crate::http::MOST_BYTES;
     use toile_engine::triple_buffer::TripleBuffer;
 
     fn ask(address: SocketAddr, question: &[u8]) -> String {

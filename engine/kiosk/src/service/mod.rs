@@ -16,6 +16,7 @@ pub mod instance;
 mod memory;
 #[cfg(feature = "metrics")]
 pub mod metrics;
+pub mod picture_config;
 pub mod report;
 pub mod runner;
 pub mod service_manager;

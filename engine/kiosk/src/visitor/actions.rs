@@ -105,7 +105,13 @@ impl VisitModel {
                 }
             }
             Page::Compare => self.compare(&mut add),
-            Page::Picture if self.visit.picture.code().is_some() => add(&[DeletePicture, Back]),
+            Page::Picture if self.visit.picture.code().is_some() => {
+                add(&[DeletePicture]);
+                if self.visit.picture.has_both() {
+                    add(&[OtherCode]);
+                }
+                add(&[Back]);
+            }
             Page::Picture if self.visit.snap_failed => add(&[TakePicture, Back]),
             Page::Picture => add(&[Back]),
             Page::OwnMeasures => {

@@ -222,7 +222,7 @@ impl<'a, O> VisitController<'a, O> {
                 self.window.pairs.push(Some(Box::new([left, right])));
                 Input::Draped(number)
             }
-            JobResult::Picture(code) => Input::PictureTaken(number, code),
+            JobResult::Picture(offered) => Input::PictureTaken(number, offered),
             JobResult::Failed => Input::Failed(number),
         };
         self.update(now, input, context);

@@ -1,6 +1,7 @@
 //! The dressing worker: measures a shopper, dresses them, drapes two sizes and takes a picture, one after the other, on a thread of its own that
 //! nothing waits for.
 
+use std::net::SocketAddr;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -22,13 +23,19 @@ use toile_view::drawn_frame::{self, DrawnFrame};
 use toile_view::figure::Appearance;
 use toile_view::image::{Size, linear};
 
-use super::picture::{self, PictureCode, RgbImage};
+use super::picture::{self, RgbImage};
+use super::picture_link::PictureServer;
+use super::picture_store::{OfferedPicture, PictureLink};
 use super::size_fit::VisitorMeasures;
 use super::wardrobe::{Outfit, Wardrobe};
 use crate::error::KioskError;
+use crate::service::picture_config::PictureConfig;
 
 /// Size at which a picture is drawn, to be made smaller: twice the largest that a code holds.
 const DRAWN: Size = Size::new(192, 320);
+
+/// Size of a picture behind a link: a phone's screen, nearly.
+const DRAWN_LARGE: Size = Size::new(720, 1200);
 
 /// Garments of a visit that stay open: a package of a shop's own takes a few megabytes.
 const WORN_OPEN: usize = 8;
@@ -77,8 +84,8 @@ pub enum JobResult {
     Dressed(Box<Dressed>),
     /// Both outfits are draped.
     Two(Box<[DrapedFrame; 2]>),
-    /// The picture as a code.
-    Picture(PictureCode),
+    /// The picture, by its codes.
+    Picture(OfferedPicture),
     /// It could not be done; why is not reported, for it may say something about them.
     Failed,
 }
@@ -96,6 +103,8 @@ pub struct DressingContext {
     facts: ShopperFacts,
     /// How their body looks in pictures.
     appearance: Appearance,
+    /// Where pictures are served, if they are.
+    served: PictureConfig,
     /// What this shopper has put on, open, the last one last: they keep it, whatever becomes of its file.
     worn: Mutex<Vec<Arc<Choice>>>,
 }
@@ -163,12 +172,20 @@ impl DressingContext {
         facts: ShopperFacts,
         appearance: Appearance,
     ) -> Self {
-        Self { wardrobe, first, quality, facts, appearance, worn: Mutex::default() }
+        let served = PictureConfig::default();
+        Self { wardrobe, first, quality, facts, appearance, served, worn: Mutex::default() }
+    }
+
+    /// The same, whose pictures are served.
+    #[must_use]
+    pub fn serving(self, served: PictureConfig) -> Self {
+        Self { served, ..self }
     }
 
     /// The same for the next shopper.
     fn anew(&self) -> Self {
         Self::new(self.wardrobe.clone(), self.first.clone(), self.quality, self.facts, self.appearance)
+            .serving(self.served.clone())
     }
 
     /// A garment as it hangs: one whose file is another one by now is not what the shopper has seen.
@@ -249,14 +266,29 @@ impl DressingContext {
         Ok((frame, snapshot))
     }
 
-    fn picture(&self, client: &MeasuredVisitor, worn: &Outfit, yaw: f32) -> Result<PictureCode, KioskError> {
+    fn picture(&self, client: &MeasuredVisitor, worn: &Outfit, yaw: f32) -> Result<OfferedPicture, KioskError> {
         let (frame, snapshot) = self.draped(client, worn)?;
         let colour = |w: &super::wardrobe::WornItem| self.wardrobe.items.get(w.item)?.colours.get(w.colour);
         let colours: Vec<[f32; 3]> = worn.iter().filter_map(colour).map(|c| c.srgb.map(linear)).collect();
         let drawn = DrawnFrame::new(&frame, self.appearance).coloured(&colours);
-        let image = drawn_frame::still(drawn, &snapshot, yaw, DRAWN);
+        let size = if self.served.serve.is_some() { DRAWN_LARGE } else { DRAWN };
+        let image = drawn_frame::still(drawn, &snapshot, yaw, size);
         let still = RgbImage { size: image.size(), bytes: image.bytes().to_vec() };
-        picture::encode(&still).map_err(KioskError::internal)
+        // Where the link cannot be had, as while the network is down, there is the code that holds the picture.
+        let link = self.served.serve.and_then(|address| self.link(address, &still).ok());
+        let own = picture::encode(&still).map_err(KioskError::internal);
+        match (link, own) {
+            (None, Err(why)) => Err(why),
+            (link, own) => Ok(OfferedPicture { link, own: own.ok() }),
+        }
+    }
+
+    /// Serves a picture; gives the code of its link.
+    fn link(&self, address: SocketAddr, still: &RgbImage) -> Result<PictureLink, KioskError> {
+        let png = picture::png(still).map_err(KioskError::internal)?;
+        let server = PictureServer::start(address, png).map_err(KioskError::internal)?;
+        let code = picture::link_code(server.url()).map_err(KioskError::internal)?;
+        Ok(PictureLink { code, network: self.served.network.clone(), server: Arc::new(server) })
     }
 }
 
@@ -350,7 +382,11 @@ mod tests {
         };
         let wide = |d: &DrapedFrame| d.1.garments[0].iter().map(|p| p.x.abs()).fold(0.0, f32::max);
         assert_ne!(wide(&two[0]), wide(&two[1]));
-        let JobResult::Picture(code) = done(8, DressingJob::Snap(client.clone(), outfit(2, 3), 0.0)) else { panic!() };
+        let JobResult::Picture(offered) = done(8, DressingJob::Snap(client.clone(), outfit(2, 3), 0.0)) else {
+            panic!()
+        };
+        assert!(offered.link.is_none());
+        let code = offered.own.unwrap();
         assert!(code.side >= 101 && code.dark.len() == code.side * code.side, "{code:?}");
         let JobResult::Dressed(dressed) = done(9, DressingJob::Dress(client.clone(), outfit(2, 3))) else { panic!() };
         assert_eq!(dressed.dressing.recipe.garments, [("t-shirt".to_owned(), "S".to_owned())]);

@@ -4,7 +4,7 @@ use toile_sensors::source::live::CameraState;
 use toile_track::gesture::Gesture;
 use toile_track::tape_readings::TapeReadings;
 
-use super::picture::PictureCode;
+use super::picture_store::OfferedPicture;
 use super::presence::Presence;
 use super::screen::Action;
 use super::size_fit::VisitorMeasures;
@@ -124,7 +124,7 @@ pub enum Input {
     /// Both sizes are draped.
     Draped(u32),
     /// The picture is taken.
-    PictureTaken(u32, PictureCode),
+    PictureTaken(u32, OfferedPicture),
     /// What was asked for cannot be done.
     Failed(u32),
 }

@@ -21,6 +21,8 @@ mod own_measures;
 pub mod pages;
 pub mod photographs;
 pub mod picture;
+pub mod picture_link;
+pub mod picture_store;
 pub mod presence;
 pub mod reach;
 pub mod screen;

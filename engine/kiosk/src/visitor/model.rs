@@ -320,8 +320,8 @@ impl VisitModel {
                     is_asked(&mut pair.asked, number);
                 }
             }
-            Input::PictureTaken(number, code) if is_asked(&mut visit.snapping, number) => {
-                visit.picture.put(code, self.now_ns + self.defaults.times.picture_ns);
+            Input::PictureTaken(number, offered) if is_asked(&mut visit.snapping, number) => {
+                visit.picture.put(offered, self.now_ns, self.now_ns + self.defaults.times.picture_ns);
             }
             Input::Failed(number) => self.failed(number, effects),
             _ => {}

@@ -132,6 +132,7 @@ impl VisitModel {
             Action::Turn(eighths) => self.turn(eighths),
             Action::FitMap => self.visit.fit_map = !self.visit.fit_map,
             Action::TakePicture => self.snap(effects),
+            Action::OtherCode => self.visit.picture.show_other(),
             Action::DeletePicture => {
                 self.visit.picture.wipe();
                 self.back();

@@ -201,10 +201,13 @@ impl PageWriter<'_> {
 
     fn control(&self, page: Page, action: Action) -> Control {
         let (label, detail) = self.label(page, action);
+        let item = if let Action::Garment(place) = action { self.model.wardrobe.items.get(place) } else { None };
         Control {
             action,
             label,
             detail,
+            // What comes off is seen as soon as a garment is pressed; a price is not.
+            is_detail_spare: item.is_some_and(|item| item.price.is_none()),
             style: self.style(page, action),
             chosen: self.is_chosen(action),
             picture: None,
@@ -240,6 +243,8 @@ impl PageWriter<'_> {
             Action::FitMap => TextKey::DoFitMap,
             Action::TakePicture => TextKey::DoPicture,
             Action::DeletePicture => TextKey::DoDeletePicture,
+            Action::OtherCode if self.model.visit.picture.link().is_some() => TextKey::DoPictureOwn,
+            Action::OtherCode => TextKey::DoPictureLink,
             Action::Stay if page == Page::Second => TextKey::DoStillMe,
             Action::Stay => TextKey::DoStay,
             Action::Leave => TextKey::DoLeave,

@@ -1,6 +1,6 @@
-//! Picture: what a shopper asked for and takes along by scanning a code; in memory alone, and only for minutes.
+//! Picture: what a shopper asked for and takes along by scanning a code.
 //!
-//! The code holds the picture itself, as a data link (RFC 2397): nothing is served, sent or written, and who has no camera pointed at the
+//! The code of a link is small; the picture stands behind it (`picture_link`). The other code holds the picture itself, as a data link (RFC 2397): nothing is served, sent or written, and who has no camera pointed at the
 //! display gets nothing. A code holds 2,953 bytes at most (ISO/IEC 18004, version 40, level L), so the picture is small: the
 //! largest of [`SIZES`] that fits, in [`SHADES`] shades of its own.
 
@@ -63,6 +63,30 @@ pub enum PictureError {
     Encoding(String),
 }
 
+/// A link as a code, which phones read from a step away: level M (ISO/IEC 18004).
+///
+/// # Errors
+/// A link that is too long for any code.
+pub fn link_code(url: &str) -> Result<PictureCode, PictureError> {
+    code(url, EcLevel::M)
+}
+
+/// A picture as a PNG, at the size that it has.
+///
+/// # Errors
+/// What the encoder refuses.
+pub fn png(image: &RgbImage) -> Result<Vec<u8>, PictureError> {
+    let refused = |e: png::EncodingError| PictureError::Encoding(e.to_string());
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, image.size.width, image.size.height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    let mut writer = encoder.write_header().map_err(refused)?;
+    writer.write_image_data(&image.bytes).map_err(refused)?;
+    writer.finish().map_err(refused)?;
+    Ok(bytes)
+}
+
 /// A picture as a code, at the largest size that fits.
 ///
 /// # Errors
@@ -72,7 +96,7 @@ pub fn encode(image: &RgbImage) -> Result<PictureCode, PictureError> {
     for size in SIZES.into_iter().filter(|s| s.width <= image.size.width && s.height <= image.size.height) {
         let link = link(&smaller(image, size))?;
         if link.len() <= MOST_LINK {
-            return code(&link);
+            return code(&link, EcLevel::L);
         }
         bytes = link.len();
     }
@@ -100,9 +124,8 @@ fn link(image: &RgbImage) -> Result<String, PictureError> {
     Ok(format!("{PREFIX}{}", base64(&bytes)))
 }
 
-fn code(link: &str) -> Result<PictureCode, PictureError> {
-    let code =
-        QrCode::with_error_correction_level(link, EcLevel::L).map_err(|e| PictureError::Encoding(e.to_string()))?;
+fn code(link: &str, level: EcLevel) -> Result<PictureCode, PictureError> {
+    let code = QrCode::with_error_correction_level(link, level).map_err(|e| PictureError::Encoding(e.to_string()))?;
     let side = code.width();
     Ok(PictureCode { side, dark: code.into_colors().into_iter().map(|c| c == Color::Dark).collect() })
 }
@@ -183,47 +206,6 @@ fn base64(bytes: &[u8]) -> String {
     text
 }
 
-/// Where the one picture is kept.
-#[derive(Debug, Clone, Default)]
-pub struct PictureStore {
-    held: Option<(PictureCode, u64)>,
-}
-
-impl PictureStore {
-    /// Keeps a picture until a time (ns); one before it is gone.
-    pub fn put(&mut self, code: PictureCode, until_ns: u64) {
-        self.wipe();
-        self.held = Some((code, until_ns));
-    }
-
-    /// The picture, while it is kept.
-    pub fn code(&self) -> Option<&PictureCode> {
-        self.held.as_ref().map(|held| &held.0)
-    }
-
-    /// How long it is still kept (ns); 0 where there is none.
-    pub fn left_ns(&self, now_ns: u64) -> u64 {
-        self.held.as_ref().map_or(0, |held| held.1.saturating_sub(now_ns))
-    }
-
-    /// Forgets the picture when its time is over; says whether it did.
-    pub fn expire(&mut self, now_ns: u64) -> bool {
-        let over = self.held.is_some() && self.left_ns(now_ns) == 0;
-        if over {
-            self.wipe();
-        }
-        over
-    }
-
-    /// Forgets the picture at once.
-    pub fn wipe(&mut self) {
-        if let Some((code, _)) = &mut self.held {
-            code.dark.fill(false);
-        }
-        self.held = None;
-    }
-}
-
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
@@ -244,7 +226,7 @@ pub(super) mod tests {
     }
 
     /// What a phone reads.
-    fn scanned(code: &PictureCode) -> String {
+    pub(crate) fn scanned(code: &PictureCode) -> String {
         let (border, scale) = (4, 3);
         let side = scale * (code.side + 2 * border);
         let dark = |x: usize, y: usize| {
@@ -281,6 +263,14 @@ pub(super) mod tests {
     }
 
     #[test]
+    fn the_code_of_a_link_is_small_and_says_the_link() {
+        let url = "http://192.168.100.100:8080/0123456789abcdef0123456789abcdef.png";
+        let code = link_code(url).unwrap();
+        assert!(code.side <= 41, "{}", code.side);
+        assert_eq!(scanned(&code), url);
+    }
+
+    #[test]
     fn a_picture_that_is_too_rich_is_refused_and_not_cut() {
         let mut state = 1_u32;
         let mut noise = || {
@@ -298,18 +288,5 @@ pub(super) mod tests {
         for (plain, coded) in [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")] {
             assert_eq!(base64(plain.as_bytes()), coded);
         }
-    }
-
-    #[test]
-    fn a_picture_is_kept_for_its_time_and_can_be_deleted_before() {
-        let mut vault = PictureStore::default();
-        let code = || PictureCode { side: 1, dark: vec![true] };
-        vault.put(code(), 100);
-        assert!(!vault.expire(99) && vault.code().is_some());
-        assert_eq!(vault.left_ns(60), 40);
-        assert!(vault.expire(100) && vault.code().is_none());
-        vault.put(code(), 100);
-        vault.wipe();
-        assert!(vault.code().is_none() && !vault.expire(200));
     }
 }

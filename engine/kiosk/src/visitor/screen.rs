@@ -102,6 +102,8 @@ pub enum Action {
     FitMap,
     /// Take a picture of the dressed body.
     TakePicture,
+    /// Show the other code of the picture.
+    OtherCode,
     /// Delete the picture now.
     DeletePicture,
     /// I am still here.
@@ -188,6 +190,8 @@ pub struct Control {
     pub label: String,
     /// A second, smaller line.
     pub detail: Option<String>,
+    /// Whether the second line may be left out where there is little room.
+    pub is_detail_spare: bool,
     /// How much it stands out.
     pub style: ControlStyle,
     /// Whether it is what is chosen.

@@ -58,6 +58,7 @@ impl VisitorSetup {
         let first = stock.first.clone();
         let (quality, appearance) = (config.wish().quality, display.appearance());
         let context = DressingContext::new(wardrobe.clone(), first, quality, facts, appearance);
+        let context = context.serving(config.picture.clone());
         let model = VisitModel::new(defaults, wardrobe, now_ns);
         Ok(Self { model, texts: Texts::load()?, mount, context, mark: display.mark_m, left_out })
     }

@@ -11,7 +11,8 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::model::{Effect, Input, VisitDefaults, VisitModel, VisitTimes};
-use super::picture;
+use super::picture::{self, PictureCode};
+use super::picture_store::{OfferedPicture, PictureLink};
 use super::presence::Presence;
 use super::reach::DisplayMount;
 use super::screen::{Action, Page, Screen};
@@ -54,6 +55,8 @@ pub(crate) struct Play {
     pages: BTreeSet<Page>,
     /// Whether the dressing worker fails.
     fails: bool,
+    /// The link that pictures come with, where they are served.
+    link: Option<PictureLink>,
 }
 
 impl Play {
@@ -68,6 +71,7 @@ impl Play {
             effects: Vec::new(),
             pages: BTreeSet::new(),
             fails: false,
+            link: None,
         }
     }
 
@@ -83,7 +87,8 @@ impl Play {
     fn update(&mut self, input: Input) {
         for effect in self.model.update(self.now, input) {
             let in_a_second = self.now + 700 * MS;
-            let code = || picture::PictureCode { side: 3, dark: vec![true; 9] };
+            let code =
+                || OfferedPicture { link: self.link.clone(), own: Some(PictureCode { side: 3, dark: vec![true; 9] }) };
             let reply = match &effect {
                 Effect::Measure { number, .. } | Effect::MeasureTurn { number } if self.fails => Input::Failed(*number),
                 Effect::Measure { number, .. } | Effect::MeasureTurn { number } => {

@@ -5,7 +5,7 @@ use toile_track::tape_readings::TapeReadings;
 use super::body_turn::BodyTurn;
 use super::measure_entry::{LengthUnit, MeasureEntry};
 use super::message::VisitDefaults;
-use super::picture::PictureStore;
+use super::picture_store::PictureStore;
 use super::screen::Page;
 use super::size_fit::{SizeFit, VisitorMeasures};
 use super::texts::Language;

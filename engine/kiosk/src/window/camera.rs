@@ -6,12 +6,25 @@ use toile_view::scene::{Bounds, Camera};
 /// Arm's reach beside the body (m): what stays in the picture when somebody lifts their arms.
 const HALF_REACH_M: f32 = 0.5;
 
+/// Half of what a body with its arms at rest needs, in statures, where there is no room for more.
+const HALF_REST: f32 = 0.185;
+
+/// Narrower than this, width over height, there is none.
+const NARROW: f32 = 0.6;
+
+/// How much nearer the camera comes there than a portrait is taken from.
+const NEARER: f32 = 0.83;
+
 /// Height that is shown over a body, in statures.
 const HEADROOM: f32 = 1.03;
 
 /// The box around a standing body of this stature at a place on the floor, with the reach of its arms.
 pub fn standing_bounds(stature: f32, at: Vec3) -> Bounds {
-    let reach = Vec3::new(HALF_REACH_M, 0.0, HALF_REACH_M * 0.5);
+    bounds(stature, at, HALF_REACH_M)
+}
+
+fn bounds(stature: f32, at: Vec3, half: f32) -> Bounds {
+    let reach = Vec3::new(half, 0.0, half * 0.5);
     Bounds { min: at - reach, max: at + reach + Vec3::Y * stature * HEADROOM }
 }
 
@@ -20,10 +33,13 @@ pub fn standing_bounds(stature: f32, at: Vec3) -> Bounds {
 pub fn camera(stature: f32, at: Vec3, yaw: f32, free: [f32; 4], aspect: f32) -> Camera {
     let [left, top, right, bottom] = free;
     let (wide, tall) = ((right - left).clamp(0.05, 1.0), (bottom - top).clamp(0.05, 1.0));
+    let free_aspect = aspect * wide / tall;
+    let is_narrow = free_aspect < NARROW;
+    let bounds = if is_narrow { bounds(stature, at, HALF_REST * stature) } else { standing_bounds(stature, at) };
     // As if the free part were the whole picture ...
-    let near = Camera::framing(&standing_bounds(stature, at), yaw, aspect * wide / tall);
+    let near = Camera::framing(&bounds, yaw, free_aspect);
     // ... of which the display shows more, all around.
-    let distance = near.distance / tall;
+    let distance = near.distance / tall * if is_narrow { NEARER } else { 1.0 };
     let seen = 2.0 * distance * (0.5 * near.fov_y).tan();
     let (sin, cos) = yaw.sin_cos();
     let right_hand = Vec3::new(cos, 0.0, -sin);
@@ -35,7 +51,7 @@ pub fn camera(stature: f32, at: Vec3, yaw: f32, free: [f32; 4], aspect: f32) -> 
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use glam::Vec2;
 
@@ -51,12 +67,25 @@ mod tests {
         Vec2::new(0.5 + 0.5 * to.dot(right) / (half * aspect), 0.5 - 0.5 * to.dot(up) / half)
     }
 
+    /// Share of the display's height that a body takes, the least of many bodies and sides.
+    pub fn least_share(free: [f32; 4], aspect: f32) -> f32 {
+        let share = |stature: f32, yaw: f32| {
+            let camera = camera(stature, Vec3::ZERO, yaw, free, aspect);
+            seen(&camera, aspect, Vec3::ZERO).y - seen(&camera, aspect, Vec3::Y * stature).y
+        };
+        let all =
+            [1.5, 1.75, 1.95].into_iter().flat_map(|stature| [0.0, 0.8, 3.1, -1.6].map(|yaw| share(stature, yaw)));
+        all.fold(f32::INFINITY, f32::min)
+    }
+
     #[test]
     fn the_body_stands_whole_in_what_the_panel_leaves_free_from_every_side() {
         for (free, aspect) in [
             ([0.0, 0.0, 1.0, 0.4], 9.0 / 16.0),
             ([0.0, 0.0, 1.0, 0.6], 9.0 / 16.0),
             ([0.0, 0.0, 0.58, 1.0], 16.0 / 9.0),
+            ([0.0, 0.0, 0.51, 1.0], 9.0 / 16.0),
+            ([0.0, 0.0, 1.0, 0.64], 4.5 / 16.0),
             ([0.0, 0.0, 1.0, 1.0], 1.0),
         ] {
             for stature in [1.5, 1.95] {

@@ -115,9 +115,16 @@ impl PageWriter<'_> {
         let picture = &self.model.visit.picture;
         if let Some(code) = picture.code() {
             let minutes = (picture.left_ns(self.model.now_ns) / (60 * SECOND_NS)) as u32;
+            let how = match picture.link().map(|link| link.network.as_deref()) {
+                None => self.paragraph(TextKey::PictureScan),
+                Some(None) => self.paragraph(TextKey::PictureServed),
+                Some(Some(network)) => {
+                    Block::Text(self.format(TextKey::PictureServedIn, &[("network", TextValue::Text(network))]))
+                }
+            };
             return vec![
                 Block::Code { side: code.side, dark: code.dark.clone() },
-                self.paragraph(TextKey::PictureScan),
+                how,
                 Block::Text(self.format(TextKey::PictureUntil, &[("minutes", TextValue::Count(minutes))])),
             ];
         }

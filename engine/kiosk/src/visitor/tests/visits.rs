@@ -1,8 +1,11 @@
 //! What happens to whom.
 
+use std::net::{Ipv4Addr, SocketAddr};
+
 use super::*;
 use crate::service::session::SessionState;
 use crate::visitor::model::NavigationKey;
+use crate::visitor::picture_link::PictureServer;
 use crate::visitor::screen::{Block, BodyView, ControlStyle};
 use toile_track::gesture::Gesture;
 
@@ -60,6 +63,32 @@ fn a_whole_visit_by_touch_ends_where_it_began() {
     assert_eq!((play.page(), play.model.state()), (Page::Attract, SessionState::Attract));
     assert!(play.effects.contains(&Effect::Forget));
     assert_eq!(play.screen().body_view, BodyView::Mannequin);
+}
+
+#[test]
+fn a_picture_that_is_served_is_announced_can_be_had_without_the_network_and_ends_with_the_visit() {
+    let address = SocketAddr::from((Ipv4Addr::LOCALHOST, 0));
+    let server = Arc::new(PictureServer::start(address, vec![7; 100]).unwrap());
+    let code = PictureCode { side: 2, dark: vec![true; 4] };
+    let mut play = Play::dressed();
+    play.link = Some(PictureLink { code, network: Some("Shop guest".into()), server: server.clone() });
+    play.press(Action::TakePicture);
+    play.wait(1_000);
+    let shown = |play: &Play| {
+        play.screen().blocks.iter().find_map(|b| if let Block::Code { side, .. } = b { Some(*side) } else { None })
+    };
+    assert_eq!(shown(&play), Some(2));
+    let words = texts_of(&play.screen()).join(" ");
+    assert!(words.contains("Shop guest") && words.contains("without encryption"), "{words}");
+    play.press(Action::OtherCode);
+    assert_eq!(shown(&play), Some(3), "the code that holds the picture");
+    assert!(texts_of(&play.screen()).join(" ").contains("nothing is sent"));
+    play.press(Action::OtherCode);
+    assert_eq!(shown(&play), Some(2));
+    play.link = None;
+    play.press(Action::Back);
+    play.press(Action::Leave);
+    assert_eq!(Arc::strong_count(&server), 1, "the visit has let go of it");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use egui::{FontId, Painter, Pos2, Rect, Vec2, pos2, vec2};
 
-use super::text::{SetText, centred, left_aligned};
+use super::text::{SetText, centred, is_ideograph, left_aligned};
 use super::theme::Look;
 use crate::visitor::screen::{Control, ControlStyle};
 
@@ -16,6 +16,15 @@ const KEY_COLUMNS: usize = 3;
 
 /// Height of the photograph on a tile, in lines of the body's type.
 const TILE_LINES: f32 = 5.6;
+
+/// The same in a column, where the words stand beside it.
+const NARROW_TILE_LINES: f32 = 3.2;
+
+/// Tighter than this, second lines that may be left out are.
+const SPARE: f32 = 0.8;
+
+/// Width of a photograph in a column, as a share of its height.
+const NARROW_TILE: f32 = 0.75;
 
 /// A button with its place.
 #[derive(Debug, Clone)]
@@ -124,10 +133,18 @@ impl Column<'_> {
 fn natural(control: &Control, look: Look, painter: &Painter) -> f32 {
     let font = font(control, look);
     let wide = |text: &str, font: FontId| left_aligned(painter, text, font, look.palette.ink, f32::INFINITY).size().x;
-    let longest = |text: &str, font: &FontId| text.split(' ').map(|w| wide(w, font.clone())).fold(0.0, f32::max);
+    // In a column, lines may end between any two ideographs, as they do in paragraphs.
+    let ends = |c: char| c == ' ' || look.narrow && is_ideograph(c);
+    let longest = |text: &str, font: &FontId| text.split(ends).map(|w| wide(w, font.clone())).fold(0.0, f32::max);
     let label = longest(&control.label, &font).max(wide(&control.label, font) * 0.62);
-    let detail = control.detail.as_ref().map_or(0.0, |d| longest(d, &look.small()).max(wide(d, look.small()) * 0.5));
+    let detail = detail(control, look).map_or(0.0, |d| longest(d, &look.small()).max(wide(d, look.small()) * 0.5));
     (label.max(detail) + aside(control, look) + 2.0 * pad(look)).ceil() + 1.0
+}
+
+/// The second line of a control, unless there is no room for it.
+fn detail(control: &Control, look: Look) -> Option<&String> {
+    let is_left_out = control.is_detail_spare && look.narrow && look.squeeze < SPARE;
+    control.detail.as_ref().filter(|_| !is_left_out)
 }
 
 /// Type of a control's words.
@@ -142,7 +159,9 @@ fn font(control: &Control, look: Look) -> FontId {
 
 /// What the mark of a choice takes beside the words.
 pub fn aside(control: &Control, look: Look) -> f32 {
-    if matches!(control.style, ControlStyle::Swatch(_) | ControlStyle::Tile(_)) || !control.chosen {
+    if is_row(control, look) {
+        picture_width(look) + pad(look)
+    } else if matches!(control.style, ControlStyle::Swatch(_) | ControlStyle::Tile(_)) || !control.chosen {
         0.0
     } else {
         (look.body * 1.5).round()
@@ -156,7 +175,18 @@ pub fn disc(look: Look) -> f32 {
 
 /// Height of the photograph on a tile.
 pub fn picture_height(look: Look) -> f32 {
-    (look.body * TILE_LINES * look.squeeze).max(look.target).round()
+    let lines = if look.narrow { NARROW_TILE_LINES } else { TILE_LINES };
+    (look.body * lines * look.squeeze).max(look.target).round()
+}
+
+/// Width of the photograph on a tile whose words stand beside it.
+pub fn picture_width(look: Look) -> f32 {
+    (picture_height(look) * NARROW_TILE).round()
+}
+
+/// Whether a control has its words beside its photograph.
+fn is_row(control: &Control, look: Look) -> bool {
+    look.narrow && matches!(control.style, ControlStyle::Tile(_))
 }
 
 /// Air within a button, left and right.
@@ -169,9 +199,14 @@ fn button(control: &Control, index: usize, width: f32, look: Look, painter: &Pai
     let dark = matches!(control.style, ControlStyle::Primary);
     let (ink, soft) =
         if dark { (look.palette.on_accent, look.palette.on_accent) } else { (look.palette.ink, look.palette.soft) };
-    let label = centred(painter, &control.label, font(control, look), ink, room);
-    let detail = control.detail.as_ref().map(|d| centred(painter, d, look.small(), soft, room));
+    let set = if is_row(control, look) { left_aligned } else { centred };
+    let label = set(painter, &control.label, font(control, look), ink, room);
+    let detail = detail(control, look).map(|d| set(painter, d, look.small(), soft, room));
     let words = label.size().y + detail.as_ref().map_or(0.0, |d| d.size().y);
+    if is_row(control, look) {
+        let tall = words.max(picture_height(look)) + 2.0 * pad(look);
+        return ButtonBox { index, rect: Rect::from_min_size(Pos2::ZERO, vec2(width, tall.round())), label, detail };
+    }
     let picture = if matches!(control.style, ControlStyle::Tile(_)) { picture_height(look) + pad(look) } else { 0.0 };
     let disc = if matches!(control.style, ControlStyle::Swatch(_)) { disc(look) + look.gap() * 0.4 } else { 0.0 };
     let air = match control.style {

@@ -1,44 +1,19 @@
 //! Layout: where everything of a screen stands, before anything is painted: what a finger hits is what a test measures.
 
-use egui::{FontId, Painter, Pos2, Rect, Vec2, pos2, vec2};
+use egui::{Painter, Pos2, Rect, Vec2, pos2, vec2};
 
+use super::arrangement::{Arrangement, MOST_PANEL};
+use super::blocks::{self, PlacedBlock};
 use super::controls::{self, ButtonBox};
-use super::qr_code;
-use super::text::{SetText, left_aligned};
+use super::text::{SetText, breaks_a_word};
 use super::theme::Look;
-use crate::visitor::screen::{Block, BodyView, Screen, ScreenPicture};
+use crate::visitor::screen::Screen;
 
 /// How tight the panel may get, in the order of trying.
 const SQUEEZES: [f32; 6] = [1.0, 0.92, 0.84, 0.76, 0.68, 0.6];
 
-/// Most of a standing display's height that the panel covers.
-const MOST_PANEL: f32 = 0.72;
-
-/// The same where it stands before somebody who looks at themselves, if it can.
-const BESIDE_BODY: f32 = 0.48;
-
-/// Most of the display's height that a code takes.
-const MOST_CODE: f32 = 0.5;
-
 /// Tighter than this only what has no place otherwise.
 const READ_WITH_EASE: f32 = 0.8;
-
-/// Share of a lying display's width that the panel takes.
-const SIDE: f32 = 0.42;
-
-/// Most of the panel's width that a logo takes.
-const LOGO_WIDTH: f32 = 0.4;
-
-/// A block with its place.
-#[derive(Debug, Clone)]
-pub struct PlacedBlock {
-    /// Index on the screen.
-    pub index: usize,
-    /// Rectangle on the display (pixels).
-    pub rect: Rect,
-    /// Its words, where it has some.
-    pub words: Vec<SetText>,
-}
 
 /// A screen that has been laid out.
 #[derive(Debug, Clone)]
@@ -65,19 +40,24 @@ pub struct ScreenLayout {
     pub fits: bool,
 }
 
-/// Lays a screen out on a display.
+/// Lays a screen out on a display: the first arrangement in which everything has its place, and the last one at any rate.
 pub fn lay(screen: &Screen, look: Look, painter: &Painter) -> ScreenLayout {
-    let mut last = None;
-    // A code is scanned from where one stands: it has all the room there is.
-    let code = screen.blocks.iter().any(|block| matches!(block, Block::Code { .. }));
-    let beside = !code && !matches!(screen.body_view, BodyView::Mannequin);
-    let most = look.display[1] * if beside { BESIDE_BODY } else { MOST_PANEL };
+    let (preferred, last) = Arrangement::of(screen, look);
+    let tries = SQUEEZES.into_iter().map(|squeeze| look.squeezed(squeeze));
+    let whole = preferred.and_then(|arrangement| {
+        let mut laid = tries.map(|look| lay_at(screen, look, arrangement, painter));
+        laid.find(|laid| laid.is_whole() && laid.panel.height() <= arrangement.most_panel(look) && !laid.breaks_words())
+    });
+    whole.unwrap_or_else(|| lay_as(screen, look, last, painter))
+}
+
+/// In one arrangement, as tight as it has to be.
+fn lay_as(screen: &Screen, look: Look, arrangement: Arrangement, painter: &Painter) -> ScreenLayout {
+    let (mut last, most) = (None, arrangement.most_panel(look));
     for squeeze in SQUEEZES {
-        let laid = lay_at(screen, look.squeezed(squeeze), painter);
-        let whole = laid.fits && laid.scrolls == 0.0;
-        let small = look.landscape || laid.panel.height() <= most;
+        let laid = lay_at(screen, look.squeezed(squeeze), arrangement, painter);
         // Type is made smaller for the sake of the body only as long as it is read with ease.
-        if whole && (small || squeeze <= READ_WITH_EASE) {
+        if laid.is_whole() && (laid.panel.height() <= most || squeeze <= READ_WITH_EASE) {
             return laid;
         }
         // Where nothing fits, buttons that scroll are better than words that are cut off.
@@ -88,127 +68,65 @@ pub fn lay(screen: &Screen, look: Look, painter: &Painter) -> ScreenLayout {
             last = Some(laid);
         }
     }
-    last.unwrap_or_else(|| lay_at(screen, look, painter))
+    last.unwrap_or_else(|| lay_at(screen, look, arrangement, painter))
 }
 
-fn lay_at(screen: &Screen, look: Look, painter: &Painter) -> ScreenLayout {
+fn lay_at(screen: &Screen, look: Look, arrangement: Arrangement, painter: &Painter) -> ScreenLayout {
     let [w, h] = look.display;
+    let look = Look { narrow: arrangement.is_narrow(look), ..look };
     let (margin, gap, air) = (look.margin(), look.gap(), look.air());
-    let column = if look.landscape { (w * SIDE).round() } else { w - 2.0 * air };
+    let column = arrangement.column(look);
     let inner = column - 2.0 * margin;
     let left = w - air - column + margin;
+    let [words, pressed] = arrangement.shares(inner, look);
     // What can be pressed: from the lower edge of what is reached up, and never above the reach.
-    let (mut buttons, wanted) = controls::lay(&screen.controls, inner, look, painter);
+    let (mut buttons, wanted) = controls::lay(&screen.controls, pressed, look, painter);
     let high = h * screen.reach.clamp(0.2, 1.0);
     let low = (h * screen.reach_low).clamp(air + margin, (high - look.target).max(air + margin)).ceil();
     let tall = wanted.min((high - low).max(look.target).floor());
-    let window = Rect::from_min_size(pos2(left, h - low - tall), vec2(inner, tall));
+    let window = Rect::from_min_size(pos2(left + inner - pressed, h - low - tall), vec2(pressed, tall));
     buttons.iter_mut().for_each(|b| b.shift(window.min.to_vec2()));
-    // What is read stands above it.
-    let heading = head(painter, &screen.heading, look, inner);
-    let mut blocks: Vec<PlacedBlock> =
-        screen.blocks.iter().enumerate().map(|(i, b)| block(i, b, inner, look, painter)).collect();
-    let logo = screen.logo.as_ref().map(|logo| logo_size(logo, inner, look));
+    // What is read stands above it, or beside it.
+    let heading = blocks::head(painter, &screen.heading, look, words);
+    let mut placed: Vec<PlacedBlock> =
+        screen.blocks.iter().enumerate().map(|(i, b)| blocks::block(i, b, words, look, painter)).collect();
+    let logo = screen.logo.as_ref().map(|logo| blocks::logo_size(logo, words, look));
     let above = logo.map_or(0.0, |size| size.y + gap);
-    let read = above + heading.size().y + blocks.iter().map(|b| b.rect.height() + gap).sum::<f32>();
+    let read = above + heading.size().y + placed.iter().map(|b| b.rect.height() + gap).sum::<f32>();
     let space = if buttons.is_empty() { 0.0 } else { gap * 1.6 };
-    let top = (window.top() - space - read).round();
-    let ceiling = if look.landscape { air + margin } else { h * (1.0 - MOST_PANEL) };
+    let is_wide = arrangement == Arrangement::Wide;
+    let top = (if is_wide { window.bottom() - read.max(tall) } else { window.top() - space - read }).round();
+    let ceiling = if arrangement == Arrangement::Beside { air + margin } else { h * (1.0 - MOST_PANEL) };
     let panel = Rect::from_min_max(pos2(left - margin, (top - margin).max(0.0)), pos2(w - air, h - low + margin));
     let logo = logo.map(|size| Rect::from_min_size(pos2(left, top), size));
     let top = top + above;
     let mut y = top + heading.size().y;
-    for placed in &mut blocks {
+    for block in &mut placed {
         y += gap;
-        placed.rect = placed.rect.translate(vec2(left, y));
-        y += placed.rect.height();
+        block.rect = block.rect.translate(vec2(left, y));
+        y += block.rect.height();
     }
-    let fits = top - above >= ceiling - 0.5 && y + space <= window.top() + 0.5;
-    let free = if look.landscape {
-        Rect::from_min_max(Pos2::ZERO, pos2(panel.left(), h))
-    } else {
-        Rect::from_min_max(Pos2::ZERO, pos2(w, panel.top()))
-    };
+    let has_room = if is_wide { y <= window.bottom() + 0.5 } else { y + space <= window.top() + 0.5 };
+    let fits = top - above >= ceiling - 0.5 && has_room;
+    let free = arrangement.free(panel, look);
     let scrolls = (wanted - tall).max(0.0);
     let heading = (pos2(left, top), heading);
-    ScreenLayout { look, panel, free, logo, heading, blocks, buttons, window, scrolls, fits }
-}
-
-/// Width and height of a logo: two lines of the heading high, and no wider than part of the panel.
-fn logo_size(logo: &ScreenPicture, width: f32, look: Look) -> Vec2 {
-    let [w, h] = [logo.0.width.max(1) as f32, logo.0.height.max(1) as f32];
-    let share = (look.body * 3.4 * look.squeeze / h).min(width * LOGO_WIDTH / w);
-    vec2(w * share, h * share).round()
-}
-
-/// The heading, a little smaller where that saves it a second line.
-fn head(painter: &Painter, text: &str, look: Look, width: f32) -> SetText {
-    let set = |share: f32| {
-        let font = look.heading();
-        left_aligned(painter, text, FontId { size: (font.size * share).round(), ..font }, look.palette.ink, width)
-    };
-    let large = set(1.0);
-    if large.rows.len() == 1 {
-        return large;
-    }
-    [0.93, 0.86, 0.8].into_iter().map(set).find(|smaller| smaller.rows.len() < large.rows.len()).unwrap_or(large)
-}
-
-/// A block at the origin.
-fn block(index: usize, block: &Block, width: f32, look: Look, painter: &Painter) -> PlacedBlock {
-    let text = |text: &str, room: f32| left_aligned(painter, text, look.text(), look.palette.ink, room);
-    let (height, set) = match block {
-        Block::Text(paragraph) => {
-            let paragraph = text(paragraph, width);
-            (paragraph.size().y, vec![paragraph])
-        }
-        Block::PoseGuide { .. } => ((look.body * 13.0 * look.squeeze * look.squeeze).round(), vec![]),
-        Block::TurnGuide { .. } => ((look.body * 9.0 * look.squeeze * look.squeeze).round(), vec![]),
-        Block::Entry { text } => {
-            let length = left_aligned(painter, text, big(look), look.palette.ink, width);
-            ((length.size().y * 1.3).round(), vec![length])
-        }
-        Block::Progress { share, label } => {
-            let percent = text(&format!("{:.0} %", share.clamp(0.0, 1.0) * 100.0), width);
-            let label = text(label, width - percent.size().x - look.gap());
-            (label.size().y + look.body * 1.1, vec![label, percent])
-        }
-        Block::Fit { text: paragraph, .. } => {
-            let paragraph = text(paragraph, width - gauge_width(look) - look.gap());
-            (paragraph.size().y.max(look.body * 1.1), vec![paragraph])
-        }
-        Block::Legend { ends } => {
-            let ends: Vec<SetText> =
-                ends.iter().map(|e| left_aligned(painter, e, look.small(), look.palette.soft, width * 0.48)).collect();
-            (look.body * 0.9 + ends.iter().map(|e| e.size().y).fold(0.0, f32::max), ends)
-        }
-        Block::Code { side, .. } => {
-            (qr_code::side(*side, width.min(look.display[1] * MOST_CODE * look.squeeze)), vec![])
-        }
-        Block::Countdown { seconds } => {
-            let number = left_aligned(painter, &clock(*seconds), big(look), look.palette.ink, width);
-            ((number.size().y * 1.3).round(), vec![number])
-        }
-    };
-    PlacedBlock { index, rect: Rect::from_min_size(Pos2::ZERO, vec2(width, height)), words: set }
-}
-
-/// Seconds as they are read: minutes where there are any.
-fn clock(seconds: u32) -> String {
-    if seconds < 60 { seconds.to_string() } else { format!("{}:{:02}", seconds / 60, seconds % 60) }
-}
-
-/// Width of the scale before a zone's fit.
-pub fn gauge_width(look: Look) -> f32 {
-    (look.body * 4.0).round()
-}
-
-/// Type of the seconds that are left.
-fn big(look: Look) -> FontId {
-    FontId { size: (look.body * 2.4).round(), ..look.heading() }
+    ScreenLayout { look, panel, free, logo, heading, blocks: placed, buttons, window, scrolls, fits }
 }
 
 impl ScreenLayout {
+    /// Whether everything is seen, whole.
+    fn is_whole(&self) -> bool {
+        self.fits && self.scrolls == 0.0
+    }
+
+    /// Whether a word is broken in two, or wider than its place.
+    fn breaks_words(&self) -> bool {
+        let buttons = self.buttons.iter().flat_map(|b| [Some(&b.label), b.detail.as_ref()].into_iter().flatten());
+        let read = self.blocks.iter().flat_map(|b| &b.words).chain([&self.heading.1]);
+        buttons.chain(read).any(|words| breaks_a_word(words))
+    }
+
     /// The control at a point, with buttons scrolled so far.
     pub fn hit(&self, at: Pos2, scrolled: f32) -> Option<usize> {
         let inside = |b: &&ButtonBox| b.rect.translate(Vec2::new(0.0, -scrolled)).contains(at);

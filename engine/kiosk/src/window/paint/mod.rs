@@ -7,6 +7,8 @@
 //! [`layout`] finds places, `shapes` fills them, [`touch`] finds what was pressed in the same places. Look follow the
 //! display: type from its height, touch targets from its millimetres.
 
+mod arrangement;
+mod blocks;
 mod controls;
 mod figure;
 pub mod fonts;

@@ -8,9 +8,10 @@ use toile_view::raster::{AdapterChoice, Gpu, Offscreen};
 
 use super::tests::DISPLAYS;
 use super::*;
-use crate::visitor::screen::{Action, Page};
+use crate::visitor::screen::{Action, Block, BodyView, Page};
 use crate::visitor::tests::Play;
 use crate::visitor::texts::Language;
+use crate::window::camera::tests::least_share;
 use crate::window::overlay::Overlay;
 
 /// The pages of a visit in a language, and in large type.
@@ -176,6 +177,30 @@ impl Proof {
     }
 }
 
+/// Least share of the display's height that a body has where clothes are shown.
+const LEAST_BODY: f32 = 0.6;
+
+/// The share of the display's height that a body has on a page; none where clothes are not what is looked at, and where a code is read off
+/// the display.
+fn body_share(screen: &Screen, display: DisplayMetrics, free: [f32; 4]) -> Option<f32> {
+    let [w, h] = display.size.map(|n| n as f32);
+    let has_code = screen.blocks.iter().any(|block| matches!(block, Block::Code { .. }));
+    let has_clothes = matches!(
+        screen.page,
+        Page::Fitting | Page::Garments | Page::Zones | Page::Zone | Page::Compare | Page::Picture
+    );
+    match screen.body_view {
+        _ if !has_clothes => None,
+        BodyView::Shopper { .. } if !has_code => Some(least_share(free, w / h)),
+        BodyView::Two { .. } => {
+            let [left, top, right, bottom] = free;
+            let free = if right < 1.0 { [0.0, top, 1.0, bottom] } else { [left, top, right, bottom] };
+            Some(least_share(free, 0.5 * w / h))
+        }
+        _ => None,
+    }
+}
+
 #[test]
 fn every_page_in_every_language_has_its_place_on_every_display() {
     let (mut bad, mut painter, mut proof) = (Vec::new(), ScreenPainter::default(), Proof::options());
@@ -189,6 +214,11 @@ fn every_page_in_every_language_has_its_place_on_every_display() {
                         proof.print(display, &format!("{size}{}-{name}", screen.language), &painted);
                     }
                     let laid = painter.laid().unwrap();
+                    let share = body_share(&screen, display, painted.free);
+                    if !large && share.is_some_and(|share| share < LEAST_BODY) {
+                        let [w, h] = display.size;
+                        bad.push(format!("{name} {} {w}x{h}: a body of {:.3}", screen.language, share.unwrap_or(0.0)));
+                    }
                     // Large type may scroll what is pressed; nothing that is read is ever cut off.
                     if !laid.fits || (laid.scrolls > 0.0 && !large) {
                         let [w, h] = display.size;

@@ -9,9 +9,14 @@ const MOST_MODULE: f32 = 12.0;
 /// Modules of white around it.
 const QUIET: usize = 4;
 
+/// Modules of a side with the white around them.
+pub fn modules(side: usize) -> f32 {
+    (side + 2 * QUIET) as f32
+}
+
 /// Width and height of the whole within a room (pixels), its modules whole pixels wide.
 pub fn side(side: usize, room: f32) -> f32 {
-    let all = (side + 2 * QUIET) as f32;
+    let all = modules(side);
     (room / all).floor().clamp(1.0, MOST_MODULE) * all
 }
 

@@ -3,8 +3,9 @@
 use egui::epaint::{CornerRadiusF32, RectShape};
 use egui::{Color32, Painter, Pos2, Rect, Rgba, Shape, Stroke, StrokeKind, Vec2, pos2, vec2};
 
-use super::controls::{ButtonBox, aside, disc, pad, picture_height};
-use super::layout::{PlacedBlock, ScreenLayout, gauge_width};
+use super::blocks::{PlacedBlock, gauge_width};
+use super::controls::{ButtonBox, aside, disc, pad, picture_height, picture_width};
+use super::layout::ScreenLayout;
 use super::pictures::PictureTextures;
 use super::text::SetText;
 use super::theme::{self, Look};
@@ -224,7 +225,8 @@ fn tile(
     (painter, textures): (&Painter, &PictureTextures),
 ) {
     let air = pad(look);
-    let place = Rect::from_min_size(rect.min + vec2(air, air), vec2(rect.width() - 2.0 * air, picture_height(look)));
+    let wide = if look.narrow { picture_width(look) } else { rect.width() - 2.0 * air };
+    let place = Rect::from_min_size(rect.min + vec2(air, air), vec2(wide, picture_height(look)));
     let round = look.round() * 0.5;
     let shown =
         control.picture.as_ref().is_some_and(|picture| textures.paint(painter, place, picture, round).is_some());
@@ -239,10 +241,23 @@ fn tile(
         painter.circle_filled(centre, radius, look.palette.ink);
         check(painter, centre, radius, look.palette.on_ink);
     }
+    if look.narrow {
+        return beside(button, rect, place.right() + air, painter);
+    }
     let top = place.bottom() + air * 0.6;
     put(painter, pos2(rect.center().x, top), &button.label);
     if let Some(detail) = &button.detail {
         put(painter, pos2(rect.center().x, top + button.label.size().y), detail);
+    }
+}
+
+/// The words of a tile, right of its photograph.
+fn beside(button: &ButtonBox, rect: Rect, x: f32, painter: &Painter) {
+    let tall = button.label.size().y + button.detail.as_ref().map_or(0.0, |d| d.size().y);
+    let top = rect.center().y - tall * 0.5;
+    put(painter, pos2(x, top), &button.label);
+    if let Some(detail) = &button.detail {
+        put(painter, pos2(x, top + button.label.size().y), detail);
     }
 }
 

@@ -17,7 +17,7 @@ pub const DISPLAYS: [DisplayMetrics; 4] = [
 ];
 
 fn control(action: Action, label: &str, style: ControlStyle) -> Control {
-    Control { action, label: label.into(), detail: None, style, chosen: false, picture: None }
+    Control { action, label: label.into(), detail: None, is_detail_spare: false, style, chosen: false, picture: None }
 }
 
 /// One of everything.

@@ -16,6 +16,13 @@ pub const TARGET_MM: f32 = 20.0;
 /// Least height of a line of the body's type, as a share of the display's height.
 pub const LEAST_LINE: f32 = 1.0 / 60.0;
 
+/// Least height of a line on a display that people look at from two metres (mm): its capitals are nine millimetres high, 16 minutes of arc
+/// from there, the least that is read with ease (ISO 9241-303, 5.5.3).
+pub const LINE_AT_TWO_METRES_MM: f32 = 13.0;
+
+/// The same on a display that is too small for it, as a share of its height.
+const MOST_LEAST_LINE: f32 = 1.0 / 45.0;
+
 /// The family of the words, and of headings.
 pub const BODY: FontFamily = FontFamily::Proportional;
 
@@ -30,6 +37,10 @@ pub struct Look {
     pub target: f32,
     /// Whether the panel stands beside the picture.
     pub landscape: bool,
+    /// Whether the panel is a column beside somebody who stands.
+    pub narrow: bool,
+    /// Height of the smallest type.
+    pub least: f32,
     /// How much tighter than it likes to be everything stands, 0.6 .. 1.
     pub squeeze: f32,
     /// Its colours.
@@ -41,22 +52,24 @@ impl Look {
     pub fn of(display: [f32; 2], pixel_mm: f32, type_scale: f32, palette: Palette) -> Self {
         let [w, h] = display;
         let landscape = w > h;
-        let ordinary = (h / 42.0).min(w / 30.0).max(h * LEAST_LINE);
+        let least = (LINE_AT_TWO_METRES_MM / pixel_mm.max(1e-3)).clamp(h * LEAST_LINE, h * MOST_LEAST_LINE).ceil();
+        let ordinary = (h / 42.0).min(w / 30.0).max(least);
         Self {
             display,
             body: (ordinary * type_scale.clamp(1.0, 2.0)).round(),
             target: (TARGET_MM / pixel_mm.max(1e-3)).min(h * 0.1).ceil(),
             landscape,
+            narrow: false,
+            least,
             squeeze: 1.0,
             palette,
         }
     }
 
-    /// The same, tighter: less air first, then smaller type, never below [`LEAST_LINE`].
+    /// The same, tighter: less air first, then smaller type, never below the least.
     #[must_use]
     pub fn squeezed(self, share: f32) -> Self {
-        let least = (self.display[1] * LEAST_LINE).ceil();
-        Self { body: (self.body * share.max(0.75)).max(least.min(self.body)).round(), squeeze: share, ..self }
+        Self { body: (self.body * share.max(0.75)).max(self.least.min(self.body)).round(), squeeze: share, ..self }
     }
 
     /// Type of the heading.
@@ -76,7 +89,7 @@ impl Look {
 
     /// Type of second lines: never below the least.
     pub fn small(&self) -> FontId {
-        FontId::new((self.body * 0.84).max(self.display[1] * LEAST_LINE).round(), BODY)
+        FontId::new((self.body * 0.84).max(self.least).round(), BODY)
     }
 
     /// Empty space between things (pixels).
@@ -86,7 +99,7 @@ impl Look {
 
     /// Air between the panel's edge and what stands on it.
     pub fn margin(&self) -> f32 {
-        (self.body * 1.3).round()
+        (self.body * if self.narrow { 0.8 } else { 1.3 }).round()
     }
 
     /// Air between the display's edge and the panel.
