@@ -26,7 +26,7 @@ const KNOT_M: f64 = 0.1;
 const END_M: [f64; 2] = [0.09, 0.13];
 
 /// Lengths of the left and the right end below the neck's point (part of stature).
-const ENDS: [f64; 2] = [0.4, 0.345];
+const ENDS: [f64; 2] = [0.335, 0.285];
 
 /// Height of the band around the neck (m), and how much longer its upper edge is (1): it sinks into folds.
 const BAND: [f64; 2] = [0.095, 1.12];
