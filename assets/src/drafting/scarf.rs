@@ -10,8 +10,8 @@ use super::garment::DraftGarment;
 use super::panel::{DraftPanel, DraftSide, Outline, at};
 
 /// How much wider the neck is than the body's, each side (m), and how deep in front and behind (m).
-const NECK_WIDER_M: f64 = 0.022;
-const NECK_M: [f64; 2] = [0.075, 0.015];
+const NECK_WIDER_M: f64 = 0.034;
+const NECK_M: [f64; 2] = [0.085, 0.028];
 
 /// How far it lies over the shoulder beyond that (m): short of the shoulder's tip in every size.
 const OVER_SHOULDER_M: f64 = 0.05;
