@@ -164,7 +164,7 @@ pub enum FabricError {
 }
 
 /// The fabrics that are built in.
-const BUILT_IN: [&str; 28] = [
+const BUILT_IN: [&str; 32] = [
     include_str!("../data/fabrics/cotton-lawn.toml"),
     include_str!("../data/fabrics/cotton-jersey.toml"),
     include_str!("../data/fabrics/linen-twill.toml"),
@@ -193,6 +193,10 @@ const BUILT_IN: [&str; 28] = [
     include_str!("../data/fabrics/wool-tropical.toml"),
     include_str!("../data/fabrics/polyester-faille.toml"),
     include_str!("../data/fabrics/denim-tropical.toml"),
+    include_str!("../data/fabrics/scarf-wool.toml"),
+    include_str!("../data/fabrics/scarf-tartan.toml"),
+    include_str!("../data/fabrics/scarf-college.toml"),
+    include_str!("../data/fabrics/scarf-camel.toml"),
 ];
 
 /// The name in the text of a built-in fabric, whose file has it in a line of its own.

@@ -86,3 +86,24 @@ fn a_jacket_bakes_in_its_layer() {
     let garment = package.dress("L", &body).unwrap();
     assert!(garment.layer == 4 && garment.particles() > 2_000 && garment.fixed.len() > 10);
 }
+
+/// Held by the skin its part on the shoulders went through a shirt, and drew the shirt's back up.
+#[test]
+fn a_scarf_lies_around_the_neck_and_is_held_by_nothing() {
+    for size in ["XXS", "M", "3XL"] {
+        let (package, body, draped) = hung("scarf", size);
+        let mean = |panel: &str| {
+            let at = of(&package, &draped, panel);
+            at.iter().sum::<Vec3>() / at.len() as f32
+        };
+        let neck = body.skeleton.at(Joint::Neck);
+        let [left, right, back] = ["left collar", "right collar", "back collar"].map(|panel| mean(panel) - neck);
+        assert!(back.z < left.z.min(right.z) && left.x > right.x, "{size}: {left} {right} {back}");
+        assert!(left.y.min(right.y).min(back.y) > body.levels.shoulder - neck.y, "{size}: {left} {right} {back}");
+        let [left, right] = ["left front", "right front"]
+            .map(|end| of(&package, &draped, end).iter().map(|p| p.y).fold(f32::MAX, f32::min));
+        assert!(left < right - 0.04 && right < body.levels.chest, "{size}: its ends are at {left} and {right}");
+        let garment = package.dress(size, &body).unwrap();
+        assert!(garment.layer == 6 && garment.fixed.is_empty(), "{size}: {} are held", garment.fixed.len());
+    }
+}

@@ -102,8 +102,8 @@ impl GarmentManifest {
             return Err(format!("the article number must have 1 to {MAX_ARTICLE} printable characters; correct it"));
         }
         check_words("name", &self.names)?;
-        if let Some(layer) = self.layer.filter(|layer| !(1..=5).contains(layer)) {
-            return Err(format!("layer is {layer}; give 1 (underwear) to 5 (coats)"));
+        if let Some(layer) = self.layer.filter(|layer| !(1..=6).contains(layer)) {
+            return Err(format!("layer is {layer}; give 1 (underwear) to 6 (scarves)"));
         }
         if self.colours.len() > MAX_COLOURS {
             return Err(format!(

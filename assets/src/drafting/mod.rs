@@ -12,6 +12,7 @@ mod dart;
 mod garment;
 mod panel;
 mod poncho;
+mod scarf;
 mod skirt;
 mod sleeve;
 mod styles;

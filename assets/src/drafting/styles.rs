@@ -6,7 +6,7 @@ use super::garment::DraftGarment;
 use super::skirt::{self, SkirtStyle};
 use super::sleeve::SleeveStyle;
 use super::trousers::{TrouserStyle, trousers};
-use super::{poncho, tops};
+use super::{poncho, scarf, tops};
 use crate::sizes::GarmentKind;
 
 /// A garment that is drafted.
@@ -24,7 +24,8 @@ pub struct DraftStyle {
     pub fabric: &'static str,
     /// Distance between particles (mm).
     pub spacing_mm: f64,
-    /// The layer that it is worn in: 1 underwear, 2 skirts and trousers, 3 tops and dresses, 4 jackets, 5 coats.
+    /// The layer that it is worn in: 1 underwear, 2 skirts and trousers, 3 tops and dresses, 4 jackets, 5 coats, 6
+    /// scarves.
     pub layer: u8,
     /// Draws it.
     pub draw: fn(&DraftBlock) -> DraftGarment,
@@ -33,6 +34,7 @@ pub struct DraftStyle {
 /// Whose sizes a garment is made in.
 const WOMEN: (&str, [&str; 3]) = ("women", ["32", "44", "54"]);
 const MEN: (&str, [&str; 3]) = ("men", ["XXS", "M", "3XL"]);
+const ANYBODY: (&str, [&str; 3]) = ("unisex", ["XXS", "M", "3XL"]);
 const MEN_TROUSERS: (&str, [&str; 3]) = ("men-trousers", ["60", "92", "132"]);
 
 const fn style(
@@ -56,9 +58,10 @@ const FLOWERS: &str = "lawn-flowers";
 const HOUNDSTOOTH: &str = "wool-houndstooth";
 const HERRINGBONE: &str = "wool-herringbone";
 const WINDOWPANE: &str = "wool-windowpane";
+const SCARF: &str = "scarf-wool";
 
 /// All of them, by layer from the inside out.
-pub const STYLES: [DraftStyle; 22] = [
+pub const STYLES: [DraftStyle; 23] = [
     style("straight-skirt", WOMEN, GarmentKind::Skirt, (LINEN, 17.0, 2), |b| skirt::straight(b, &STRAIGHT_SKIRT)),
     style("pencil-skirt", WOMEN, GarmentKind::Skirt, (WOOL, 17.0, 2), |b| skirt::straight(b, &PENCIL_SKIRT)),
     style("circle-skirt", WOMEN, GarmentKind::Skirt, (GINGHAM, 20.0, 2), skirt::circle),
@@ -97,6 +100,7 @@ pub const STYLES: [DraftStyle; 22] = [
         tops::jacket(b, &to_the_knee(COAT, b, 0.95), &COAT_SLEEVE.of(b), 3)
     }),
     style("poncho", WOMEN, GarmentKind::Jacket, (WINDOWPANE, 20.0, 5), poncho::poncho),
+    style("scarf", ANYBODY, GarmentKind::Jacket, (SCARF, 16.0, 6), scarf::scarf),
 ];
 
 /// A style with a hem at a part of the way from the waist to the knee.

@@ -33,6 +33,9 @@ pub const FABRIC: &str = "cotton-lawn";
 /// Layer of a tailored garment that says nothing of it: worn over underwear, beneath jackets.
 const LAYER: u8 = 3;
 
+/// From this layer on a garment lies on others by its weight, and the skin carries nothing of it.
+const SCARVES: u8 = 6;
+
 /// What is read as a package or a pattern.
 const PACKAGE: FileKind = FileKind {
     name: "a pattern or a garment package",
@@ -59,7 +62,8 @@ pub struct PatternPackage {
     pub spacing_mm: f64,
     /// A fabric that is built in.
     pub fabric: String,
-    /// The layer that it is worn in, where it says so: 1 underwear, 2 skirts and trousers, 3 tops and dresses, 4 jackets, 5 coats.
+    /// The layer that it is worn in, where it says so: 1 underwear, 2 skirts and trousers, 3 tops and dresses, 4 jackets, 5 coats,
+    /// 6 scarves.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layer: Option<u8>,
     /// For whom its drafts are, where that is known.
@@ -238,7 +242,13 @@ impl PatternPackage {
     /// As [`Self::sized`] and [`Self::drape`].
     pub fn draft(&self, size: &str, body: &Body, fabric: &Fabric) -> Result<Shape, PackageError> {
         let pattern = self.sized(size, &body.measures)?;
-        Ok(self.drape(&pattern, body, fabric)?.shape(body, &SkinField::new(body)))
+        let mut shape = self.drape(&pattern, body, fabric)?.shape(body, &SkinField::new(body));
+        // Carried by the skin a scarf would press what is worn beneath it down to the skin.
+        if self.layer.is_some_and(|layer| layer >= SCARVES) {
+            shape.fixed.fill(false);
+            shape.weights.fill(Default::default());
+        }
+        Ok(shape)
     }
 
     /// The garment on a body, in a size, baked.

@@ -24,12 +24,19 @@ impl DrapedPattern {
         let mut out = shape(&self.sewn, self.at.clone());
         self.turn_warp_down(&mut out);
         let skin = SkinByHeight::new(body);
-        // Between an arm and the trunk cloth would be pinched; what hangs free below meets hands as well.
+        // Between an arm and the trunk cloth would be pinched; what hangs free below meets hands as well. Before and behind the
+        // armhole it lies on both: the shoulder's tip would come through cloth that met the trunk alone.
         let sleeves = self.arranged.panels.iter().any(|p| matches!(p.around, Around::LeftArm | Around::RightArm));
         let on_trunk = |p: Vec3| self.arranged.shoulders && (sleeves || p.y > body.levels.waist);
-        let hollow = |p: Vec3| self.arranged.shoulders && skin.in_armpit(p);
+        let armpit = |p: Vec3| self.arranged.shoulders && skin.in_armpit(p);
         let part = |(v, p): (usize, &Vec3)| match self.limb(v) {
-            _ if hollow(*p) => Part::Hollow,
+            limb if armpit(*p) => {
+                if skin.is_pinched(*p) {
+                    Part::Hollow
+                } else {
+                    limb
+                }
+            }
             Part::All if on_trunk(*p) => Part::Trunk,
             limb => limb,
         };

@@ -11,6 +11,9 @@ const HOLLOW_M: f32 = 0.045;
 /// Farther than this (m) from a shoulder's joint is no armpit.
 const ARMPIT_M: f32 = 0.22;
 
+/// Skins whose normals have less than this in common (cosine) face each other: before and behind an armpit they look the same way.
+const FACES: f32 = 0.3;
+
 /// A body's vertices by height, and the triangles around each.
 pub(crate) struct SkinByHeight<'a> {
     body: &'a Body,
@@ -86,6 +89,16 @@ impl<'a> SkinByHeight<'a> {
             let shoulder = self.body.skeleton.at(shoulder);
             p.y < shoulder.y && p.distance(shoulder) < ARMPIT_M && near(arm) && near(Region::Torso)
         })
+    }
+
+    /// Whether a point in the hollow of an armpit lies between arm and trunk, whose skins face each other there, rather than before or
+    /// behind both.
+    pub(crate) fn is_pinched(&self, p: Vec3) -> bool {
+        let normal =
+            |region: Region| self.nearest_of(p, |v| self.body.regions[v] == region).map(|(v, _)| self.normal(v));
+        let [trunk, left, right] = [Region::Torso, Region::LeftArm, Region::RightArm].map(normal);
+        let arm = if p.x > 0.0 { left } else { right };
+        trunk.zip(arm).is_some_and(|(a, b)| a.dot(b) < FACES)
     }
 
     /// The same among the vertices that `admits` names.

@@ -3,6 +3,7 @@
 use std::f32::consts::{FRAC_PI_2, PI};
 use std::fs::File;
 use std::io::BufWriter;
+use std::ops::RangeInclusive;
 
 use glam::Vec3;
 use toile_assets::limits::STEP_HZ;
@@ -21,8 +22,16 @@ use crate::output::OutputFolder;
 use crate::renderer::PictureRenderer;
 use crate::terminal::Progress;
 
-/// A still: tall enough to see a hem's folds, small enough that three take a few seconds.
-const STILL: Size = Size::new(480, 800);
+/// Rows of a still: enough to see a hem's folds, few enough that three take a few seconds.
+pub const STILL_ROWS: u16 = 800;
+
+/// Rows that a still may have: fewer show nothing, more are beyond any screen.
+pub const ROWS: RangeInclusive<u16> = 100..=4320;
+
+/// A still of so many rows, three parts wide and five high.
+const fn still(rows: u16) -> Size {
+    Size::new(rows as u32 * 3 / 5, rows as u32)
+}
 
 /// Stills at the end: three views in the fabric's colours, three as a fit map.
 const STILLS: u64 = 6;
@@ -66,12 +75,18 @@ pub struct Pictures {
     timing: AnimationTiming,
     kept: Vec<(Image, u64)>,
     frame: DrawnFrame,
+    still: Size,
     bar: Progress,
 }
 
 impl Pictures {
-    /// Begins the animation of a session of `steps` steps.
-    pub fn begin(out: &mut OutputFolder, frame: DrawnFrame, steps: u64, bar: Progress) -> Result<Self, AppError> {
+    /// Begins the animation of a session of `steps` steps; stills will have so many rows.
+    pub fn begin(
+        out: &mut OutputFolder,
+        frame: DrawnFrame,
+        (steps, rows): (u64, u16),
+        bar: Progress,
+    ) -> Result<Self, AppError> {
         let timing = AnimationTiming::new(steps);
         let path = out.stage("session.png")?;
         let file = BufWriter::new(File::create(&path).map_err(AppError::input)?);
@@ -80,6 +95,7 @@ impl Pictures {
             timing,
             kept: Vec::new(),
             frame,
+            still: still(rows),
             bar,
         })
     }
@@ -115,18 +131,19 @@ impl Pictures {
         self.animation.finish().map_err(AppError::input)?;
         debug_assert_eq!(self.kept.len(), self.timing.frames as usize);
         contact_sheet(out, &self.kept)?;
-        let legend = fit_map::legend(3 * STILL.width / 4, contact_sheet::PAPER);
-        let aspect = STILL.width as f32 / STILL.height as f32;
+        let still = self.still;
+        let legend = fit_map::legend(3 * still.width / 4, contact_sheet::PAPER);
+        let aspect = still.width as f32 / still.height as f32;
         let look = |bounds: &Bounds| {
             [0.0, FRAC_PI_2, PI].map(|turn| Camera::framing(bounds, end.facing + turn, aspect)).to_vec()
         };
         if let Some(worst) = end.worst {
-            draw_worst(out, renderer, &mut self.frame, worst)?;
+            draw_worst(out, renderer, (&mut self.frame, still), worst)?;
         }
         self.frame.update(snapshot);
         for (name, map, legend) in [("look.png", None, None), ("fit.png", Some(end.tightness), Some(&legend))] {
             let surfaces = self.frame.surfaces(map);
-            let drawn = renderer.draw(&surfaces, end.lines, (STILL, TraceQuality::Still), look, || self.bar.inc(1))?;
+            let drawn = renderer.draw(&surfaces, end.lines, (still, TraceQuality::Still), look, || self.bar.inc(1))?;
             let [front, side, back] = &drawn[..] else { return Err(AppError::internal("three views were asked for")) };
             write_png(out, name, &contact_sheet::triptych(front, side, back, end.title, legend))?;
         }
@@ -172,13 +189,13 @@ pub struct FinalState<'a> {
 fn draw_worst(
     out: &mut OutputFolder,
     renderer: &mut PictureRenderer,
-    frame: &mut DrawnFrame,
+    (frame, still): (&mut DrawnFrame, Size),
     worst: &WorstMoment,
 ) -> Result<(), AppError> {
     frame.place(&worst.garments, &worst.skin);
-    let aspect = STILL.width as f32 / STILL.height as f32;
+    let aspect = still.width as f32 / still.height as f32;
     let look = |bounds: &Bounds| [0.0, PI].map(|turn| Camera::framing(bounds, worst.facing + turn, aspect)).to_vec();
-    let drawn = renderer.draw(&frame.surfaces(None), &[], (STILL, TraceQuality::Still), look, || {})?;
+    let drawn = renderer.draw(&frame.surfaces(None), &[], (still, TraceQuality::Still), look, || {})?;
     let views: Vec<&Image> = drawn.iter().collect();
     let title = format!("{:.1} s: most edges through faces, {}", worst.seconds, worst.crossings);
     write_png(out, "worst.png", &contact_sheet::views(&views, &["front", "back"], &title))

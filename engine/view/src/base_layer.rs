@@ -68,7 +68,7 @@ fn briefs(body: &Body, p: Vec3) -> f32 {
 fn bandeau(body: &Body, p: Vec3) -> f32 {
     let levels = &body.levels;
     let rise = levels.chest - levels.underbust;
-    (levels.chest + 0.9 * rise.max(0.03) - p.y).min(p.y - (levels.underbust - 0.35 * rise))
+    (levels.chest + 0.5 * rise.max(0.03) - p.y).min(p.y - (levels.underbust - 0.35 * rise))
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 
 mod worn;
 
+use clap::builder::RangedI64ValueParser;
 use clap::{ArgAction, value_parser};
 use std::path::Path;
 use std::path::PathBuf;
@@ -41,7 +42,7 @@ use crate::commands::crossings::CrossingCount;
 use crate::exit::AppError;
 use crate::output::Inputs;
 use crate::output::OutputFolder;
-use crate::pictures::{FinalState, Pictures, WorstMoment};
+use crate::pictures::{FinalState, Pictures, ROWS, STILL_ROWS, WorstMoment};
 use crate::renderer::{PictureRenderer, RendererChoice};
 use crate::report::{self, Document, Recommendation, TryOn, ZoneFitReport};
 use crate::summary;
@@ -97,6 +98,9 @@ pub struct TryOnArgs {
     /// Make no pictures: only the report and the physics
     #[arg(long = "no-pictures", action = ArgAction::SetFalse)]
     pub pictures: bool,
+    /// Rows of each still of look.png, fit.png and worst.png
+    #[arg(long, value_name = "N", value_parser = rows(), default_value_t = STILL_ROWS)]
+    pub rows: u16,
     /// What draws: cpu, or gpu in a build with the feature `view`
     #[arg(
         long,
@@ -159,6 +163,12 @@ impl Wearer {
             _ => Err("it is neither female nor male nor a file".to_owned()),
         }
     }
+}
+
+/// Rows of a still, as `--rows` reads them.
+fn rows() -> RangedI64ValueParser<u16> {
+    let (least, most) = (i64::from(*ROWS.start()), i64::from(*ROWS.end()));
+    RangedI64ValueParser::new().range(least..=most)
 }
 
 /// Runs `toile try-on`.
@@ -290,7 +300,7 @@ fn play(
     let mut pictures = None;
     if args.pictures {
         let bar = words.bar(Pictures::work(steps), "drawing");
-        pictures = Some(Pictures::begin(out, DrawnFrame::new(frame, appearance), steps, bar)?);
+        pictures = Some(Pictures::begin(out, DrawnFrame::new(frame, appearance), (steps, args.rows), bar)?);
     }
     let film = |path: &PathBuf| {
         let bar = words.bar(Video::work(steps), "filming");

@@ -62,13 +62,14 @@ pub enum Layer {
 }
 
 impl Layer {
-    /// By the number that garments have: 1 underwear, 2 skirts and trousers, 3 tops and dresses, 4 jackets, 5 coats.
+    /// By the number that garments have: 1 underwear, 2 skirts and trousers, 3 tops and dresses, 4 jackets, 5 coats, 6 scarves.
     const fn of(number: u8) -> Self {
         match number {
             1 => Self::Underwear,
             2 | 3 => Self::Shirt,
             4 => Self::Jacket,
-            _ => Self::Coat,
+            5 => Self::Coat,
+            _ => Self::Scarf,
         }
     }
 }
