@@ -9,6 +9,7 @@ use serde::Deserialize;
 use crate::body::{Body, Levels, Measures};
 use crate::garment::Garment;
 use crate::garment::look::MeshPicture;
+use crate::numeric::statistics;
 use crate::texture::{Atlas, Texture};
 
 /// Where a garment stays in place on the body while the rest of it stretches.
@@ -88,6 +89,10 @@ const OTHER_CUT: f32 = 0.3;
 
 /// Height of the rows in which outlines are compared (m).
 const ROW_M: f32 = 0.01;
+
+/// How much more or less than most of its rows a row of the picture is stretched (1): where sleeves of the picture end at other heights
+/// than those of the cloth, outlines do not say what meets what.
+const ROW_STRETCH: f32 = 1.12;
 
 /// A texel counts as garment from this opacity on.
 const OPAQUE: u8 = 128;
@@ -268,13 +273,14 @@ impl GarmentPhotographs {
         }
         let behind = self.back.as_ref().unwrap_or(&self.front);
         let atlas = Atlas::of(&[self.front.texture.clone(), behind.texture.clone()]).ok_or("it has no pictures")?;
+        let usual = self.scale(&rows, [low, level, high]);
         let place = |view: &PhotographView, p: Vec3, side: f32| {
             let down = self.down(view, p.y, [low, level, high]);
             let ([from, to], [left, right]) = (view.row(down), rows.at(p.y));
-            let across = ((p.x - left) / (right - left).max(1e-3)).clamp(0.0, 1.0);
-            // From behind the wearer's left is on the left.
-            let across = if side > 0.0 { across } else { 1.0 - across };
-            Vec2::new((from + across * (to - from)).clamp(0.0, 0.999), (1.0 - down).clamp(0.0, 0.999))
+            let scale = ((to - from) / (right - left).max(1e-3)).clamp(usual / ROW_STRETCH, usual * ROW_STRETCH);
+            // From behind the wearer's left is on the left. Beside the outline the picture has the nearest colour.
+            let across = 0.5 * (from + to) + side * scale * (p.x - 0.5 * (left + right));
+            Vec2::new(across.clamp(0.0, 0.999), (1.0 - down).clamp(0.0, 0.999))
         };
         let corners = garment.triangles.iter().map(|t| {
             let [a, b, c] = t.map(|v| garment.start[v as usize]);
@@ -284,6 +290,16 @@ impl GarmentPhotographs {
         });
         garment.look.picture = Some(MeshPicture { corners: corners.collect(), texture: atlas.texture.clone() });
         Ok(())
+    }
+
+    /// How much of the picture's breadth a metre of most of the cloth's rows takes (1/m).
+    fn scale(&self, rows: &ClothRows, levels: [f32; 3]) -> f32 {
+        let row = |(i, [left, right]): (usize, &[f32; 2])| {
+            let down = self.down(&self.front, rows.low + (i as f32 + 0.5) * ROW_M, levels);
+            let [from, to] = self.front.row(down);
+            (to - from) / (right - left).max(1e-3)
+        };
+        statistics::median_of(rows.sides.iter().enumerate().map(row)).unwrap_or(1.0)
     }
 
     /// How far down the picture a height of the cloth is, 0 to 1.
@@ -401,6 +417,37 @@ mod tests {
         let low = garment.start.iter().fold(f32::MAX, |l, p| l.min(p.y));
         // Resized, the picture mixes colours by a few of 255.
         assert!(colour(&garment, |p| p.y < low + 0.05, true)[2] > 240);
+    }
+
+    /// Sleeves of the picture end 60 mm lower than the cloth's: its rows there were half as wide again.
+    #[test]
+    fn rows_beside_sleeves_are_not_stretched() {
+        let (body, mut garment) = tee();
+        let mut photograph = image::load_from_memory(&photograph()).unwrap().into_rgba8();
+        for (x, y, texel) in photograph.enumerate_pixels_mut() {
+            let sleeve = y > 60 && y < 260 && (10..390).contains(&x);
+            *texel = if sleeve { Rgba([9, 9, 9, 255]) } else { *texel };
+        }
+        let mut bytes = Cursor::new(Vec::new());
+        photograph.write_to(&mut bytes, ImageFormat::Png).unwrap();
+        let bytes = bytes.into_inner();
+        said().read(|_| Ok(bytes.clone())).unwrap().lay_on(&mut garment, &body).unwrap();
+        let picture = garment.look.picture.as_ref().unwrap();
+        let mut scales = Vec::new();
+        for (t, corners) in garment.triangles.iter().zip(&picture.corners) {
+            let [a, b, c] = t.map(|v| garment.start[v as usize]);
+            if (b - a).cross(c - a).z > 1e-5 && a.x.abs() < 0.1 {
+                for (p, q, u, v) in [(a, b, corners[0], corners[1]), (b, c, corners[1], corners[2])] {
+                    if (q.x - p.x).abs() > 0.01 && (q.y - p.y).abs() < 0.002 {
+                        scales.push((v.x - u.x) / (q.x - p.x));
+                    }
+                }
+            }
+        }
+        assert!(scales.len() > 20, "{}", scales.len());
+        let usual = statistics::median_of(scales.iter().copied()).unwrap();
+        let off = scales.iter().filter(|s| (**s / usual).max(usual / **s) > ROW_STRETCH * ROW_STRETCH).count();
+        assert!(off * 20 < scales.len(), "{off} of {} edges", scales.len());
     }
 
     #[test]
