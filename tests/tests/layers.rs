@@ -72,12 +72,14 @@ fn crates_import_only_the_floors_below() {
 /// The benchmarks' crate: evidence for developers, nothing that the running program needs.
 const BENCHMARKS: &str = "toile-perf";
 
-/// The commands that measure the engine, files and folders, and the count of crossings that reports of what is played have.
-const BENCH_COMMANDS: [&str; 9] = [
+/// The commands that measure the engine, files and folders, the count of crossings that reports of what is played have, and the
+/// loops of a fabric, which are measured on its law and plotted.
+const BENCH_COMMANDS: [&str; 10] = [
     "bench.rs",
     "bench/",
     "colliders.rs",
     "crossings.rs",
+    "fabric/loops.rs",
     "latency.rs",
     "pareto.rs",
     "soak.rs",

@@ -12,7 +12,6 @@ use toile_assets::fabric::Fabric;
 use toile_assets::fabric::loop_widths::LoopWidths;
 use toile_assets::fabric::sheet::MeasuredSheet;
 use toile_assets::put_line;
-use toile_perf::plot::raster;
 
 use crate::arguments::Printing;
 use crate::exit::AppError;
@@ -225,9 +224,7 @@ fn show(args: &ShowArgs) -> Result<(), AppError> {
         }
         Some(path) => {
             let file = OutputFile::prepare(path, Inputs::new([&args.fabric]))?;
-            let mut png = Vec::new();
-            raster::image(&loops::drawing(&fabric)).write_png(&mut png).map_err(AppError::internal)?;
-            file.write(&png)?
+            file.write(&loops::png(&fabric)?)?
         }
         None => Vec::new(),
     };

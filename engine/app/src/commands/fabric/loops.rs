@@ -5,7 +5,10 @@ use toile_assets::fabric::Fabric;
 use toile_assets::fabric::friction_element::{FrictionElement, read_loop};
 use toile_perf::plot::axis::Axis;
 use toile_perf::plot::chart::{Chart, Series, SeriesStyle};
+use toile_perf::plot::raster;
 use toile_perf::plot::{BLACK, Drawing, SERIES_COLOURS};
+
+use crate::exit::AppError;
 
 /// A loop: how far it is made, between which deformations it is read, its words.
 struct LoopKind {
@@ -105,8 +108,18 @@ fn measured(kind: &LoopKind, element: &FrictionElement) -> Vec<[f64; 2]> {
     kind.read.into_iter().flat_map(|d| [at(d, 1.0), at(d, -1.0), at(-d, 1.0), at(-d, -1.0)]).collect()
 }
 
-/// The loops as a picture: bending above, shear below where it was measured.
-pub fn drawing(fabric: &Fabric) -> Drawing {
+/// The loops as a picture, PNG.
+///
+/// # Errors
+/// A picture that cannot be encoded.
+pub fn png(fabric: &Fabric) -> Result<Vec<u8>, AppError> {
+    let mut png = Vec::new();
+    raster::image(&drawing(fabric)).write_png(&mut png).map_err(AppError::internal)?;
+    Ok(png)
+}
+
+/// The loops as a drawing: bending above, shear below where it was measured.
+fn drawing(fabric: &Fabric) -> Drawing {
     let all = elements(fabric);
     let (mut bending, shear): (Vec<_>, Vec<_>) = all.into_iter().partition(|(kind, ..)| kind.unit[0] == "uN m");
     if let [(_, _, warp), (_, _, weft)] = &bending[..]
