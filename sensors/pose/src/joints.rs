@@ -18,6 +18,9 @@ use crate::scale::WebcamMount;
 /// Ears, left and right.
 const EARS: [usize; 2] = [7, 8];
 
+/// Ankles.
+const ANKLES: [usize; 2] = [27, 28];
+
 /// How sure landmarks have to be to say where somebody stands.
 const SURE: f32 = 0.5;
 
@@ -26,6 +29,12 @@ const FEWEST: usize = 4;
 
 /// Distances of somebody from the camera (m).
 const DISTANCES: std::ops::RangeInclusive<f32> = 0.3..=12.0;
+
+/// Frames of whoever steps in, in which they stand upright to be measured (1): a second.
+const STANDING: u32 = 30;
+
+/// Largest lean that is the camera's or the network's, and not somebody's own (rad): 40 degrees.
+const LARGEST_LEAN: f32 = 0.7;
 
 /// Landmarks of an arm: shoulder, elbow, wrist; and of the hand, whose middle is taken: little finger, forefinger.
 const ARMS: [([usize; 3], [usize; 2]); 2] = [([11, 13, 15], [17, 19]), ([12, 14, 16], [18, 20])];
@@ -46,6 +55,8 @@ struct LimbLengths {
     ankle: f32,
     toe: f32,
     hip: f32,
+    /// By how much the shoulders are behind the ankles at rest (rad).
+    lean: f32,
 }
 
 impl LimbLengths {
@@ -64,8 +75,14 @@ impl LimbLengths {
             ankle: at(LeftAnkle).y,
             toe: at(LeftToe).y,
             hip: hips.y,
+            lean: lean((shoulders - (at(LeftAnkle) + at(RightAnkle)) * 0.5) * Vec3::new(1.0, -1.0, -1.0)),
         }
     }
+}
+
+/// By how much somebody leans away from the camera (rad); camera axes.
+fn lean(up: Vec3) -> f32 {
+    up.z.atan2(-up.y)
 }
 
 /// Puts landmarks into our world.
@@ -77,6 +94,8 @@ pub struct JointPlacer {
     mount: WebcamMount,
     /// Distance at which whoever is followed was first seen (m): they begin at the middle of our world.
     first: Option<f32>,
+    /// Lean of whoever is followed in their first frames (rad), and how many of them.
+    lean: (f32, u32),
 }
 
 impl JointPlacer {
@@ -85,18 +104,20 @@ impl JointPlacer {
         let shapes = Shapes::of(sex);
         let mean_stature = shapes.read(shapes.mean()).readings.of(En::Stature);
         let mean = shapes.skeleton(shapes.mean());
-        Self { mean, mean_stature, map: JointMap::of(Format::MediaPipe33), mount, first: None }
+        Self { mean, mean_stature, map: JointMap::of(Format::MediaPipe33), mount, first: None, lean: (0.0, 0) }
     }
 
     /// Somebody else may stand there.
     pub fn reset(&mut self) {
-        self.first = None;
+        (self.first, self.lean) = (None, (0.0, 0));
     }
 
     /// Joints of landmarks in a picture of this size (px), for somebody of this stature (m).
     pub fn joints(&mut self, landmarks: &Landmarks, size: [u32; 2], stature: f32, time_ns: u64) -> Joints {
         let lengths = LimbLengths::of(&self.mean, stature / self.mean_stature);
         let level = self.level(landmarks, size);
+        self.learn_lean(landmarks, level, lengths.lean);
+        let level = Mat3::from_rotation_x(self.lean.0) * level;
         let world = landmarks.points.map(|p| level * p.world);
         let confidence = landmarks.points.map(|p| p.confidence);
         let mut points = with_lengths(&world, &confidence, &lengths);
@@ -116,6 +137,18 @@ impl JointPlacer {
         let hips = (landmarks.points[HIPS[0]].pixel + landmarks.points[HIPS[1]].pixel) * 0.5;
         let ray = (hips - Vec2::new(w as f32, h as f32) * 0.5).extend(focal).normalize_or(Vec3::Z);
         Mat3::from_rotation_x(-self.mount.down) * Mat3::from_quat(Quat::from_rotation_arc(Vec3::Z, ray))
+    }
+
+    /// Whoever steps in stands upright for a second. The network has them lean towards the camera, by 10 degrees or so, and by a camera's tilt
+    /// that nobody said: what the shoulders are off the ankles then, they are off by it later too.
+    fn learn_lean(&mut self, landmarks: &Landmarks, level: Mat3, rest: f32) {
+        let (mean, count) = self.lean;
+        let seen = SHOULDERS.iter().chain(&ANKLES).all(|k| landmarks.points[*k].confidence >= SURE);
+        let middle = |[a, b]: [usize; 2]| (landmarks.points[a].world + landmarks.points[b].world) * 0.5;
+        let found = lean(level * (middle(SHOULDERS) - middle(ANKLES))) - rest;
+        if seen && count < STANDING && found.abs() <= LARGEST_LEAN {
+            self.lean = (mean + (found - mean) / (count + 1) as f32, count + 1);
+        }
     }
 
     /// Where the hips are: to the left of the camera's axis and towards it from where they were first (m).
@@ -270,9 +303,16 @@ mod tests {
         tilted.points.iter_mut().for_each(|p| p.world = Mat3::from_rotation_x(down) * p.world);
         assert!(tilted.points[11].world.z < -0.1);
         let joints = placer.joints(&tilted, [1280, 720], stature, 0);
-        let trunk = joints.at(Joint::LeftShoulder).position - joints.at(Joint::LeftHip).position;
+        let trunk = |joints: &Joints| joints.at(Joint::LeftShoulder).position - joints.at(Joint::LeftHip).position;
         let own = placer.mean.at(Joint::LeftShoulder) - placer.mean.at(Joint::LeftHip);
-        assert!(trunk.angle_between(own) < 0.02, "{trunk} instead of {own}");
+        assert!(trunk(&joints).angle_between(own) < 0.02, "{} instead of {own}", trunk(&joints));
+        // A tilt that nobody said is learnt from whoever steps in upright; who bends afterwards is bent.
+        let mut placer = JointPlacer::new(Sex::Female, WebcamMount::default());
+        let upright = (0..STANDING).map(|_| placer.joints(&tilted, [1280, 720], stature, 0)).last().unwrap();
+        assert!(trunk(&upright).angle_between(own) < 0.02, "{} instead of {own}", trunk(&upright));
+        tilted.points.iter_mut().for_each(|p| p.world = Mat3::from_rotation_x(0.5) * p.world);
+        let bent = trunk(&placer.joints(&tilted, [1280, 720], stature, 0)).angle_between(own);
+        assert!((bent - 0.5).abs() < 0.05, "{bent}");
     }
 
     #[test]

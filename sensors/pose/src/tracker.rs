@@ -29,15 +29,6 @@ toile_assets::named! {
     }
 }
 
-/// What came of a picture.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Seen {
-    /// Somebody, smoothed.
-    Somebody(Landmarks),
-    /// Nobody, or nobody who could be a person.
-    Nobody,
-}
-
 /// A picture that cannot be looked at.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("a picture {what}; choose another mode of the camera, or another file")]
@@ -111,11 +102,11 @@ impl PoseTracker {
         self.region
     }
 
-    /// Looks at a picture that was taken at a time (ns). Of several people the largest is followed, until they are gone.
+    /// Looks at a picture that was taken at a time (ns): smoothed landmarks; none of nobody, or of what could be no person. Of several people the largest is followed, until they are gone.
     ///
     /// # Errors
     /// A picture of no size, of too many pixels, or of other bytes than its size says.
-    pub fn push(&mut self, picture: &ColourImage, time_ns: u64) -> Result<Seen, PictureFault> {
+    pub fn push(&mut self, picture: &ColourImage, time_ns: u64) -> Result<Option<Landmarks>, PictureFault> {
         check(picture).inspect_err(|_| self.reset())?;
         let size = [picture.width, picture.height];
         if self.size != size {
@@ -123,17 +114,17 @@ impl PoseTracker {
             self.reset();
             self.size = size;
         }
-        let Some(region) = self.region.or_else(|| self.search(picture)) else { return Ok(Seen::Nobody) };
+        let Some(region) = self.region.or_else(|| self.search(picture)) else { return Ok(None) };
         let mut landmarks = self.landmarker.find(picture, &region);
         self.counts.followed += 1;
         if !landmarks.is_finite() || landmarks.presence < LEAST_PRESENCE {
             self.reset();
-            return Ok(Seen::Nobody);
+            return Ok(None);
         }
         let [hips, above] = landmarks.next;
         if !Region::of_points(hips, above).is_within(picture.width, picture.height) {
             self.reset();
-            return Ok(Seen::Nobody);
+            return Ok(None);
         }
         if !plausible::is_body(&landmarks) {
             self.counts.implausible += 1;
@@ -141,12 +132,12 @@ impl PoseTracker {
             if self.implausible >= IMPLAUSIBLE {
                 self.reset();
             }
-            return Ok(Seen::Nobody);
+            return Ok(None);
         }
         self.implausible = 0;
         self.filter.push(&mut landmarks, region.side, time_ns);
         self.region = Some(Region::of_points(landmarks.next[0], landmarks.next[1]));
-        Ok(Seen::Somebody(landmarks))
+        Ok(Some(landmarks))
     }
 
     /// The largest person of a picture. In the whole of a wide one people are small, and the detector misses them: every second search is

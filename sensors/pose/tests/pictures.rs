@@ -13,7 +13,7 @@ use toile_assets::skeleton::Joint::{self, *};
 use toile_pose::joints::JointPlacer;
 use toile_pose::landmarks::Landmarks;
 use toile_pose::scale::WebcamMount;
-use toile_pose::tracker::{Model, PoseTracker, Seen};
+use toile_pose::tracker::{Model, PoseTracker};
 use toile_sensors::source::live::ColourImage;
 
 const STANDING: &[u8] = include_bytes!("data/standing.png");
@@ -49,8 +49,7 @@ fn tracker() -> Option<PoseTracker> {
 
 /// What is seen in so many pictures, one after the other.
 fn seen(tracker: &mut PoseTracker, shown: &ColourImage, count: u64) -> Vec<Option<Landmarks>> {
-    let seen = (0..count).map(|i| tracker.push(shown, i * PERIOD_NS).unwrap());
-    seen.map(|seen| if let Seen::Somebody(landmarks) = seen { Some(landmarks) } else { None }).collect()
+    (0..count).map(|i| tracker.push(shown, i * PERIOD_NS).unwrap()).collect()
 }
 
 /// Middle of the hips (px).

@@ -12,7 +12,7 @@ use toile_engine::triple_buffer::{TripleBuffer, Writer};
 use toile_pose::files::PoseError;
 use toile_pose::joints::JointPlacer;
 use toile_pose::scale::{StatureEstimate, StatureSource, WebcamMount};
-use toile_pose::tracker::{Model, PoseTracker, Seen};
+use toile_pose::tracker::{Model, PoseTracker};
 use toile_sensors::frame::Joints;
 use toile_sensors::source::live::{ColourImage, LiveColour, PATIENCE_NS};
 use toile_track::fit::tracker::Company;
@@ -67,7 +67,7 @@ impl WebcamJoints {
     /// Joints of a picture that was taken at a time (ns); all of them absent where nobody is seen, or the picture cannot be looked at.
     pub fn push(&mut self, picture: &ColourImage, time_ns: u64) -> Joints {
         let seen = self.tracker.push(picture, time_ns);
-        let Ok(Seen::Somebody(landmarks)) = seen else {
+        let Ok(Some(landmarks)) = seen else {
             if self.found && self.tracker.region().is_none() {
                 self.reset();
             }
