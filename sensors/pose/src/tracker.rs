@@ -21,7 +21,7 @@ const IMPLAUSIBLE: u32 = 5;
 toile_assets::named! {
     /// Which of the two networks finds the landmarks.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-    pub enum Model {
+    pub enum PoseModel {
         /// The small one.
         Lite = "lite",
         /// The larger one.
@@ -70,8 +70,8 @@ impl PoseTracker {
     ///
     /// # Errors
     /// Files that are missing or others than those that are known.
-    pub fn load(folder: &Path, model: Model) -> Result<Self, PoseError> {
-        let file = if model == Model::Lite { PoseFile::Lite } else { PoseFile::Full };
+    pub fn load(folder: &Path, model: PoseModel) -> Result<Self, PoseError> {
+        let file = if model == PoseModel::Lite { PoseFile::Lite } else { PoseFile::Full };
         let unfit = |file: PoseFile| {
             move |fault: crate::tflite::NetworkFault| PoseError::Another {
                 path: folder.join(file.file_name()),
