@@ -102,7 +102,8 @@ impl PoseTracker {
         self.region
     }
 
-    /// Looks at a picture that was taken at a time (ns): smoothed landmarks; none of nobody, or of what could be no person. Of several people the largest is followed, until they are gone.
+    /// Looks at a picture that was taken at a time (ns): smoothed landmarks; none of nobody, or of what could be no person. Of several
+    /// people the largest is followed, until they are gone.
     ///
     /// # Errors
     /// A picture of no size, of too many pixels, or of other bytes than its size says.
