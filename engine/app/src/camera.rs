@@ -8,7 +8,7 @@ use toile_fitting::live::depth_camera::{self, CameraFeed, CameraHandle, TrackerO
 use toile_fitting::live::webcam::{self, WebcamJoints, WebcamOptions};
 use toile_pose::files;
 use toile_pose::scale::WebcamMount;
-use toile_pose::tracker::Model;
+use toile_pose::tracker::PoseModel;
 use toile_sensors::segment::Zone;
 use toile_sensors::source::live::{self, CameraError, CameraName, CameraOptions, LiveColour, LiveDepth};
 
@@ -37,8 +37,8 @@ pub struct MountArgs {
     #[arg(long, value_name = "MM", value_parser = RangedU64ValueParser::<u32>::new().range(900..=2_300))]
     pub stature: Option<u32>,
     /// Network that finds joints in a webcam's pictures
-    #[arg(long, value_name = "N", value_parser = one_of(Model::ALL, Model::name), default_value = "lite")]
-    pub pose: Model,
+    #[arg(long, value_name = "N", value_parser = one_of(PoseModel::ALL, PoseModel::name), default_value = "lite")]
+    pub pose: PoseModel,
 }
 
 impl MountArgs {

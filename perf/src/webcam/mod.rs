@@ -18,14 +18,14 @@ use toile_assets::put_line;
 use toile_assets::skeleton::Joint::{self, *};
 use toile_fitting::live::webcam::{WebcamJoints, WebcamOptions};
 use toile_pose::files::PoseError;
-use toile_pose::tracker::Model;
+use toile_pose::tracker::PoseModel;
 use toile_sensors::frame::Joints;
 use toile_sensors::segment::Zone;
 use toile_track::fit::FitOptions;
 use toile_track::fit::tracker::BodyTracker;
 
 use crate::people::sizes;
-use scene::{Moment, Performer};
+use scene::{Performer, WebcamMoment};
 
 /// Pictures a second (Hz): every second one of a webcam's.
 const RATE_HZ: u64 = 15;
@@ -151,7 +151,7 @@ pub fn run(folder: &Path, count: usize, progress: &mut dyn FnMut(&str)) -> Resul
         let mut performer = Performer::new(person, i as u64)?;
         let options = WebcamOptions { sex: person.sex, mount: scene::mount(), ..WebcamOptions::default() };
         let mut webcams = Vec::new();
-        for model in Model::ALL {
+        for model in PoseModel::ALL {
             webcams.push(WebcamJoints::load(folder, WebcamOptions { model, ..options })?);
         }
         let mut depth = BodyTracker::new(person.sex, Zone::default(), FitOptions::LIVE);
@@ -175,7 +175,7 @@ pub fn run(folder: &Path, count: usize, progress: &mut dyn FnMut(&str)) -> Resul
 }
 
 /// One picture through both networks.
-fn look(webcams: &mut [WebcamJoints], moment: &Moment, records: &mut [ModelRecord; 2]) -> [Joints; 2] {
+fn look(webcams: &mut [WebcamJoints], moment: &WebcamMoment, records: &mut [ModelRecord; 2]) -> [Joints; 2] {
     let mut joints = [Joints::absent(moment.time_ns); 2];
     for ((webcam, record), joints) in webcams.iter_mut().zip(records).zip(&mut joints) {
         let had = webcam.found;

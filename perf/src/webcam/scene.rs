@@ -34,7 +34,7 @@ const WALL: f32 = -0.9;
 const NOISE: f32 = 2.0;
 
 /// What is seen at one moment, and the truth.
-pub struct Moment {
+pub struct WebcamMoment {
     /// Time since the begin (ns).
     pub time_ns: u64,
     /// The webcam's picture.
@@ -68,7 +68,7 @@ impl Performer {
     }
 
     /// What is seen at a time of the performance (s), which is the `number`th picture.
-    pub fn at(&mut self, seconds: f32, number: u64, rate_hz: u64) -> Moment {
+    pub fn at(&mut self, seconds: f32, number: u64, rate_hz: u64) -> WebcamMoment {
         let body = &self.body;
         let job = SkinningJob::new(&body.mesh.positions, &body.normals, &body.weights).expect("a body has its weights");
         let (mut skin, mut normals, mut posed) = (body.mesh.positions.clone(), body.normals.clone(), job.posed());
@@ -94,7 +94,7 @@ impl Performer {
         };
         let truth = Joints::seen(time_ns, JointFrames::new(&body.skeleton, &pose).position);
         let picture = picture(&surface, &mut self.random);
-        Moment { time_ns, picture, depth, truth }
+        WebcamMoment { time_ns, picture, depth, truth }
     }
 }
 

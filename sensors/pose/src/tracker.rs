@@ -21,7 +21,7 @@ const IMPLAUSIBLE: u32 = 5;
 toile_assets::named! {
     /// Which of the two networks finds the landmarks.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-    pub enum Model {
+    pub enum PoseModel {
         /// The small one.
         Lite = "lite",
         /// The larger one.
@@ -70,8 +70,8 @@ impl PoseTracker {
     ///
     /// # Errors
     /// Files that are missing or others than those that are known.
-    pub fn load(folder: &Path, model: Model) -> Result<Self, PoseError> {
-        let file = if model == Model::Lite { PoseFile::Lite } else { PoseFile::Full };
+    pub fn load(folder: &Path, model: PoseModel) -> Result<Self, PoseError> {
+        let file = if model == PoseModel::Lite { PoseFile::Lite } else { PoseFile::Full };
         let unfit = |file: PoseFile| {
             move |fault: crate::tflite::NetworkFault| PoseError::Another {
                 path: folder.join(file.file_name()),
@@ -102,7 +102,8 @@ impl PoseTracker {
         self.region
     }
 
-    /// Looks at a picture that was taken at a time (ns): smoothed landmarks; none of nobody, or of what could be no person. Of several people the largest is followed, until they are gone.
+    /// Looks at a picture that was taken at a time (ns): smoothed landmarks; none of nobody, or of what could be no person. Of several
+    /// people the largest is followed, until they are gone.
     ///
     /// # Errors
     /// A picture of no size, of too many pixels, or of other bytes than its size says.

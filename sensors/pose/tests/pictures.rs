@@ -13,7 +13,7 @@ use toile_assets::skeleton::Joint::{self, *};
 use toile_pose::joints::JointPlacer;
 use toile_pose::landmarks::Landmarks;
 use toile_pose::scale::WebcamMount;
-use toile_pose::tracker::{Model, PoseTracker};
+use toile_pose::tracker::{PoseModel, PoseTracker};
 use toile_sensors::source::live::ColourImage;
 
 const STANDING: &[u8] = include_bytes!("data/standing.png");
@@ -44,7 +44,7 @@ fn picture(image: RgbImage) -> ColourImage {
 }
 
 fn tracker() -> Option<PoseTracker> {
-    Some(PoseTracker::load(&network_folder()?, Model::Lite).unwrap())
+    Some(PoseTracker::load(&network_folder()?, PoseModel::Lite).unwrap())
 }
 
 /// What is seen in so many pictures, one after the other.

@@ -12,7 +12,7 @@ use toile_engine::triple_buffer::{TripleBuffer, Writer};
 use toile_pose::files::PoseError;
 use toile_pose::joints::JointPlacer;
 use toile_pose::scale::{StatureEstimate, StatureSource, WebcamMount};
-use toile_pose::tracker::{Model, PoseTracker};
+use toile_pose::tracker::{PoseModel, PoseTracker};
 use toile_sensors::frame::Joints;
 use toile_sensors::source::live::{ColourImage, LiveColour, PATIENCE_NS};
 use toile_track::fit::tracker::Company;
@@ -25,7 +25,7 @@ pub struct WebcamOptions {
     /// Whose mean body has the lengths of the limbs.
     pub sex: Sex,
     /// Which network finds the landmarks.
-    pub model: Model,
+    pub model: PoseModel,
     /// How the camera stands.
     pub mount: WebcamMount,
     /// Their stature, where they say it (m).
@@ -34,7 +34,7 @@ pub struct WebcamOptions {
 
 impl Default for WebcamOptions {
     fn default() -> Self {
-        Self { sex: Sex::Female, model: Model::Lite, mount: WebcamMount::default(), stature_m: None }
+        Self { sex: Sex::Female, model: PoseModel::Lite, mount: WebcamMount::default(), stature_m: None }
     }
 }
 

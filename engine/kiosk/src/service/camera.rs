@@ -8,7 +8,7 @@ use toile_fitting::live::source::Feed;
 use toile_fitting::live::webcam::{self, WebcamJoints, WebcamOptions};
 use toile_pose::files;
 use toile_pose::scale::WebcamMount;
-use toile_pose::tracker::Model;
+use toile_pose::tracker::PoseModel;
 use toile_sensors::segment::Zone;
 use toile_sensors::source::live::{self, CameraError, CameraName, CameraOptions, LiveColour, LiveDepth};
 
@@ -31,7 +31,7 @@ pub fn feed(config: &Config, name: CameraName, clock: RealClock) -> Result<(Feed
             ..WebcamMount::default()
         };
         let stature_m = facts.and_then(|facts| facts.tape.stature());
-        let options = WebcamOptions { sex, model: Model::Lite, mount, stature_m };
+        let options = WebcamOptions { sex, model: PoseModel::Lite, mount, stature_m };
         // Without the network no camera is switched on.
         let joints = WebcamJoints::load(&files::folder(), options).map_err(|e| KioskError::Device(e.to_string()))?;
         let opener = Box::new(move || live::open(&name, &how));

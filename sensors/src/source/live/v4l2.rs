@@ -148,7 +148,7 @@ impl Drop for Mapped {
 
 /// How pictures come.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct VideoMode {
+pub(super) struct PictureMode {
     pub four_cc: FourCc,
     pub width: u32,
     pub height: u32,
@@ -173,7 +173,7 @@ pub(super) struct VideoStream {
     file: File,
     /// The buffer whose picture was handed out.
     shown: Option<u32>,
-    pub mode: VideoMode,
+    pub mode: PictureMode,
     /// The camera's own name.
     pub card: String,
 }
@@ -191,7 +191,7 @@ impl VideoStream {
         let format = wanted.iter().find_map(|wanted| format(&file, *wanted));
         let format = format.ok_or_else(|| io::Error::other("it gives neither YUYV nor MJPEG"))?;
         let rate_hz = rate(&file, rate_hz);
-        let mode = VideoMode {
+        let mode = PictureMode {
             four_cc: format.four_cc,
             width: format.width,
             height: format.height,
