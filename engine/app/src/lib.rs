@@ -18,8 +18,8 @@ pub mod renderer;
 pub mod terminal;
 
 pub mod arguments;
-pub mod camera;
 
+pub mod camera;
 pub mod pictures;
 pub mod summary;
 pub mod video;

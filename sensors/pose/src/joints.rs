@@ -18,8 +18,10 @@ use crate::scale::WebcamMount;
 /// Ears, left and right.
 const EARS: [usize; 2] = [7, 8];
 
-/// Ankles.
+/// Knees, ankles and heels.
+const KNEES: [usize; 2] = [25, 26];
 const ANKLES: [usize; 2] = [27, 28];
+const HEELS: [usize; 2] = [29, 30];
 
 /// How sure landmarks have to be to say where somebody stands.
 const SURE: f32 = 0.5;
@@ -55,8 +57,8 @@ struct LimbLengths {
     ankle: f32,
     toe: f32,
     hip: f32,
-    /// By how much the shoulders are behind the ankles at rest (rad).
-    lean: f32,
+    /// By how much trunk, thighs and shins lean at rest (rad).
+    leans: [f32; 3],
 }
 
 impl LimbLengths {
@@ -64,7 +66,9 @@ impl LimbLengths {
         use Joint::*;
         let at = |joint: Joint| skeleton.at(joint) * scale;
         let apart = |a: Joint, b: Joint| at(a).distance(at(b));
-        let (hips, shoulders) = ((at(LeftHip) + at(RightHip)) * 0.5, (at(LeftShoulder) + at(RightShoulder)) * 0.5);
+        let middle = |a: Joint, b: Joint| (at(a) + at(b)) * 0.5;
+        let (hips, shoulders) = (middle(LeftHip, RightHip), middle(LeftShoulder, RightShoulder));
+        let (knees, ankles) = (middle(LeftKnee, RightKnee), middle(LeftAnkle, RightAnkle));
         Self {
             hips: apart(LeftHip, RightHip),
             shoulders: apart(LeftShoulder, RightShoulder),
@@ -75,7 +79,8 @@ impl LimbLengths {
             ankle: at(LeftAnkle).y,
             toe: at(LeftToe).y,
             hip: hips.y,
-            lean: lean((shoulders - (at(LeftAnkle) + at(RightAnkle)) * 0.5) * Vec3::new(1.0, -1.0, -1.0)),
+            leans: [(shoulders, hips), (hips, knees), (knees, ankles)]
+                .map(|(upper, lower)| lean((upper - lower) * Vec3::new(1.0, -1.0, -1.0))),
         }
     }
 }
@@ -94,8 +99,8 @@ pub struct JointPlacer {
     mount: WebcamMount,
     /// Distance at which whoever is followed was first seen (m): they begin at the middle of our world.
     first: Option<f32>,
-    /// Lean of whoever is followed in their first frames (rad), and how many of them.
-    lean: (f32, u32),
+    /// Leans of trunk, thighs and shins of whoever is followed in their first frames (rad), and how many of them.
+    leans: ([f32; 3], u32),
 }
 
 impl JointPlacer {
@@ -104,22 +109,22 @@ impl JointPlacer {
         let shapes = Shapes::of(sex);
         let mean_stature = shapes.read(shapes.mean()).readings.of(En::Stature);
         let mean = shapes.skeleton(shapes.mean());
-        Self { mean, mean_stature, map: JointMap::of(Format::MediaPipe33), mount, first: None, lean: (0.0, 0) }
+        Self { mean, mean_stature, map: JointMap::of(Format::MediaPipe33), mount, first: None, leans: ([0.0; 3], 0) }
     }
 
     /// Somebody else may stand there.
     pub fn reset(&mut self) {
-        (self.first, self.lean) = (None, (0.0, 0));
+        (self.first, self.leans) = (None, ([0.0; 3], 0));
     }
 
     /// Joints of landmarks in a picture of this size (px), for somebody of this stature (m).
     pub fn joints(&mut self, landmarks: &Landmarks, size: [u32; 2], stature: f32, time_ns: u64) -> Joints {
         let lengths = LimbLengths::of(&self.mean, stature / self.mean_stature);
         let level = self.level(landmarks, size);
-        self.learn_lean(landmarks, level, lengths.lean);
-        let level = Mat3::from_rotation_x(self.lean.0) * level;
-        let world = landmarks.points.map(|p| level * p.world);
+        let mut world = landmarks.points.map(|p| level * p.world);
         let confidence = landmarks.points.map(|p| p.confidence);
+        self.learn_leans(&world, &confidence, &lengths.leans);
+        upright(&mut world, &self.leans.0);
         let mut points = with_lengths(&world, &confidence, &lengths);
         let camera = self.place(landmarks, size, &points, level);
         let up = above_floor(&points, &lengths);
@@ -139,15 +144,18 @@ impl JointPlacer {
         Mat3::from_rotation_x(-self.mount.down) * Mat3::from_quat(Quat::from_rotation_arc(Vec3::Z, ray))
     }
 
-    /// Whoever steps in stands upright for a second. The network has them lean towards the camera, by 10 degrees or so, and by a camera's tilt
-    /// that nobody said: what the shoulders are off the ankles then, they are off by it later too.
-    fn learn_lean(&mut self, landmarks: &Landmarks, level: Mat3, rest: f32) {
-        let (mean, count) = self.lean;
-        let seen = SHOULDERS.iter().chain(&ANKLES).all(|k| landmarks.points[*k].confidence >= SURE);
-        let middle = |[a, b]: [usize; 2]| (landmarks.points[a].world + landmarks.points[b].world) * 0.5;
-        let found = lean(level * (middle(SHOULDERS) - middle(ANKLES))) - rest;
-        if seen && count < STANDING && found.abs() <= LARGEST_LEAN {
-            self.lean = (mean + (found - mean) / (count + 1) as f32, count + 1);
+    /// Whoever steps in stands upright for a second. The network bends them: the trunk towards the camera, the shins away from it, by ten
+    /// degrees and more. What each is off then, it is off by later too.
+    fn learn_leans(&mut self, world: &[Vec3; POINTS], confidence: &[f32; POINTS], rest: &[f32; 3]) {
+        let (means, count) = &mut self.leans;
+        let middle = |[a, b]: [usize; 2]| (world[a] + world[b]) * 0.5;
+        let pairs = [[SHOULDERS, HIPS], [HIPS, KNEES], [KNEES, ANKLES]];
+        let seen = pairs.iter().flatten().flatten().all(|k| confidence[*k] >= SURE);
+        let mut found = pairs.map(|[upper, lower]| lean(middle(upper) - middle(lower)));
+        found.iter_mut().zip(rest).for_each(|(found, rest)| *found -= rest);
+        if seen && *count < STANDING && found.iter().all(|lean| lean.abs() <= LARGEST_LEAN) {
+            *count += 1;
+            means.iter_mut().zip(found).for_each(|(mean, found)| *mean += (found - *mean) / *count as f32);
         }
     }
 
@@ -174,6 +182,21 @@ impl JointPlacer {
         let first = *self.first.get_or_insert(distance);
         let across = (pixel.x - 0.5 * w as f32) * distance / focal - metre.x;
         Vec2::new(across, first - distance)
+    }
+}
+
+/// Turns trunk, thighs and shins back by so much (rad); arms, head and feet keep their directions.
+fn upright(world: &mut [Vec3; POINTS], leans: &[f32; 3]) {
+    let [trunk, thigh, shin] = leans.map(Mat3::from_rotation_x);
+    let before = *world;
+    let middle = |[a, b]: [usize; 2]| (before[a] + before[b]) * 0.5;
+    let own = middle(SHOULDERS) - middle(HIPS);
+    let moved = trunk * own - own;
+    world[..HIPS[0]].iter_mut().for_each(|point| *point += moved);
+    for ([hip, knee, ankle, toe], heel) in LEGS.into_iter().zip(HEELS) {
+        world[knee] = before[hip] + thigh * (before[knee] - before[hip]);
+        world[ankle] = world[knee] + shin * (before[ankle] - before[knee]);
+        [toe, heel].iter().for_each(|k| world[*k] += world[ankle] - before[ankle]);
     }
 }
 
