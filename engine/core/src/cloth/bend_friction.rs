@@ -161,9 +161,9 @@ impl FrictionMoments<'_> {
         let sticks = some::<L>(self.state.sticks, slot, n);
         let [sticks, kept] = rubbed(sum.dot(normal), sticks, some(stick, slot, n), some(reach, slot, n));
         if n == L::N {
-            sticks.store(self.state.sticks, slot)
+            sticks.store(self.state.sticks, slot);
         } else {
-            sticks.store_part(self.state.sticks, slot, n)
+            sticks.store_part(self.state.sticks, slot, n);
         }
         (normal * kept).store(self.state.kept, slot, n);
     }

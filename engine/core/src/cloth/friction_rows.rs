@@ -203,9 +203,9 @@ impl FrictionTableBuilder {
                 (1..vertices.len() - at).take_while(|by| lead_to(vertices[at], vertices[at + by], *by)).count() + 1;
             let some = &vertices[at..at + len];
             if len < LEAST_STRIP {
-                loose.extend(some.iter().copied().flatten())
+                loose.extend(some.iter().copied().flatten());
             } else {
-                self.strip(some)
+                self.strip(some);
             }
             at += len;
         }
