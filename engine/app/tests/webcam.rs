@@ -71,7 +71,7 @@ fn a_session_is_not_recorded_by_a_webcam() {
     let args = ["record", "--camera", "webcam", "--seconds", "1", "--out", "a.mcap", "--consent"];
     let refused = run(&scratch, scratch.path(), &args);
     let words = String::from_utf8_lossy(&refused.stderr);
-    assert_eq!(refused.status.code(), Some(2), "{words}");
+    assert_eq!(refused.status.code(), Some(4), "{words}");
     assert!(words.contains("a session holds depth, and webcam gives none"), "{words}");
 }
 
