@@ -136,9 +136,9 @@ fn the_fast_network_is_its_plain_twin_to_the_bit() {
         let mut bits = |plainly: bool| -> Vec<u32> {
             network.input().copy_from_slice(&picture);
             if plainly {
-                network.run_plainly()
+                network.run_plainly();
             } else {
-                network.run()
+                network.run();
             }
             (0..wanted.len()).flat_map(|i| network.output(i)).map(|x| x.to_bits()).collect()
         };
