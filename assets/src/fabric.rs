@@ -15,6 +15,7 @@ use thiserror::Error;
 use toml::{Table, Value};
 
 use crate::texture::Texture;
+use crate::toml_keys::nearest;
 use loop_widths::LoopWidths;
 use print::Print;
 
@@ -146,11 +147,11 @@ pub enum FabricError {
         high: f32,
     },
     /// No fabric of that name.
-    #[error("there is no fabric named {name}; built in are {known}")]
+    #[error("there is no fabric named {name}; {known}`toile fabric list` names those that are built in")]
     Unknown {
         /// The name asked for.
         name: String,
-        /// The names there are.
+        /// The name that was meant, as a question, where one is near; or nothing.
         known: String,
     },
     /// A print that cannot be drawn.
@@ -252,7 +253,11 @@ impl Fabric {
     pub fn built_in(name: &str) -> Result<Self, FabricError> {
         match BUILT_IN.iter().find(|text| name_in(text) == Some(name)) {
             Some(text) => Self::parse("built in", text),
-            None => Err(FabricError::Unknown { name: name.into(), known: Self::names().join(", ") }),
+            None => {
+                let near = nearest(name, Self::names().into_iter());
+                let known = near.map_or_else(String::new, |meant| format!("did you mean {meant}? "));
+                Err(FabricError::Unknown { name: name.into(), known })
+            }
         }
     }
 
@@ -353,7 +358,9 @@ mod tests {
             assert_eq!(Fabric::built_in(&fabric.name).unwrap(), fabric);
         }
         let error = Fabric::built_in("tin").unwrap_err().to_string();
-        assert!(error.contains("tin") && error.contains("cotton-lawn"), "{error}");
+        assert!(error.contains("tin") && error.contains("toile fabric list"), "{error}");
+        let error = Fabric::built_in("coton-lawn").unwrap_err().to_string();
+        assert!(error.contains("did you mean cotton-lawn?"), "{error}");
     }
 
     #[test]
