@@ -255,7 +255,7 @@ impl Fabric {
             Some(text) => Self::parse("built in", text),
             None => {
                 let near = nearest(name, Self::names().into_iter());
-                let known = near.map_or_else(String::new, |meant| format!("did you mean {meant}? "));
+                let known = near.map_or_else(String::new, |meant| format!("did you mean \"{meant}\"? "));
                 Err(FabricError::Unknown { name: name.into(), known })
             }
         }
@@ -360,7 +360,7 @@ mod tests {
         let error = Fabric::built_in("tin").unwrap_err().to_string();
         assert!(error.contains("tin") && error.contains("toile fabric list"), "{error}");
         let error = Fabric::built_in("coton-lawn").unwrap_err().to_string();
-        assert!(error.contains("did you mean cotton-lawn?"), "{error}");
+        assert!(error.contains("did you mean \"cotton-lawn\"?"), "{error}");
     }
 
     #[test]

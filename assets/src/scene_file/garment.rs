@@ -15,7 +15,6 @@ use crate::import::gltf::parse_gltf;
 use crate::import::obj::FREE;
 use crate::import::plain::{PlainMesh, parse_obj};
 use crate::mesh::SkinWeights;
-use crate::toml_keys;
 
 /// A garment's extent may lie between these (m): what is smaller or larger was given in another unit.
 const EXTENT_M: [f32; 2] = [0.005, 200.0];
@@ -161,13 +160,7 @@ fn check_shape(table: &SceneTable<'_>, plain: &PlainMesh, mesh: &UserMesh, shape
 
 fn fabric(table: &SceneTable<'_>, source: SceneSource<'_>) -> Result<Fabric, SceneError> {
     let built_in = |table: &SceneTable<'_>, key: &str, name: &str| {
-        let unknown = |e: &dyn std::fmt::Display| {
-            let all = Fabric::names();
-            let meant = toml_keys::nearest(name, all.into_iter());
-            let cure = meant.map_or_else(|| "choose one of them".into(), |m| format!("did you mean \"{m}\"?"));
-            table.wrong(key, format!("is unknown: {e}; {cure}"))
-        };
-        Fabric::built_in(name).map_err(|e| unknown(&e))
+        Fabric::built_in(name).map_err(|e| table.wrong(key, format!("is unknown: {e}")))
     };
     const DEFAULT: &str = "cotton-lawn";
     let Some(own) = (if table.is_table("fabric") { table.table("fabric")? } else { None }) else {

@@ -347,7 +347,7 @@ fn mistakes_are_told_with_their_cure() {
         (format!("{grid}[settings]\nlanes = 5\n"), 4, &["settings.lanes", "1, 4, 8 or 16"]),
         (format!("gravity = [0, 1]\n{grid}"), 1, &["gravity", "three numbers"]),
         (format!("{grid}fabric = \"coton-lawn\"\n"), 3, &["coton-lawn", "did you mean \"cotton-lawn\""]),
-        (format!("{grid}fabric = {{ base = \"tin\" }}\n"), 3, &["tin", "cotton-jersey"]),
+        (format!("{grid}fabric = {{ base = \"tin\" }}\n"), 3, &["tin", "toile fabric list"]),
         (format!("{grid}fabric = {{ base = \"cotton-lawn\", file = \"own.toml\" }}\n"), 3, &["one of them"]),
         (format!("{grid}fabric = {{ frictoin = 1 }}\n"), 3, &["did you mean \"friction\""]),
         (format!("{grid}[[garment.pin]]\ntrack = \"pin.csv\"\n"), 3, &["holds nothing", "vertices, box or material"]),
