@@ -147,12 +147,12 @@ pub enum FabricError {
         high: f32,
     },
     /// No fabric of that name.
-    #[error("there is no fabric named {name}; {known}`toile fabric list` names those that are built in")]
+    #[error("there is no fabric named {name}; {hint}`toile fabric list` names those that are built in")]
     Unknown {
         /// The name asked for.
         name: String,
-        /// The name that was meant, as a question, where one is near; or nothing.
-        known: String,
+        /// Asks whether a name that is near was meant; empty where none is.
+        hint: String,
     },
     /// A print that cannot be drawn.
     #[error("fabric {name}: {reason}; see docs/catalogue.md")]
@@ -255,8 +255,8 @@ impl Fabric {
             Some(text) => Self::parse("built in", text),
             None => {
                 let near = nearest(name, Self::names().into_iter());
-                let known = near.map_or_else(String::new, |meant| format!("did you mean \"{meant}\"? "));
-                Err(FabricError::Unknown { name: name.into(), known })
+                let hint = near.map_or_else(String::new, |meant| format!("did you mean \"{meant}\"? "));
+                Err(FabricError::Unknown { name: name.into(), hint })
             }
         }
     }

@@ -73,7 +73,7 @@ pub enum SheetError {
     Name {
         /// Number of the line, from 1.
         line: usize,
-        /// The name.
+        /// Name of the value as the sheet has it.
         name: String,
     },
     /// Nothing by which to tell what it is.

@@ -23,7 +23,7 @@ pub struct FrictionSlot {
 /// it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct BendFriction {
-    /// The stencils.
+    /// One slot for each stencil that rubs.
     pub slots: Box<[FrictionSlot]>,
     /// Particles besides the one in the middle, slot after slot.
     pub particles: Box<[u32]>,

@@ -3,14 +3,13 @@
 use clap::builder::{PossibleValuesParser, RangedU64ValueParser};
 use clap::value_parser;
 use toile_assets::body::Sex;
-use toile_engine::clock::{Clock, RealClock};
-use toile_fitting::live::depth_camera::{self, CameraFeed, CameraHandle, TrackerOptions};
-use toile_fitting::live::webcam::{self, WebcamJoints, WebcamOptions};
-use toile_pose::files;
+use toile_engine::clock::RealClock;
+use toile_fitting::live::camera_start::{self, CameraSetup, CameraStartError, StartedCamera};
+use toile_fitting::live::webcam::WebcamOptions;
 use toile_pose::scale::WebcamMount;
 use toile_pose::tracker::PoseModel;
 use toile_sensors::segment::Zone;
-use toile_sensors::source::live::{self, CameraError, CameraName, CameraOptions, LiveColour, LiveDepth};
+use toile_sensors::source::live::{self, CameraError, CameraName, CameraOptions};
 
 use crate::arguments::one_of;
 use crate::exit::AppError;
@@ -59,20 +58,6 @@ impl MountArgs {
     }
 }
 
-/// A camera that is looked through.
-pub struct Watched {
-    /// Its own name.
-    pub device: String,
-    /// What it gives, in words.
-    pub gives: &'static str,
-    /// Width and height of its images (px).
-    pub size: [u32; 2],
-    /// What the sensor thread reads.
-    pub feed: CameraFeed,
-    /// What others ask.
-    pub handle: CameraHandle,
-}
-
 /// Opens a camera of any kind, and starts what sees through it.
 ///
 /// # Errors
@@ -83,37 +68,19 @@ pub fn watch(
     colour: bool,
     sex: Sex,
     clock: RealClock,
-) -> Result<Watched, AppError> {
-    if !name.kind.is_colour() {
-        let depth = open(name, mount.options(colour), 0)?;
-        let (device, k) = (depth.info().device.clone(), depth.intrinsics());
-        let options = TrackerOptions { zone: Zone::default(), sex };
-        let (feed, handle) = depth_camera::start(depth, clock, options).map_err(AppError::internal)?;
-        return Ok(Watched { device, gives: "depth", size: [k.width, k.height], feed, handle });
-    }
-    // Without the network no camera is switched on.
-    let joints =
-        WebcamJoints::load(&files::folder(), mount.webcam(sex)).map_err(|e| AppError::Device(e.to_string()))?;
-    let (name, options) = (name.clone(), mount.options(true));
-    let opener = Box::new(move || live::open(&name, &options));
-    let camera = LiveColour::open(opener, clock.now_ns()).map_err(|e| error(&e))?;
-    let (device, k) = (camera.info().device.clone(), camera.info().sensor());
-    let (feed, handle) = webcam::start(camera, joints, clock).map_err(AppError::internal)?;
-    Ok(Watched { device, gives: "colour", size: [k.width, k.height], feed, handle })
+) -> Result<StartedCamera, AppError> {
+    let (name, options, webcam) = (name.clone(), mount.options(colour), mount.webcam(sex));
+    let setup = CameraSetup { name, options, kept: 0, zone: Zone::default(), webcam };
+    camera_start::start(setup, clock).map_err(|why| match why {
+        CameraStartError::Camera(why) => error(&why),
+        CameraStartError::Network(why) => AppError::Device(why.to_string()),
+        CameraStartError::Thread(_) => AppError::internal(why),
+    })
 }
 
 /// Reads a camera's name such as `kinect` or `k4a:visit.mkv`.
 pub fn name(given: &str) -> Result<CameraName, String> {
     given.parse().map_err(|e: CameraError| e.to_string())
-}
-
-/// Opens a depth camera and whatever sees through it; so many of its images are kept at once.
-///
-/// # Errors
-/// A library that is missing, a camera that is not connected, a recording that cannot be played.
-fn open(name: &CameraName, options: CameraOptions, kept: usize) -> Result<LiveDepth, AppError> {
-    let name = name.clone();
-    LiveDepth::open(Box::new(move || live::open(&name, &options)), kept, 0).map_err(|e| error(&e))
 }
 
 /// Why a camera cannot be used: what was given, or the device.

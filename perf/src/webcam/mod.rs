@@ -57,13 +57,13 @@ const LIMBS: [(&str, [[Joint; 2]; 2]); 13] = [
     ("feet", [[RightAnkle, RightAnkle], [RightToe, RightToe]]),
 ];
 
-/// Who sees.
+/// What finds joints: the two networks, and the body fitted to depth.
 const SEERS: [&str; 3] = ["lite", "full", "depth fit"];
 
 /// Angles of one limb (degrees): the median and the 90th percentile of each who sees, without the turn and in it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LimbRow {
-    /// The limb.
+    /// Name of the limb.
     pub limb: &'static str,
     /// By webcam (lite, full) and by depth, before the turn.
     pub facing: [[f32; 2]; 3],
@@ -89,9 +89,9 @@ pub struct ModelFigures {
 pub struct WebcamTable {
     /// People and pictures.
     pub people: usize,
-    /// Pictures.
+    /// Number of pictures.
     pub pictures: u64,
-    /// Each limb.
+    /// Degrees from the truth, limb by limb.
     pub limbs: Vec<LimbRow>,
     /// Lite and full.
     pub models: [ModelFigures; 2],

@@ -34,7 +34,7 @@ const SAME: f32 = 0.3;
 /// Most boxes that are looked at, the best first: of ten people with as many boxes each as they get.
 const MOST_BOXES: usize = 128;
 
-/// Most people who are told apart.
+/// Most people who are detected in a picture.
 const MOST_PEOPLE: usize = 8;
 
 /// Somebody in a picture.

@@ -99,13 +99,13 @@ pub enum PoseError {
     Missing {
         /// The folder in which it was sought.
         folder: PathBuf,
-        /// The file.
+        /// Name of the file in the folder.
         file: &'static str,
     },
     /// A file cannot be read.
     #[error("{} cannot be read ({problem}); give it its rights or fetch it again: `{FETCH}`", path.display())]
     Unreadable {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// What the system says.
         problem: String,
@@ -113,7 +113,7 @@ pub enum PoseError {
     /// A file is not the one that is known.
     #[error("{} is not the pose network that is known: {what}; fetch it again: `{FETCH}`", path.display())]
     Another {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// In what it differs.
         what: String,

@@ -6,7 +6,7 @@ use crate::landmarks::Landmarks;
 
 /// Landmarks of hips and shoulders, left and right.
 pub const HIPS: [usize; 2] = [23, 24];
-/// Shoulders.
+/// Landmarks of the left and the right shoulder.
 pub const SHOULDERS: [usize; 2] = [11, 12];
 
 /// Limbs, left and right: from, to; and the shortest and the longest that a landmark's own metres have for people (m), from a child of

@@ -17,7 +17,7 @@ pub struct Region {
 /// What lies outside of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Border {
-    /// Black.
+    /// Black all around.
     Black,
     /// The nearest pixel of the picture.
     Nearest,

@@ -106,7 +106,7 @@ mod tests {
         let mut seen = landmarks(300.0);
         filter.push(&mut seen, 400.0, 33_000_000);
         assert_eq!(seen.points, landmarks(300.0).points);
-        // Whatever its stamps do, nothing becomes a number that is none.
+        // Whatever its stamps do, nothing becomes NaN.
         filter.push(&mut seen, 400.0, 0);
         assert!(seen.is_finite());
     }

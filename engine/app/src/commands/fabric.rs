@@ -11,6 +11,7 @@ use serde::Serialize;
 use toile_assets::fabric::Fabric;
 use toile_assets::fabric::loop_widths::LoopWidths;
 use toile_assets::fabric::sheet::MeasuredSheet;
+use toile_assets::file::{self, FileKind};
 use toile_assets::put_line;
 
 use crate::arguments::Printing;
@@ -207,10 +208,15 @@ fn fabric(name: &str) -> Result<Fabric, AppError> {
     Fabric::parse(name, &text_of(Path::new(name))?).map_err(AppError::input)
 }
 
+/// What is read as a fabric's file or a sheet.
+const FABRIC_TEXT: FileKind = FileKind {
+    name: "a fabric's file or a sheet of measured values",
+    max_bytes: 1 << 20,
+    cure: "leave out all but the figures of one fabric",
+};
+
 fn text_of(path: &Path) -> Result<String, AppError> {
-    let unread =
-        |e: std::io::Error| AppError::Input(format!("{} cannot be read ({e}); give a text file", path.display()));
-    std::fs::read_to_string(path).map_err(unread)
+    file::read_text(path, &FABRIC_TEXT).map_err(AppError::input)
 }
 
 fn show(args: &ShowArgs) -> Result<(), AppError> {
@@ -223,8 +229,8 @@ fn show(args: &ShowArgs) -> Result<(), AppError> {
             )));
         }
         Some(path) => {
-            let file = OutputFile::prepare(path, Inputs::new([&args.fabric]))?;
-            file.write(&loops::png(&fabric)?)?
+            let picture = OutputFile::prepare(path, Inputs::new([&args.fabric]))?;
+            picture.write(&loops::png(&fabric)?)?
         }
         None => Vec::new(),
     };

@@ -10,6 +10,7 @@ use toile_assets::body::Sex;
 use toile_assets::put_line;
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::frame_loop::sensor_thread::{FrameSource, SourceFrame};
+use toile_fitting::live::camera_start::StartedCamera;
 use toile_fitting::live::depth_camera::{CameraFeed, CameraFigures, CameraHandle};
 use toile_fitting::live::report::Quantiles;
 use toile_sensors::frame::DepthFrame;
@@ -17,7 +18,7 @@ use toile_sensors::source::live::{CameraName, CameraState, ColourImage};
 use toile_view::image::{Image, Size};
 
 use crate::arguments::Printing;
-use crate::camera::{self, MountArgs, Watched};
+use crate::camera::{self, MountArgs};
 use crate::exit::AppError;
 use crate::output::OutputFolder;
 use crate::pictures::write_png;
@@ -124,7 +125,8 @@ pub fn run(args: &LiveArgs) -> Result<(), AppError> {
     let begun = Instant::now();
     let watched = camera::watch(&args.camera, &args.mount, true, Sex::Female, RealClock::default())?;
     let opened_ms = (begun.elapsed().as_secs_f64() * 1e4).round() / 10.0;
-    let Watched { device, gives, size, mut feed, handle } = watched;
+    let StartedCamera { device, size, mut feed, handle } = watched;
+    let gives = if args.camera.kind.is_colour() { "colour" } else { "depth" };
     let words = args.printing.words();
     words.print_line(&format!("{device}: {gives} of {} x {} pixels, open after {opened_ms:.0} ms", size[0], size[1]));
     let looked = look(&mut feed, &handle, Duration::from_secs(args.seconds.into()), words);
@@ -150,7 +152,7 @@ pub fn run(args: &LiveArgs) -> Result<(), AppError> {
         lost: counts.lost,
         reopened: counts.reopened,
         rates_hz: LiveRates {
-            depth: if gives == "depth" { rate(counts.frames) } else { 0.0 },
+            depth: if args.camera.kind.is_colour() { 0.0 } else { rate(counts.frames) },
             colour: rate(figures.colours),
             joints: rate(figures.tracked[1]),
         },

@@ -10,6 +10,7 @@
 pub mod assembly;
 pub mod background;
 mod camera_handle;
+pub mod camera_start;
 pub mod crash;
 pub mod depth_camera;
 pub mod dresser;

@@ -28,7 +28,7 @@ const LOOK: Duration = Duration::from_millis(30);
 /// Bytes that are written between two looks at whether the picture is forgotten.
 const PIECE: usize = 16 << 10;
 
-/// A picture that is served for as long as this lives, and [`SERVED`] at most.
+/// A picture that is served until this is dropped, and for [`SERVED`] at most.
 #[derive(Debug)]
 pub struct PictureServer {
     url: String,

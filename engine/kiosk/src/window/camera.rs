@@ -1,6 +1,7 @@
 //! The camera: from where the body is seen, so that it stands in what the panel leaves free.
 
 use glam::Vec3;
+use toile_assets::numeric::statistics;
 use toile_view::scene::{Bounds, Camera};
 
 /// Arm's reach beside the body (m): what stays in the picture when somebody lifts their arms.
@@ -56,8 +57,7 @@ pub fn middle(positions: &[Vec3], sorted: &mut Vec<f32>) -> Option<Vec3> {
     let mut median = |axis: usize| {
         sorted.clear();
         sorted.extend(positions.iter().map(|p| p[axis]).filter(|value| value.is_finite()));
-        let half = sorted.len() / 2;
-        (half > 0).then(|| *sorted.select_nth_unstable_by(half, f32::total_cmp).1)
+        statistics::median(sorted)
     };
     Some(Vec3::new(median(0)?, 0.0, median(2)?))
 }

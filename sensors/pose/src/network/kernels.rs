@@ -40,15 +40,15 @@ fn store<L: Lanes>(value: L, to: WriteColumn<'_>, at: usize, n: usize) {
 
 /// Convolution of each channel by itself.
 pub struct DepthwiseKernel<'a> {
-    /// The window.
+    /// How the window goes over the image.
     pub sliding: &'a Sliding,
     /// Weights `[height][width][channel]`.
     pub weights: &'a [f32],
     /// Bias `[channel]`.
     pub bias: &'a [f32],
-    /// The image.
+    /// The image `[height][width][channel]`.
     pub from: &'a [f32],
-    /// The result.
+    /// The image that is written `[height][width][channel]`.
     pub to: &'a mut [f32],
 }
 
@@ -122,9 +122,9 @@ impl Taps<'_> {
 
 /// Sum of two images.
 pub struct AddKernel<'a> {
-    /// Both.
+    /// The two images that are added, of one shape.
     pub from: [&'a [f32]; 2],
-    /// The result.
+    /// The image that is written `[height][width][channel]`.
     pub to: &'a mut [f32],
     /// What happens to each sum.
     pub activation: Activation,
@@ -147,9 +147,9 @@ impl Kernel for AddKernel<'_> {
 pub struct ResizeKernel<'a> {
     /// Sizes of both.
     pub shapes: [Shape; 2],
-    /// The image.
+    /// The image `[height][width][channel]`.
     pub from: &'a [f32],
-    /// The result.
+    /// The image that is written `[height][width][channel]`.
     pub to: &'a mut [f32],
 }
 

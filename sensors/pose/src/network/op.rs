@@ -42,7 +42,7 @@ pub enum Op {
     Concatenation,
     /// Convolution: weights `[out][height][width][in]`, a bias an output channel.
     Conv {
-        /// The window.
+        /// How the window goes over the image.
         sliding: Sliding,
         /// Weights as the file has them.
         weights: Box<[f32]>,
@@ -51,9 +51,9 @@ pub enum Op {
     },
     /// Convolution of each channel by itself: weights `[height][width][channel]`.
     Depthwise {
-        /// The window.
+        /// How the window goes over the image.
         sliding: Sliding,
-        /// Weights.
+        /// Weights as the kernel reads them.
         weights: Box<[f32]>,
         /// Bias `[channel]`.
         bias: Box<[f32]>,
@@ -66,7 +66,7 @@ pub enum Op {
     MaxPool(Sliding),
     /// Zeros above and left of an image; the rest of the output is zeros too.
     Pad {
-        /// The image.
+        /// Shape of the image that is made larger.
         input: Shape,
         /// The larger image.
         output: Shape,

@@ -24,7 +24,7 @@ impl Shape {
         }
     }
 
-    /// Pixels.
+    /// Number of pixels.
     pub const fn pixels(self) -> usize {
         self.height * self.width
     }

@@ -19,13 +19,13 @@ const MOST_DIMENSIONS: usize = 5;
 /// Numbers that a file holds.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Constant {
-    /// Fractions.
+    /// Constants of the type f32, those of f16 unpacked.
     Floats(Box<[f32]>),
-    /// Whole numbers.
+    /// Constants of the type i32.
     Ints(Box<[i32]>),
 }
 
-/// A tensor.
+/// A tensor of the file: its shape, and its constants if it has any.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TensorInfo {
     /// Its dimensions, outermost first.
@@ -55,7 +55,7 @@ pub struct Operator {
 /// A network as its file has it, without what only unpacks constants.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
-    /// All tensors.
+    /// All tensors, in the order of the file.
     pub tensors: Vec<TensorInfo>,
     /// The operators in an order in which they can run.
     pub operators: Vec<Operator>,

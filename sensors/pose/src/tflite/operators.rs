@@ -8,14 +8,14 @@ use super::reader::Table;
 pub enum Padding {
     /// As many zeros as the output's size needs: every `stride`th place of the input has one.
     Same,
-    /// None.
+    /// The window stays within the image.
     Valid,
 }
 
 /// What an operator does with its sums in the end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Activation {
-    /// Nothing.
+    /// Sums stay as they are.
     None,
     /// No less than 0.
     Relu,

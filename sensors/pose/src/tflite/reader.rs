@@ -11,7 +11,7 @@ use super::NetworkFault;
 #[derive(Debug, Clone, Copy)]
 pub struct Bytes<'a>(&'a [u8]);
 
-/// One table.
+/// One table of a FlatBuffers file.
 #[derive(Debug, Clone, Copy)]
 pub struct Table<'a> {
     bytes: Bytes<'a>,

@@ -16,7 +16,11 @@ struct LoopKind {
     /// Deformation to which the Kawabata system goes (1/m, rad).
     most: f64,
     read: [f64; 2],
+    /// What the Kawabata system calls stiffness and width.
+    symbols: [&'static str; 2],
     unit: [&'static str; 2],
+    /// SI units in those two (1).
+    of_si: [f64; 2],
     /// What units of the axes are of these (1).
     scale: [f64; 2],
 }
@@ -28,7 +32,15 @@ const BENDING: [LoopKind; 2] = [bending("bending, warp"), bending("bending, weft
 const BOTH: LoopKind = bending("warp and weft");
 
 const fn bending(name: &'static str) -> LoopKind {
-    LoopKind { name, most: 250.0, read: [50.0, 150.0], unit: ["uN m", "mN"], scale: [1.0, 1e3] }
+    LoopKind {
+        name,
+        most: 250.0,
+        read: [50.0, 150.0],
+        symbols: ["B", "2HB"],
+        unit: ["uN m", "mN"],
+        of_si: [1e6, 1e3],
+        scale: [1.0, 1e3],
+    }
 }
 
 /// KES-FB1: to 8 degrees, read at .5 and 2.5.
@@ -36,7 +48,9 @@ const SHEAR: LoopKind = LoopKind {
     name: "shear",
     most: 8.0 * DEGREE,
     read: [0.5 * DEGREE, 2.5 * DEGREE],
+    symbols: ["G", "2HG"],
     unit: ["N/m", "N/m"],
+    of_si: [1.0, 1.0],
     scale: [1.0 / DEGREE, 1.0],
 };
 
@@ -64,29 +78,32 @@ impl LoopReport {
     }
 }
 
-/// The loops that a fabric has, each with its element in SI units, its stiffness as measured and its width.
-fn elements(fabric: &Fabric) -> Vec<(&'static LoopKind, FrictionElement, [f64; 2])> {
+/// A loop with its element in SI units, its stiffness as measured and its width.
+type MeasuredLoop = (&'static LoopKind, FrictionElement, [f64; 2]);
+
+/// The loops that a fabric has, of bending and of shear.
+fn elements(fabric: &Fabric) -> [Vec<MeasuredLoop>; 2] {
     let widths = fabric.hysteresis;
-    let bend = [(fabric.bend_warp_un_m, widths.bend_warp_mn), (fabric.bend_weft_un_m, widths.bend_weft_mn)];
-    let mut out = Vec::new();
-    for (kind, (stiffness, width)) in BENDING.iter().zip(bend) {
+    let of = |kind: &'static LoopKind, stiffness: f32, width: f32| {
         let measured = [f64::from(stiffness), f64::from(width)];
-        out.push((kind, FrictionElement::new(1e-6 * measured[0], 1e-3 * measured[1]), measured));
-    }
-    let measured = [f64::from(fabric.shear_n_m), f64::from(widths.shear_n_m)];
-    out.push((&SHEAR, FrictionElement::new(measured[0], measured[1]), measured));
-    out.retain(|(_, _, measured)| measured[0] > 0.0 && measured[1] > 0.0);
-    out
+        let [stiffness, width] = [0, 1].map(|k| measured[k] / kind.of_si[k]);
+        (measured[0] > 0.0 && measured[1] > 0.0).then(|| (kind, FrictionElement::new(stiffness, width), measured))
+    };
+    let [warp, weft] = &BENDING;
+    let bending =
+        [of(warp, fabric.bend_warp_un_m, widths.bend_warp_mn), of(weft, fabric.bend_weft_un_m, widths.bend_weft_mn)];
+    let shear = of(&SHEAR, fabric.shear_n_m, widths.shear_n_m);
+    [bending.into_iter().flatten().collect(), shear.into_iter().collect()]
 }
 
 /// The loops of a fabric's law, read.
 pub fn readings(fabric: &Fabric) -> Vec<LoopReport> {
-    let of = |(kind, mut element, measured): (&LoopKind, FrictionElement, [f64; 2])| {
+    let of = |(kind, mut element, measured): MeasuredLoop| {
         let read = read_loop(kind.most, kind.read, |d| element.force(d));
-        let units = if kind.unit[0] == "uN m" { [1e6, 1e3] } else { [1.0, 1.0] };
-        LoopReport { name: kind.name, measured, read: [read.slope * units[0], read.width * units[1]], unit: kind.unit }
+        let [slope, width] = kind.of_si;
+        LoopReport { name: kind.name, measured, read: [read.slope * slope, read.width * width], unit: kind.unit }
     };
-    elements(fabric).into_iter().map(of).collect()
+    elements(fabric).into_iter().flatten().map(of).collect()
 }
 
 /// Points of a branch.
@@ -120,8 +137,7 @@ pub fn png(fabric: &Fabric) -> Result<Vec<u8>, AppError> {
 
 /// The loops as a drawing: bending above, shear below where it was measured.
 fn drawing(fabric: &Fabric) -> Drawing {
-    let all = elements(fabric);
-    let (mut bending, shear): (Vec<_>, Vec<_>) = all.into_iter().partition(|(kind, ..)| kind.unit[0] == "uN m");
+    let [mut bending, shear] = elements(fabric);
     if let [(_, _, warp), (_, _, weft)] = &bending[..]
         && warp == weft
     {
@@ -143,13 +159,13 @@ fn drawing(fabric: &Fabric) -> Drawing {
     Drawing::stacked(charts.iter().map(Chart::draw))
 }
 
-fn chart(title: String, labels: [&'static str; 2], loops: Vec<(&LoopKind, FrictionElement, [f64; 2])>) -> Chart {
+fn chart(title: String, labels: [&'static str; 2], loops: Vec<MeasuredLoop>) -> Chart {
     let mut series = Vec::new();
     for ((kind, mut element, figures), colour) in loops.into_iter().zip(SERIES_COLOURS) {
         let rings = measured(kind, &element);
         let points = curve(kind, &mut element);
         series.push(Series { name: kind.name.into(), points, style: SeriesStyle::line(colour, 2.0) });
-        let [stiffness, width] = if kind.unit[0] == "uN m" { ["B", "2HB"] } else { ["G", "2HG"] };
+        let [stiffness, width] = kind.symbols;
         let name =
             format!("{stiffness} {:.2} {}, {width} {:.3} {}", figures[0], kind.unit[0], figures[1], kind.unit[1]);
         series.push(Series { name, points: rings, style: SeriesStyle::rings(BLACK) });

@@ -180,18 +180,21 @@ impl Proof {
 /// Least share of the display's height that a body has where clothes are shown.
 const LEAST_BODY: f32 = 0.6;
 
-/// The share of the display's height that a body has on a page; none where clothes are not what is looked at, and where a code is read off
-/// the display.
+/// Most modules of a side that a link's code has (version 5 of QR codes); one that holds the picture itself has over a hundred.
+const LINK_SIDE: usize = 37;
+
+/// The share of the display's height that a body has on a page; none where clothes are not what is looked at, and where a code that holds
+/// a picture is read off the display.
 fn body_share(screen: &Screen, display: DisplayMetrics, free: [f32; 4]) -> Option<f32> {
     let [w, h] = display.size.map(|n| n as f32);
-    let has_code = screen.blocks.iter().any(|block| matches!(block, Block::Code { .. }));
+    let holds_picture = |block: &Block| matches!(block, Block::Code { side, .. } if *side > LINK_SIDE);
     let has_clothes = matches!(
         screen.page,
         Page::Fitting | Page::Garments | Page::Zones | Page::Zone | Page::Compare | Page::Picture
     );
     match screen.body_view {
         _ if !has_clothes => None,
-        BodyView::Shopper { .. } if !has_code => Some(least_share(free, w / h)),
+        BodyView::Shopper { .. } if !screen.blocks.iter().any(holds_picture) => Some(least_share(free, w / h)),
         BodyView::Two { .. } => {
             let [left, top, right, bottom] = free;
             let free = if right < 1.0 { [0.0, top, 1.0, bottom] } else { [left, top, right, bottom] };
