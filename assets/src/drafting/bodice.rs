@@ -50,7 +50,7 @@ const LONG_M: f64 = 0.3;
 const SWING_M: f64 = 0.035;
 
 /// How much more of the width is in front than behind, each side (m): the bust is there.
-const FORWARD_M: f64 = 0.004;
+pub const FORWARD_M: f64 = 0.004;
 
 impl BodiceStyle {
     /// Depth of the armhole's lowest point (m).
@@ -72,7 +72,7 @@ impl BodiceStyle {
     }
 
     /// Half of the front's width (`side` 0) or the back's (1) at a depth below the armhole (m).
-    fn half_width(&self, block: &DraftBlock, depth: f64, side: usize) -> f64 {
+    pub fn half_width(&self, block: &DraftBlock, depth: f64, side: usize) -> f64 {
         let [chest, hip] = [block.chest + self.chest_ease, block.hip + self.hip_ease].map(|girth| 0.25 * girth);
         let (top, bottom) = (self.underarm(block), block.neck_to_hip);
         let part = (depth - top) / (bottom - top);
@@ -90,9 +90,7 @@ impl BodiceStyle {
     /// The front, cut on the fold.
     pub fn front(&self, block: &DraftBlock) -> DraftPanel {
         let [low, high] = self.middle(block, 0);
-        self.half(block, 0, low)
-            .bow("left neck", self.neck_corner(block, high), high)
-            .on_the_fold("front", DraftSide::Front)
+        self.half(block, 0, [low, high]).on_the_fold("front", DraftSide::Front)
     }
 
     /// The left front alone, with an edge down the middle; below a depth (m), where there is one, it has another and swings back
@@ -100,7 +98,7 @@ impl BodiceStyle {
     pub fn left_front(&self, block: &DraftBlock, open: Option<f64>) -> DraftPanel {
         let [low, high] = self.middle(block, 0);
         let low = if open.is_some() { low + at(SWING_M, 0.0) } else { low };
-        let outline = self.half(block, 0, low).bow("left neck", self.neck_corner(block, high), high);
+        let outline = self.half(block, 0, [low, high]);
         let outline = match open {
             Some(depth) => {
                 outline.line("middle", at(0.0, -depth)).bow("front edge", at(0.0, 0.6 * low.y - 0.4 * depth), low)
@@ -113,9 +111,7 @@ impl BodiceStyle {
     /// The back, cut on the fold.
     pub fn back(&self, block: &DraftBlock) -> DraftPanel {
         let [low, high] = self.middle(block, 1);
-        self.half(block, 1, low)
-            .bow("right neck", self.neck_corner(block, high), high)
-            .on_the_fold("back", DraftSide::Back)
+        self.half(block, 1, [low, high]).on_the_fold("back", DraftSide::Back)
     }
 
     /// The lower and the upper end of the middle.
@@ -136,12 +132,11 @@ impl BodiceStyle {
         straight.lerp(at(inner.x, middle.y), self.neck_square)
     }
 
-    /// The half from the middle of the hem around to the neck's point; the wearer's left one in front, the right one behind.
-    fn half(&self, block: &DraftBlock, side: usize, low: DVec2) -> Outline {
+    /// The half from the lower end of the middle around to its upper end; the wearer's left one in front, the right one behind.
+    fn half(&self, block: &DraftBlock, side: usize, [low, high]: [DVec2; 2]) -> Outline {
         let name = |what: &str| format!("{} {what}", ["left", "right"][side]);
         let wide = |depth: f64| at(self.half_width(block, depth, side), -depth);
         let (underarm, hip) = (wide(self.underarm(block)), block.neck_to_hip);
-        let [inner, tip] = self.shoulder(block);
         let hem = wide(self.length(block));
         let mut outline = Outline::from(low).bow(&name("hem"), at(0.5 * hem.x, low.y), hem);
         if self.waist_in != 0.0 {
@@ -161,6 +156,13 @@ impl BodiceStyle {
         } else {
             outline = outline.line(&name("side"), underarm);
         }
+        self.above(block, side, outline, high)
+    }
+
+    /// Goes on from the underarm over the armhole, the shoulder and the neck to the upper end of the middle.
+    pub fn above(&self, block: &DraftBlock, side: usize, outline: Outline, high: DVec2) -> Outline {
+        let name = |what: &str| format!("{} {what}", ["left", "right"][side]);
+        let ([inner, tip], underarm) = (self.shoulder(block), outline.end());
         let depth = tip.y - underarm.y;
         let hollow = tip.x.min(underarm.x) - self.hollow[side];
         outline
@@ -173,5 +175,6 @@ impl BodiceStyle {
                 tip,
             )
             .line(&name("shoulder"), inner)
+            .bow(&name("neck"), self.neck_corner(block, high), high)
     }
 }

@@ -9,6 +9,7 @@ mod block;
 mod bodice;
 mod collar;
 mod dart;
+mod dress;
 mod garment;
 mod panel;
 mod poncho;

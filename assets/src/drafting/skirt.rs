@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use glam::DVec2;
+
 use super::block::{BAND_M, DraftBlock};
 use super::dart::WaistQuarter;
 use super::garment::DraftGarment;
@@ -61,27 +63,46 @@ fn finished(mut garment: DraftGarment, block: &DraftBlock, hip: Option<f64>, hig
 /// Length of a circle skirt (part of the way from waist to knee).
 const CIRCLE_LENGTH: f64 = 0.92;
 
-/// A control point of a quarter circle lies so far along its tangent (part of the radius).
-const QUARTER: f64 = 0.552_285;
-
 /// A skirt of two half circles: its waist is a whole circle's girth.
 pub fn circle(block: &DraftBlock) -> DraftGarment {
     let inner = (block.below_waist + WAIST_EASE_M) / TAU;
     let outer = inner + CIRCLE_LENGTH * block.to_knee - BAND_M;
-    let eighth = std::f64::consts::FRAC_1_SQRT_2;
-    let half = |name: &'static str, own: &str, side: DraftSide| {
-        let label = |what: &str| format!("{own} {what}");
-        let bend = inner * (4.0 / 3.0) * (TAU / 32.0).tan();
-        let between = at(inner * eighth, -inner * eighth);
-        Outline::from(at(0.0, -outer))
-            .curve(&label("hem"), [at(QUARTER * outer, -outer), at(outer, -QUARTER * outer)], at(outer, 0.0))
-            .line(&label("side"), at(inner, 0.0))
-            .curve(&label("top side"), [at(inner, -bend), between + at(bend, bend) * eighth], between)
-            .curve(&label("top middle"), [between - at(bend, bend) * eighth, at(bend, -inner)], at(0.0, -inner))
-            .on_the_fold(name, side)
-    };
+    let half = |name, own, side| part_of_a_circle(name, own, side, [inner, outer], [0.25 * TAU, 0.5]);
     let mut garment =
         DraftGarment::of([half("front", "left", DraftSide::Front), half("back", "right", DraftSide::Back)]);
     garment.sew_alike("front", "back", &["left side", "right side"]);
     finished(garment, block, None, -inner)
+}
+
+/// A panel between two circles around (0, 0), cut on the fold: radii of its waist and its hem (m); the angle of each half (rad),
+/// and the part of it at which `top middle` becomes `top side`.
+pub fn part_of_a_circle(
+    name: &'static str,
+    half: &str,
+    side: DraftSide,
+    [inner, outer]: [f64; 2],
+    [angle, split]: [f64; 2],
+) -> DraftPanel {
+    let label = |what: &str| format!("{half} {what}");
+    let [waist, hem] = [inner, outer].map(|radius| move |from, to| arc(radius, [from, to]));
+    Outline::from(at(0.0, -outer))
+        .curve(&label("hem"), hem(0.0, angle).0, hem(0.0, angle).1)
+        .line(&label("side"), on_circle(inner, angle))
+        .curve(&label("top side"), waist(angle, split * angle).0, waist(angle, split * angle).1)
+        .curve(&label("top middle"), waist(split * angle, 0.0).0, waist(split * angle, 0.0).1)
+        .on_the_fold(name, side)
+}
+
+/// The point of a circle around (0, 0) at an angle from below (rad).
+fn on_circle(radius: f64, angle: f64) -> DVec2 {
+    radius * at(angle.sin(), -angle.cos())
+}
+
+/// Control points of an arc from one angle to another, a quarter of a turn at most, and its end: off the circle by 3e-4 of the
+/// radius at most.
+fn arc(radius: f64, [from, to]: [f64; 2]) -> ([DVec2; 2], DVec2) {
+    let reach = radius * (4.0 / 3.0) * (0.25 * (to - from)).tan();
+    let along = |angle: f64| at(angle.cos(), angle.sin());
+    let [start, end] = [from, to].map(|angle| on_circle(radius, angle));
+    ([start + reach * along(from), end - reach * along(to)], end)
 }

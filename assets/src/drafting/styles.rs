@@ -2,6 +2,7 @@
 
 use super::block::DraftBlock;
 use super::bodice::BodiceStyle;
+use super::dress::{DressStyle, dress};
 use super::garment::DraftGarment;
 use super::skirt::{self, SkirtStyle};
 use super::sleeve::SleeveStyle;
@@ -84,9 +85,7 @@ pub const STYLES: [DraftStyle; 23] = [
     style("shift-dress", WOMEN, GarmentKind::Dress, (LINEN, 18.0, 3), |b| {
         tops::zipped(b, &to_the_knee(SHIFT, b, 0.97))
     }),
-    style("strap-dress", WOMEN, GarmentKind::Dress, (FLOWERS, 17.0, 3), |b| {
-        tops::buttoned(b, &to_the_knee(STRAPS, b, 0.88))
-    }),
+    style("strap-dress", WOMEN, GarmentKind::Dress, (FLOWERS, 18.0, 3), |b| dress(b, &SUN_DRESS)),
     style("blazer", WOMEN, GarmentKind::Jacket, (HOUNDSTOOTH, 18.0, 4), |b| {
         tops::jacket(b, &BLAZER, &BLAZER_SLEEVE.of(b), 2)
     }),
@@ -153,17 +152,17 @@ const SHIFT: BodiceStyle = BodiceStyle {
     ..TEE
 };
 const STRAPS: BodiceStyle = BodiceStyle {
-    chest_ease: 0.05,
-    waist_in: 0.018,
-    flare: 0.07,
-    neck_wider: 0.03,
+    chest_ease: 0.075,
+    below_waist: 0.0,
+    neck_wider: 0.04,
     front_neck: 0.17,
     back_neck: 0.14,
-    shoulder_out: -0.03,
-    armhole_drop: 0.01,
+    shoulder_out: -0.036,
+    armhole_drop: 0.0,
     hollow: [0.006, 0.006],
     ..TEE
 };
+const SUN_DRESS: DressStyle = DressStyle { bodice: STRAPS, waist_ease: 0.04, length: 1.04, quarter: 0.5 };
 const BLAZER: BodiceStyle = BodiceStyle {
     chest_ease: 0.17,
     hip_ease: 0.14,

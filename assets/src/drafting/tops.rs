@@ -30,7 +30,7 @@ fn in_halves(block: &DraftBlock, style: &BodiceStyle, open: Option<f64>) -> Draf
 const FRONTS: [&str; 2] = ["left front", "right front"];
 
 /// Sews sides and shoulders.
-fn sides(garment: &mut DraftGarment, fronts: [&'static str; 2]) {
+pub fn sides(garment: &mut DraftGarment, fronts: [&'static str; 2]) {
     for (front, side) in fronts.into_iter().zip(["left", "right"]) {
         for edge in ["side below", "side", "side above", "shoulder"] {
             let edge = format!("{side} {edge}");
@@ -60,13 +60,6 @@ pub fn blouse(block: &DraftBlock, style: &BodiceStyle, sleeve: &SleeveStyle) -> 
 pub fn zipped(block: &DraftBlock, style: &BodiceStyle) -> DraftGarment {
     let mut garment = closed(block, style);
     trims::dress_zip(&mut garment, block, style);
-    garment
-}
-
-/// A garment without sleeves, with buttons down to the waist.
-pub fn buttoned(block: &DraftBlock, style: &BodiceStyle) -> DraftGarment {
-    let mut garment = closed(block, style);
-    trims::blouse(&mut garment, block, style);
     garment
 }
 

@@ -56,6 +56,16 @@ fn a_session_is_not_overwritten_by_what_is_made_of_it() {
 }
 
 #[test]
+fn a_folder_may_have_the_name_of_a_garment_that_is_built_in() {
+    let scratch = Scratch::new("outputs-garment");
+    fs::create_dir(scratch.path().join("scarf")).unwrap();
+    fs::write(scratch.path().join("scarf/report.json"), "of the last run").unwrap();
+    let output = scratch.toile(&["try-on", "--no-pictures", "--garment", "scarf", "--out", "scarf"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(fs::read_to_string(scratch.path().join("scarf/report.json")).unwrap().contains("toile.try-on/1"));
+}
+
+#[test]
 fn what_is_not_a_regular_file_is_not_overwritten() {
     let scratch = Scratch::new("outputs-irregular");
     recorded(&scratch, "in.mcap");

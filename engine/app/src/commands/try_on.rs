@@ -19,6 +19,7 @@ use toile_assets::garment::Garment;
 use toile_assets::limits::{STEP_HZ, STEP_SECONDS};
 use toile_assets::rig::Rig;
 use toile_assets::skeleton::{BONES, Joint};
+use toile_assets::{drafting, wardrobe};
 use toile_engine::body::palette;
 use toile_engine::cloth::Settings;
 use toile_engine::frame::{Frame, Snapshot};
@@ -138,7 +139,9 @@ impl TryOnArgs {
     /// Files that are read, and so must not be overwritten.
     pub fn inputs(&self) -> Inputs {
         let body = if let Some(Wearer::File(file)) = &self.body { Some(file.as_path()) } else { None };
-        let garments = self.garments.iter().map(Path::new);
+        // A garment that is built in is no file, also where a folder has its name.
+        let is_built_in = |name: &str| wardrobe::names().contains(&name) || drafting::style(name).is_some();
+        let garments = self.garments.iter().filter(|name| !is_built_in(name)).map(Path::new);
         Inputs::new(self.session.as_deref().into_iter().chain(body).chain(garments))
     }
 }
