@@ -54,7 +54,7 @@ impl MountArgs {
             height_m: self.camera_height.map(metres),
             down: f32::from(self.camera_tilt).to_radians(),
         };
-        WebcamOptions { sex, model: self.pose, mount, stature_m: self.stature.map(metres) }
+        WebcamOptions { sex, model: self.pose, mount, stature_m: self.stature.map(metres), own_picture: false }
     }
 }
 

@@ -11,9 +11,11 @@ use toile_engine::clock::Clock;
 use toile_engine::triple_buffer::{TripleBuffer, Writer};
 use toile_pose::files::PoseError;
 use toile_pose::joints::JointPlacer;
+use toile_pose::picture_fit::{PictureFit, PictureFitter};
 use toile_pose::scale::{StatureEstimate, StatureSource, WebcamMount};
 use toile_pose::tracker::{PoseModel, PoseTracker};
 use toile_sensors::frame::Joints;
+use toile_sensors::person_mask::PersonMask;
 use toile_sensors::source::live::{ColourImage, LiveColour, PATIENCE_NS};
 use toile_track::fit::tracker::Company;
 
@@ -30,11 +32,13 @@ pub struct WebcamOptions {
     pub mount: WebcamMount,
     /// Their stature, where they say it (m).
     pub stature_m: Option<f32>,
+    /// Whether the shopper may see their own picture: then it is found where in it they are.
+    pub own_picture: bool,
 }
 
 impl Default for WebcamOptions {
     fn default() -> Self {
-        Self { sex: Sex::Female, model: PoseModel::Lite, mount: WebcamMount::default(), stature_m: None }
+        Self { sex: Sex::Female, model: PoseModel::Lite, mount: WebcamMount::default(), stature_m: None, own_picture: false }
     }
 }
 
@@ -45,6 +49,8 @@ pub struct WebcamJoints {
     placer: JointPlacer,
     stature: StatureEstimate,
     options: WebcamOptions,
+    fitter: PictureFitter,
+    fit: Option<PictureFit>,
     /// Whether somebody was seen in the last picture.
     pub found: bool,
 }
@@ -56,10 +62,12 @@ impl WebcamJoints {
     /// Files that are missing or others than those that are known, with the command that fetches them.
     pub fn load(folder: &Path, options: WebcamOptions) -> Result<Self, PoseError> {
         Ok(Self {
-            tracker: PoseTracker::load(folder, options.model)?,
+            tracker: PoseTracker::load(folder, options.model, options.own_picture)?,
             placer: JointPlacer::new(options.sex, options.mount),
             stature: StatureEstimate::new(options.stature_m),
             options,
+            fitter: PictureFitter::default(),
+            fit: None,
             found: false,
         })
     }
@@ -67,6 +75,7 @@ impl WebcamJoints {
     /// Joints of a picture that was taken at a time (ns); all of them absent where nobody is seen, or the picture cannot be looked at.
     pub fn push(&mut self, picture: &ColourImage, time_ns: u64) -> Joints {
         let seen = self.tracker.push(picture, time_ns);
+        self.fit = None;
         let Ok(Some(landmarks)) = seen else {
             if self.found && self.tracker.region().is_none() {
                 self.reset();
@@ -77,7 +86,21 @@ impl WebcamJoints {
         self.found = true;
         let size = [picture.width, picture.height];
         self.stature.push(&landmarks, size, &self.options.mount);
-        self.placer.joints(&landmarks, size, self.stature.stature().0, time_ns)
+        let joints = self.placer.joints(&landmarks, size, self.stature.stature().0, time_ns);
+        if self.options.own_picture {
+            self.fit = self.fitter.fit(&landmarks, &joints, size, &self.options.mount);
+        }
+        joints
+    }
+
+    /// The camera of the last picture, and joints that are seen where it shows them; none where nobody is seen, or own pictures are not shown.
+    pub fn picture_fit(&self) -> Option<&PictureFit> {
+        self.fit.as_ref()
+    }
+
+    /// Which parts of the last picture show the person; none where own pictures are not shown.
+    pub fn mask(&self) -> Option<&PersonMask> {
+        self.tracker.mask()
     }
 
     /// How large whoever is seen is taken to be (m), and why.
@@ -94,6 +117,7 @@ impl WebcamJoints {
     fn reset(&mut self) {
         self.stature.reset();
         self.placer.reset();
+        self.fitter.reset();
     }
 
     fn set_sex(&mut self, sex: Sex) {

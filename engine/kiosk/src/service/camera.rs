@@ -34,7 +34,7 @@ pub fn feed(config: &Config, name: CameraName, clock: RealClock) -> Result<(Feed
         options: CameraOptions { colour: false, quarter_turns, libraries: live::folders() },
         kept: depth_camera::GATHERED,
         zone: Zone { mark: config.display.mark_m.map(Vec2::from), ..Zone::default() },
-        webcam: WebcamOptions { sex, model: PoseModel::Lite, mount, stature_m },
+        webcam: WebcamOptions { sex, model: PoseModel::Lite, mount, stature_m, own_picture: false },
     };
     let started = camera_start::start(setup, clock).map_err(|why| match why {
         // What was given, or the device.
