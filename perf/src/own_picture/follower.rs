@@ -49,6 +49,14 @@ toile_assets::named! {
 }
 
 impl Seer {
+    /// A word for it in names of files.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Depth => "depth",
+            Self::Webcam => "webcam",
+        }
+    }
+
     /// What there is: depth, and a webcam where its network is. Each has seen somebody stand for a second.
     pub fn all(network: Option<&Path>, standing: &[Moment]) -> Result<Vec<MeasuredShopper>, OwnPictureError> {
         let mut all = vec![MeasuredShopper::by_depth(standing)?];

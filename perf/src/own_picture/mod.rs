@@ -33,7 +33,7 @@ const STANDING: u64 = 36;
 
 /// Pictures in which they begin to move, which do not count; and those that do.
 const BEGINNING: u64 = 24;
-const MEASURED: u64 = 60;
+const MEASURED: u64 = 45;
 
 /// Errors that are asked for (px of 1080 rows).
 pub const TARGETS: [(OwnMotion, f32); 2] = [(OwnMotion::Rest, 8.0), (OwnMotion::Walk, 16.0)];
@@ -158,7 +158,7 @@ fn one(
                 let counts = number >= STANDING + BEGINNING;
                 judge(follower, record, &mut actor, moment, counts);
                 if number == STANDING + BEGINNING + MEASURED / 2 {
-                    let name = format!("{}-{}", motion.name().replace(' ', "-"), follower.seer.name().replace(' ', "-"));
+                    let name = format!("{}-{}", motion.word(), follower.seer.word());
                     keep(KeptPicture { name, image: outline::beside(follower, &mut actor, moment) });
                 }
             }

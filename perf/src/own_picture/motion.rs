@@ -31,6 +31,15 @@ toile_assets::named! {
 }
 
 impl OwnMotion {
+    /// A word for it in names of files.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Rest => "rest",
+            Self::Walk => "walk",
+            Self::Crossed => "crossed",
+        }
+    }
+
     /// Where the joints are at a time (s).
     pub fn joints(self, skeleton: &Skeleton, seconds: f32, time_ns: u64) -> Joints {
         let since = (seconds - STILL_S).max(0.0);

@@ -3,14 +3,13 @@
 use glam::Vec3;
 use toile_assets::numeric::random::SplitMix64;
 use toile_assets::scene::SHOPPER;
-use toile_engine::body::JointFrames;
 use toile_engine::cloth::Quality;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::triple_buffer::Reader;
 use toile_fitting::FittingError;
 use toile_fitting::dress::recipe::Recipe;
 use toile_sensors::clock::ticks_to_ns;
-use toile_sensors::frame::{DepthFrame, Intrinsics, Joints};
+use toile_sensors::frame::{DepthFrame, Intrinsics};
 use toile_sensors::source::live::ColourImage;
 use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera, room};
 use toile_view::drawn_frame::DrawnFrame;
@@ -33,8 +32,6 @@ pub struct Moment {
     pub picture: ColourImage,
     /// Depth from the same place, with a Kinect's noise.
     pub depth: DepthFrame,
-    /// Where the joints are.
-    pub truth: Joints,
 }
 
 /// The person, in the garments or without any.
@@ -102,8 +99,7 @@ impl Actor {
         let view = room::view(&camera, scene::WALL, &[(surfaces[0].positions, surfaces[0].triangles)]);
         let depth = camera.frame(time_ns, self.noise.apply(&camera.intrinsics, &view.z));
         let picture = scene::picture(&surfaces, &mut self.random);
-        let positions = JointFrames::new(&self.frame.body().skeleton, self.frame.pose()).position;
-        Moment { number, time_ns, picture, depth, truth: Joints::seen(time_ns, positions) }
+        Moment { number, time_ns, picture, depth }
     }
 
     /// Where the garment is seen in this moment, which is the last that was taken.

@@ -62,6 +62,10 @@ pub fn run(args: &OwnPictureArgs) -> Result<(), AppError> {
         OwnPictureError::Fitting(error) => error.into(),
         OwnPictureError::Pose(error) => AppError::Device(error.to_string()),
     })?;
+    let met = table.is_met();
+    if !args.json {
+        terminal::print(&table.markdown())?;
+    }
     let files = match out {
         Some(mut out) => {
             for (name, image) in &kept {
@@ -71,11 +75,8 @@ pub fn run(args: &OwnPictureArgs) -> Result<(), AppError> {
         }
         None => Vec::new(),
     };
-    let met = table.is_met();
     if args.json {
         terminal::print_json(&Document::new("bench-own-picture", OwnPictureReport { table, files }))?;
-    } else {
-        terminal::print(&table.markdown())?;
     }
     if args.check && !met {
         return Err(AppError::Threshold("the outline of the garment is farther from the truth than asked for".into()));
