@@ -90,7 +90,10 @@ mod tests {
 
     fn webcam() -> ColourCamera {
         let intrinsics = Intrinsics { width: 640, height: 480, fx: 557.0, fy: 557.0, cx: 319.5, cy: 239.5 };
-        ColourCamera { distortion: [-0.12, 0.03, 0.001, -0.0005, 0.0], ..ColourCamera::pinhole(intrinsics, Affine3A::IDENTITY) }
+        ColourCamera {
+            distortion: [-0.12, 0.03, 0.001, -0.0005, 0.0],
+            ..ColourCamera::pinhole(intrinsics, Affine3A::IDENTITY)
+        }
     }
 
     #[test]

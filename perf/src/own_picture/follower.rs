@@ -23,7 +23,7 @@ use toile_sensors::segment::Zone;
 use toile_track::fit::FitOptions;
 use toile_track::fit::tracker::BodyTracker;
 use toile_view::image::Size;
-use toile_view::own_picture::{OwnPicture, OwnPictureInput, OwnPictureModel, OwnPictureOptions};
+use toile_view::own_picture::{OwnPicture, OwnPictureInput, OwnPictureModel, OwnPictureOptions, Plain};
 
 use super::OwnPictureError;
 use super::outline::SIZE;
@@ -93,7 +93,10 @@ impl MeasuredShopper {
         let mut webcam = WebcamJoints::load(folder, options)?;
         let joints: Vec<Joints> = standing.iter().map(|m| webcam.push(&m.picture, m.time_ns)).collect();
         let measured = measured::measure(&session::of_directions(joints), facts())?;
-        let webcam = WebcamJoints::load(folder, WebcamOptions { stature_m: measured.best.measures.stature.map(|s| s.value), ..options })?;
+        let webcam = WebcamJoints::load(
+            folder,
+            WebcamOptions { stature_m: measured.best.measures.stature.map(|s| s.value), ..options },
+        )?;
         Ok(Self { kind: Seer::Webcam, sensor: Sensor::Webcam(Box::new(webcam)), measured })
     }
 
@@ -132,8 +135,8 @@ pub struct Follower {
 
 /// A picture in every way.
 pub struct Drawn {
-    /// Whether the garment is drawn on it.
-    pub is_shown: bool,
+    /// Why the garment is not drawn on it, where it is not.
+    pub plain: Option<Plain>,
     /// Where cloth is seen, in each way.
     pub masks: Vec<Vec<bool>>,
     /// The mirror.
@@ -144,7 +147,11 @@ pub struct Drawn {
 
 impl Follower {
     /// Somebody dressed in these garments and sizes, as they stood at the end of their first second.
-    pub fn new(shopper: MeasuredShopper, garments: &[(String, String)], standing: &[Moment]) -> Result<Self, OwnPictureError> {
+    pub fn new(
+        shopper: MeasuredShopper,
+        garments: &[(String, String)],
+        standing: &[Moment],
+    ) -> Result<Self, OwnPictureError> {
         let MeasuredShopper { kind, mut sensor, measured } = shopper;
         let recipe = Recipe::of("own picture", &measured.best, SHOPPER.0, garments.to_vec(), Quality::default())?;
         let first = standing.iter().map(|m| sensor.look(m).joints).find(session::is_present);
@@ -192,29 +199,36 @@ impl Follower {
     /// Draws the last picture that was seen, in every way.
     pub fn draw(&mut self, moment: &Moment) -> Drawn {
         let Some(seen) = &self.seen else {
-            return Drawn { is_shown: false, masks: Vec::new(), rgb: Vec::new(), ms: 0.0 };
+            return Drawn { plain: Some(Plain::NoPicture), masks: Vec::new(), rgb: Vec::new(), ms: 0.0 };
         };
         let (joints, camera) = seen.own.unzip();
         let depth = (self.seer == Seer::Depth).then_some(&moment.depth);
         let joints = joints.unwrap_or(Joints::absent(seen.time_ns));
         let mask = seen.mask.as_ref();
-        let input = OwnPictureInput { picture: &moment.picture, camera: camera.as_ref(), joints: &joints, depth, mask };
+        let input = OwnPictureInput {
+            picture: &moment.picture,
+            camera: camera.as_ref(),
+            joints: &joints,
+            depth,
+            mask,
+            colours: &[],
+        };
         let whole = OwnPictureOptions::of(Size::new(SIZE[0], SIZE[1]));
         let newest = &self.snapshots.back().expect("a step was taken").1;
         let stamp = self.snapshots.iter().min_by_key(|(at, _)| at.abs_diff(seen.time_ns));
         let stamp = &stamp.expect("a step was taken").1;
         let ways = [(newest, true), (newest, false), (stamp, false)];
-        let (mut masks, mut is_shown, mut ms) = (Vec::new(), true, 0.0);
+        let (mut masks, mut plain, mut ms) = (Vec::new(), None, 0.0);
         for (way, (mirror, (snapshot, repose))) in self.mirrors.iter_mut().zip(ways).enumerate() {
             let begun = Instant::now();
             let drawn = mirror.draw(&self.model, snapshot, &input, &OwnPictureOptions { repose, ..whole });
             if way == 0 {
                 ms = begun.elapsed().as_secs_f64() * 1e3;
             }
-            is_shown &= drawn.is_ok();
+            plain = plain.or(drawn.err());
             masks.push(mirror.shown().collect());
         }
-        Drawn { is_shown, masks, rgb: self.mirrors[0].picture().1.to_vec(), ms }
+        Drawn { plain, masks, rgb: self.mirrors[0].picture().1.to_vec(), ms }
     }
 }
 

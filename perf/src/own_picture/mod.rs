@@ -10,6 +10,7 @@ mod motion;
 mod outline;
 mod truth;
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::Serialize;
@@ -39,7 +40,8 @@ const MEASURED: u64 = 45;
 pub const TARGETS: [(OwnMotion, f32); 2] = [(OwnMotion::Rest, 8.0), (OwnMotion::Walk, 16.0)];
 
 /// How the garment is brought together with the picture.
-pub const WAYS: [&str; 3] = ["brought to the picture's moment", "the newest step as it is", "the step of the picture's stamp"];
+pub const WAYS: [&str; 3] =
+    ["brought to the picture's moment", "the newest step as it is", "the step of the picture's stamp"];
 
 /// One motion, seen by one sensor.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -52,8 +54,10 @@ pub struct OwnPictureRow {
     pub outline_px: [[f32; 2]; 3],
     /// What is asked for (px), where something is.
     pub target_px: Option<f32>,
-    /// Share of the pictures on which the garment is drawn.
+    /// Share of the pictures on which the garment is drawn, and why it is not on the others.
     pub shown: f64,
+    /// Pictures that are plain, by reason.
+    pub plain: BTreeMap<String, u64>,
     /// Cloth that is drawn where the truth has an arm or nothing, and cloth that is missing, as shares of the true cloth.
     pub area: [f32; 2],
     /// Brightness of the cloth against that of the true one.
@@ -96,6 +100,7 @@ struct Record {
     errors: [Vec<f32>; 3],
     pictures: u64,
     shown: u64,
+    plain: BTreeMap<String, u64>,
     area: [f64; 3],
     light: [f64; 2],
     draw_ms: Vec<f64>,
@@ -175,7 +180,8 @@ fn judge(follower: &mut Follower, record: &mut Record, actor: &mut Actor, moment
     }
     record.pictures += 1;
     record.draw_ms.push(drawn.ms);
-    if !drawn.is_shown {
+    if let Some(plain) = drawn.plain {
+        *record.plain.entry(format!("{plain:?}")).or_default() += 1;
         return;
     }
     record.shown += 1;
@@ -194,7 +200,8 @@ fn judge(follower: &mut Follower, record: &mut Record, actor: &mut Actor, moment
 
 impl Record {
     fn row(&self, motion: OwnMotion, seer: Seer) -> OwnPictureRow {
-        let of = |errors: &Vec<f32>| [0.5, 0.95].map(|share| quantile_of(errors.iter().copied(), share).unwrap_or(f32::NAN));
+        let of =
+            |errors: &Vec<f32>| [0.5, 0.95].map(|share| quantile_of(errors.iter().copied(), share).unwrap_or(f32::NAN));
         let [more, less, all] = self.area;
         OwnPictureRow {
             motion: motion.name(),
@@ -202,6 +209,7 @@ impl Record {
             outline_px: self.errors.each_ref().map(of),
             target_px: TARGETS.iter().find(|(of, _)| *of == motion).map(|(_, px)| *px),
             shown: self.shown as f64 / self.pictures.max(1) as f64,
+            plain: self.plain.clone(),
             area: [(more / all) as f32, (less / all) as f32],
             brightness: (self.light[0] / self.light[1].max(1e-9)) as f32,
         }
@@ -218,7 +226,11 @@ impl OwnPictureTable {
     pub fn markdown(&self) -> String {
         let mut text = String::new();
         put_line!(text, "Outline of the garment against the truth, px at {} rows, median / 95 %.\n", self.size[1]);
-        put_line!(text, "| motion | seen by | {} | target | pictures with it | cloth too much / too little | brightness |", WAYS.join(" | "));
+        put_line!(
+            text,
+            "| motion | seen by | {} | target | pictures with it | cloth too much / too little | brightness |",
+            WAYS.join(" | ")
+        );
         put_line!(text, "|---|---|---|---|---|---|---|---|---|");
         for row in &self.rows {
             let ways = row.outline_px.map(|[p50, p95]| format!("{p50:.1} / {p95:.1}"));
@@ -234,7 +246,18 @@ impl OwnPictureTable {
                 row.brightness
             );
         }
-        put_line!(text, "\nA picture of {} x {}: {:.1} ms (median), {:.1} ms (99 %).", self.size[0], self.size[1], self.draw_ms[0], self.draw_ms[1]);
+        for row in self.rows.iter().filter(|row| !row.plain.is_empty()) {
+            let reasons: Vec<String> = row.plain.iter().map(|(why, count)| format!("{why} {count}")).collect();
+            put_line!(text, "\n{}, {}: plain pictures by reason: {}.", row.motion, row.seer, reasons.join(", "));
+        }
+        put_line!(
+            text,
+            "\nA picture of {} x {}: {:.1} ms (median), {:.1} ms (99 %).",
+            self.size[0],
+            self.size[1],
+            self.draw_ms[0],
+            self.draw_ms[1]
+        );
         text
     }
 }

@@ -99,7 +99,8 @@ fn cross(joints: &mut Joints, skeleton: &Skeleton, share: f32) {
             (elbow, wrist, Vec3::new(-0.85 * side, rise, ahead)),
             (wrist, hand, Vec3::new(-0.97 * side, rise, -0.08)),
         ];
-        let hung = ways.map(|(from, to, _)| (joints.at(to).position - joints.at(from).position).normalize_or(Vec3::NEG_Y));
+        let hung =
+            ways.map(|(from, to, _)| (joints.at(to).position - joints.at(from).position).normalize_or(Vec3::NEG_Y));
         let mut at = joints.at(shoulder).position;
         for ((_, joint, way), hung) in ways.into_iter().zip(hung) {
             // From hanging to crossed in directions, so that no limb changes its length.
@@ -136,6 +137,9 @@ mod tests {
         // Crossed: each wrist on the other side, before the chest.
         let crossed = OwnMotion::Crossed.joints(skeleton, 4.0, 0);
         let [left, right, chest] = [Joint::LeftWrist, Joint::RightWrist, Joint::Chest].map(|j| crossed.at(j).position);
-        assert!(left.x < chest.x && right.x > chest.x && left.z > chest.z + 0.1 && right.z > left.z, "{left} {right} {chest}");
+        assert!(
+            left.x < chest.x && right.x > chest.x && left.z > chest.z + 0.1 && right.z > left.z,
+            "{left} {right} {chest}"
+        );
     }
 }

@@ -9,7 +9,7 @@ use super::truth::{Actor, Moment};
 pub const SIZE: [u32; 2] = [1440, 1080];
 
 /// Columns around the middle that a kept picture shows, and by how much it is made smaller.
-const KEPT_COLUMNS: usize = 720;
+const KEPT_COLUMNS: usize = 540;
 const SMALLER: usize = 3;
 
 /// Distances that are farther count as this (px).
@@ -32,7 +32,10 @@ impl Outline {
         let border = (0..mask.len()).filter(|at| {
             let x = at % width;
             mask[*at]
-                && !((x == 0 || is(at - 1)) && (x + 1 == width || is(at + 1)) && is(at.wrapping_sub(width)) && is(at + width))
+                && !((x == 0 || is(at - 1))
+                    && (x + 1 == width || is(at + 1))
+                    && is(at.wrapping_sub(width))
+                    && is(at + width))
         });
         Self { border: border.map(|at| at as u32).collect(), mask: mask.to_vec(), far: std::cell::OnceCell::new() }
     }

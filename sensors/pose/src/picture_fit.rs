@@ -82,10 +82,15 @@ impl PictureFitter {
     }
 
     /// Fits the camera and the joints of a picture of this size (px); none where too little is seen.
-    pub fn fit(&mut self, landmarks: &Landmarks, joints: &Joints, size: [u32; 2], mount: &WebcamMount) -> Option<PictureFit> {
+    pub fn fit(
+        &mut self,
+        landmarks: &Landmarks,
+        joints: &Joints,
+        size: [u32; 2],
+        mount: &WebcamMount,
+    ) -> Option<PictureFit> {
         let intrinsics = intrinsics(size, mount);
-        // World: x to the right of the picture, y up, z towards the camera.
-        let rotation = Mat3::from_diagonal(Vec3::new(1.0, -1.0, -1.0)) * Mat3::from_rotation_x(-mount.down);
+        let rotation = rotation(mount);
         let into = rotation.transpose();
         let mut points: heapless::Vec<(Joint, Vec2, Vec3), 15> = heapless::Vec::new();
         for (joint, of) in SEEN {
@@ -125,12 +130,23 @@ impl PictureFitter {
     }
 }
 
+/// A webcam of this mount whose place is not known: at the world's middle.
+pub fn webcam(size: [u32; 2], mount: &WebcamMount) -> ColourCamera {
+    ColourCamera::pinhole(intrinsics(size, mount), Affine3A::from_mat3(rotation(mount)))
+}
+
+/// From the camera's axes to the world's: x to the right of the picture, y up, z towards the camera.
+fn rotation(mount: &WebcamMount) -> Mat3 {
+    Mat3::from_diagonal(Vec3::new(1.0, -1.0, -1.0)) * Mat3::from_rotation_x(-mount.down)
+}
+
 /// Moves shoulders and hips by what their middles are off, all other joints by what each is off; the spine lies between.
 fn shift(joints: &mut Joints, moves: &[(Joint, Vec3)]) {
     use Joint::*;
     let of = |joint: Joint| moves.iter().find(|(j, _)| *j == joint).map(|(_, by)| *by);
     let both = |a: Joint, b: Joint| Some((of(a)? + of(b)?) * 0.5);
-    let (hips, shoulders) = (both(LeftHip, RightHip).unwrap_or_default(), both(LeftShoulder, RightShoulder).unwrap_or_default());
+    let (hips, shoulders) =
+        (both(LeftHip, RightHip).unwrap_or_default(), both(LeftShoulder, RightShoulder).unwrap_or_default());
     let trunk = [(Pelvis, 0.0), (LeftHip, 0.0), (RightHip, 0.0), (Spine, 0.35), (Chest, 0.8)];
     let above = [Neck, LeftClavicle, RightClavicle, LeftShoulder, RightShoulder].map(|j| (j, 1.0));
     for (joint, share) in trunk.into_iter().chain(above) {
@@ -212,7 +228,9 @@ mod tests {
         // One that is half a picture away is not stretched to it.
         landmarks.points[15].pixel += Vec2::new(300.0, 0.0);
         let fit = PictureFitter::default().fit(&landmarks, &rest, size, &mount).unwrap();
-        assert!(fit.joints.at(Joint::LeftWrist).position.distance(rest.at(Joint::LeftWrist).position) <= FARTHEST_M + 1e-3);
+        assert!(
+            fit.joints.at(Joint::LeftWrist).position.distance(rest.at(Joint::LeftWrist).position) <= FARTHEST_M + 1e-3
+        );
     }
 
     #[test]

@@ -11,15 +11,17 @@ use toile_engine::clock::Clock;
 use toile_engine::triple_buffer::{TripleBuffer, Writer};
 use toile_pose::files::PoseError;
 use toile_pose::joints::JointPlacer;
-use toile_pose::picture_fit::{PictureFit, PictureFitter};
+use toile_pose::picture_fit::{self, PictureFit, PictureFitter};
 use toile_pose::scale::{StatureEstimate, StatureSource, WebcamMount};
 use toile_pose::tracker::{PoseModel, PoseTracker};
+use toile_sensors::colour_camera::ColourCamera;
 use toile_sensors::frame::Joints;
 use toile_sensors::person_mask::PersonMask;
 use toile_sensors::source::live::{ColourImage, LiveColour, PATIENCE_NS};
 use toile_track::fit::tracker::Company;
 
 use super::depth_camera::{CameraFeed, CameraHandle, CameraMeters, CameraThreads, TrackedFrame};
+use super::own_picture::{PictureSender, copy};
 
 /// How somebody is seen through a webcam.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,7 +40,13 @@ pub struct WebcamOptions {
 
 impl Default for WebcamOptions {
     fn default() -> Self {
-        Self { sex: Sex::Female, model: PoseModel::Lite, mount: WebcamMount::default(), stature_m: None, own_picture: false }
+        Self {
+            sex: Sex::Female,
+            model: PoseModel::Lite,
+            mount: WebcamMount::default(),
+            stature_m: None,
+            own_picture: false,
+        }
     }
 }
 
@@ -98,6 +106,11 @@ impl WebcamJoints {
         self.fit.as_ref()
     }
 
+    /// How the webcam sees, where it is not known where it stands: as if at the world's middle.
+    pub fn camera(&self, picture: &ColourImage) -> ColourCamera {
+        picture_fit::webcam([picture.width, picture.height], &self.options.mount)
+    }
+
     /// Which parts of the last picture show the person; none where own pictures are not shown.
     pub fn mask(&self) -> Option<&PersonMask> {
         self.tracker.mask()
@@ -142,7 +155,12 @@ impl WebcamJoints {
 ///
 /// # Errors
 /// Where the system gives no thread.
-pub fn start<C>(colour: LiveColour, joints: WebcamJoints, clock: C) -> io::Result<(CameraFeed, CameraHandle)>
+pub fn start<C>(
+    colour: LiveColour,
+    joints: WebcamJoints,
+    clock: C,
+    pictures: Option<PictureSender>,
+) -> io::Result<(CameraFeed, CameraHandle)>
 where
     C: Clock + Clone + Send + 'static,
 {
@@ -152,15 +170,14 @@ where
     let (shared, own) = (handle.clone(), clock.clone());
     let thread = thread::Builder::new()
         .name("toile-webcam".into())
-        .spawn(move || look_at_pictures(colour, joints, &own, &shared, writer))?;
+        .spawn(move || look_at_pictures((colour, joints, pictures), &own, &shared, writer))?;
     let threads = CameraThreads::one(handle.clone(), thread);
     Ok((CameraFeed::new(reader, threads, clock), handle))
 }
 
 /// What the webcam's thread runs.
 fn look_at_pictures<C: Clock>(
-    mut colour: LiveColour,
-    mut joints: WebcamJoints,
+    (mut colour, mut joints, mut pictures): (LiveColour, WebcamJoints, Option<PictureSender>),
     clock: &C,
     handle: &CameraHandle,
     mut out: Writer<Option<TrackedFrame>>,
@@ -174,15 +191,27 @@ fn look_at_pictures<C: Clock>(
         handle.publish(update.state, colour.counts());
         if handle.takes_wipe() {
             colour.wipe();
+            pictures.iter_mut().for_each(PictureSender::forget);
         }
         let (Some(taken_ns), Some(arrived_ns)) = (update.taken_ns, update.arrived_ns) else {
             if update.is_closed {
                 thread::sleep(patience);
             }
+            pictures.iter_mut().filter(|p| !p.is_on()).for_each(PictureSender::wipe);
             continue;
         };
         let had = joints.found;
         let found = joints.push(colour.picture(), taken_ns);
+        if let Some(pictures) = &mut pictures {
+            pictures.send(|seen| {
+                (seen.taken_ns, seen.arrived_ns, seen.depth) = (taken_ns, arrived_ns, None);
+                copy(colour.picture(), &mut seen.picture);
+                let fit = joints.picture_fit();
+                seen.camera = fit.map(|fit| fit.camera).or(Some(joints.camera(colour.picture())));
+                seen.joints = fit.map_or(Joints::absent(taken_ns), |fit| fit.joints);
+                joints.mask().into_iter().for_each(|mask| seen.mask.take(mask));
+            });
+        }
         handle.count_tracked(joints.found);
         handle.set_colour(colour.picture());
         if joints.found {

@@ -228,6 +228,21 @@ pub struct DisplayConfig {
     pub skin: String,
     /// Moulded hair of every body.
     pub hair: String,
+    /// Whether shoppers may see the camera's own picture of them with the clothes on it.
+    pub own_picture: OwnPictureUse,
+}
+
+/// Whether shoppers see themselves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum OwnPictureUse {
+    /// The mannequin alone; the camera's colour is not even asked for.
+    Never,
+    /// The mannequin first; whoever wants it sees themselves.
+    #[default]
+    Offered,
+    /// Themselves first; whoever wants it sees the mannequin.
+    First,
 }
 
 /// Figures for Prometheus.
@@ -299,6 +314,7 @@ impl Default for DisplayConfig {
             mark_m: None,
             skin: SkinTone::default().name().into(),
             hair: Hair::default().name().into(),
+            own_picture: OwnPictureUse::default(),
         }
     }
 }

@@ -10,7 +10,7 @@ use super::screen::Screen;
 use super::texts::{Language, Texts};
 use super::wardrobe::Wardrobe;
 use crate::error::KioskError;
-use crate::service::config::{self, Config};
+use crate::service::config::{self, Config, OwnPictureUse};
 use crate::service::stock::{LeftOut, Stock};
 use crate::service::stock_watch::Hang;
 use toile_fitting::live::dresser::ShopperSource;
@@ -54,6 +54,7 @@ impl VisitorSetup {
             size: config.wear.size.clone(),
             tape,
             motion: display.motion,
+            own_picture: display.own_picture == OwnPictureUse::First,
         };
         let first = stock.first.clone();
         let (quality, appearance) = (config.wish().quality, display.appearance());

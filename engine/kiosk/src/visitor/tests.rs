@@ -39,6 +39,7 @@ fn defaults() -> VisitDefaults {
         size: None,
         tape: TapeReadings::default(),
         motion: true,
+        own_picture: false,
     }
 }
 

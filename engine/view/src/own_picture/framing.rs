@@ -27,7 +27,8 @@ impl Framing {
         // Columns at the mirror's two sides: the picture's right is at its left.
         let (left, right) = (middle.x / scale, (mirror.x - middle.x) / scale);
         let column = if column.is_finite() { column + 0.5 } else { 0.5 * width };
-        let column = if left + right <= width { column.clamp(right, width - left) } else { 0.5 * (width + right - left) };
+        let column =
+            if left + right <= width { column.clamp(right, width - left) } else { 0.5 * (width + right - left) };
         Self { size, scale, looks_at: Vec2::new(column, 0.5 * height), middle }
     }
 

@@ -47,10 +47,9 @@ impl ClothColour {
         self.look.opacity
     }
 
-    /// The colour (linear RGB) at weights of a triangle's corners. `size` is how long its sides are (m, the root of twice its area), `pixel` how
-    /// wide a pixel is there (m).
-    pub fn at(&self, triangle: usize, weights: [f32; 3], size: f32, pixel: f32) -> Vec3 {
-        let mut ground = self.ground;
+    /// The colour (linear RGB) at weights of a triangle's corners, of a ground. `size` is how long its sides are (m, the root of twice its area),
+    /// `pixel` how wide a pixel is there (m).
+    pub fn at(&self, triangle: usize, weights: [f32; 3], mut ground: Vec3, [size, pixel]: [f32; 2]) -> Vec3 {
         if let Some(corners) = self.look.corners.get(triangle).filter(|_| !self.print.is_empty()) {
             let at = corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2];
             let area = (corners[1] - corners[0]).perp_dot(corners[2] - corners[0]).abs();

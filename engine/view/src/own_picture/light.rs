@@ -151,7 +151,8 @@ impl LightMeter {
         let colour = (self.powers / self.count as f32).powf(1.0 / SHADES as f32);
         let tint = colour / luminance(colour).max(1e-6);
         let directed = self.directed();
-        let level = tint.clamp(Vec3::splat(0.6), Vec3::splat(1.6)) * (bright / BRIGHT / (1.0 + 0.7 * directed.length()));
+        let level =
+            tint.clamp(Vec3::splat(0.6), Vec3::splat(1.6)) * (bright / BRIGHT / (1.0 + 0.7 * directed.length()));
         let level = level.clamp(Vec3::splat(0.02), Vec3::splat(1.4));
         (level.is_finite() && directed.is_finite()).then_some(LightEstimate { level, directed })
     }

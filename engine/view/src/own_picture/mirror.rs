@@ -47,6 +47,8 @@ pub struct OwnPictureInput<'a> {
     pub depth: Option<&'a DepthFrame>,
     /// Odds of a person, where they are known.
     pub mask: Option<&'a PersonMask>,
+    /// Colours of the garments (linear RGB, inner first) in place of their own; empty leaves them.
+    pub colours: &'a [[f32; 3]],
 }
 
 /// How it is shown.
@@ -259,7 +261,13 @@ impl OwnPicture {
         if support.is_enough() { Ok(()) } else { Err(Plain::Unsure) }
     }
 
-    fn paint(&mut self, model: &OwnPictureModel, input: &OwnPictureInput<'_>, camera: &ColourCamera, framing: &Framing) {
+    fn paint(
+        &mut self,
+        model: &OwnPictureModel,
+        input: &OwnPictureInput<'_>,
+        camera: &ColourCamera,
+        framing: &Framing,
+    ) {
         let light = self.meter_light(model);
         let middle = self.points.iter().sum::<Vec3>() / self.points.len().max(1) as f32;
         let [on_cloth, on_body] = &mut self.maps;
@@ -279,7 +287,8 @@ impl OwnPicture {
         }
         let Self { body, cloth, depth, garments, maps, painter, rgb, .. } = self;
         let mask = input.mask.filter(|mask| mask.side > 0);
-        let layers = Layers { model, framing, camera, body, cloth, depth, mask, garments };
+        let colours = input.colours;
+        let layers = Layers { model, framing, camera, body, cloth, depth, mask, garments, colours };
         painter.shadows(&layers, &light, [&maps[0], &maps[1]], rgb);
         painter.cloth(&layers, rgb);
     }

@@ -95,7 +95,10 @@ impl DepthInPicture {
 fn alike(d: &Intrinsics, k: &Intrinsics) -> bool {
     let scale = k.width as f32 / d.width.max(1) as f32;
     let near = |a: f32, b: f32| (a - b).abs() < 0.5;
-    near(d.fx * scale, k.fx) && near(d.fy * scale, k.fy) && near((d.cx + 0.5) * scale - 0.5, k.cx) && near((d.cy + 0.5) * scale - 0.5, k.cy)
+    near(d.fx * scale, k.fx)
+        && near(d.fy * scale, k.fy)
+        && near((d.cx + 0.5) * scale - 0.5, k.cx)
+        && near((d.cy + 0.5) * scale - 0.5, k.cy)
 }
 
 /// Whether something lies before cloth at a distance `cloth` (m) at a pixel of the picture.
@@ -109,8 +112,10 @@ pub fn is_before(
     let fitted_before = body.is_some_and(|b| b.z < cloth);
     if let Some(measured) = depth.at(pixel) {
         return match body {
-            // Where body and sensor agree there is no doubt.
-            Some(b) if !b.is_covered && (measured - b.z).abs() < THERE_M => fitted_before || measured < cloth - THERE_M,
+            // A bare part of the body that was fitted there: it is there if what was measured is nearer to it than to the cloth.
+            Some(b) if !b.is_covered && (measured - b.z).abs() < THERE_M => {
+                (fitted_before && measured < 0.5 * (b.z + cloth)) || measured < cloth - THERE_M
+            }
             Some(b) if b.is_covered => measured < cloth - THICK_M - BEFORE_GROWS * measured * measured,
             _ => measured < cloth - BEFORE_M - BEFORE_GROWS * measured * measured,
         };
@@ -157,7 +162,8 @@ mod tests {
         // By the body alone; where nobody is, no arm is.
         assert!(is_before(at, 2.0, arm(1.95), &depth, None));
         assert!(!is_before(at, 2.0, arm(2.05), &depth, None) && !is_before(at, 2.0, None, &depth, None));
-        let mask = |odds| PersonMask { side: 1, odds: vec![odds], from_picture: glam::Affine2::from_scale(Vec2::splat(0.01)) };
+        let mask =
+            |odds| PersonMask { side: 1, odds: vec![odds], from_picture: glam::Affine2::from_scale(Vec2::splat(0.01)) };
         assert!(is_before(at, 2.0, arm(1.95), &depth, Some(&mask(0.9))));
         assert!(!is_before(at, 2.0, arm(1.95), &depth, Some(&mask(0.1))));
         // By depth: an arm where it was fitted, one where none was fitted, a coat under the garment, an arm that is not there.

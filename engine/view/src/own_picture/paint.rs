@@ -42,6 +42,8 @@ pub struct Layers<'a> {
     pub mask: Option<&'a PersonMask>,
     /// Vertices of each garment as they are seen, places (m) and light on them.
     pub garments: &'a [SeenGarment],
+    /// Colours of their grounds, linear RGB; their own where there is none.
+    pub colours: &'a [[f32; 3]],
 }
 
 /// A garment as it is seen.
@@ -148,9 +150,11 @@ impl Painter {
         let size = (b - a).cross(c - a).length().sqrt();
         let near = seen[0].z.max(1e-3);
         let wide = 1.0 / (near * layers.camera.intrinsics.fx * layers.framing.scale);
-        let base = own.colour.at(number, weights, size, wide);
+        let ground = layers.colours.get(worn).map_or(own.colour.ground, |c| Vec3::from_array(*c));
+        let base = own.colour.at(number, weights, ground, [size, wide]);
         // The mirror shows a front face counter-clockwise with rows downwards.
-        let front = (seen[1].x - seen[0].x) * (seen[2].y - seen[0].y) - (seen[1].y - seen[0].y) * (seen[2].x - seen[0].x) > 0.0;
+        let front =
+            (seen[1].x - seen[0].x) * (seen[2].y - seen[0].y) - (seen[1].y - seen[0].y) * (seen[2].x - seen[0].x) > 0.0;
         let light: Vec3 = corners.iter().zip(weights).map(|(v, w)| garment.light[*v][usize::from(!front)] * w).sum();
         let tone = |x: f32| self.tones[((x / 1.25 * (TONES - 1) as f32) as usize).min(TONES - 1)];
         (base * light).to_array().map(tone)
@@ -158,7 +162,17 @@ impl Painter {
 
     /// A pixel is as much cloth as its neighbourhood is.
     fn blend(&self, at: usize, width: usize, layers: &Layers<'_>, out: &mut [u8]) {
-        let nine = [at - width - 1, at - width, at - width + 1, at - 1, at, at + 1, at + width - 1, at + width, at + width + 1];
+        let nine = [
+            at - width - 1,
+            at - width,
+            at - width + 1,
+            at - 1,
+            at,
+            at + 1,
+            at + width - 1,
+            at + width,
+            at + width + 1,
+        ];
         let (mut count, mut sum) = (0_u32, [0_u32; 3]);
         for (colour, is) in nine.iter().map(|i| &self.cloth[*i]) {
             if *is {
@@ -191,7 +205,8 @@ impl Painter {
         let [across, down] = [x1 - x0, y1 - y0].map(|n| n as usize / SHADED + 2);
         self.shaded.clear();
         for k in 0..across * down {
-            let pixel = Vec2::new((x0 as usize + k % across * SHADED) as f32, (y0 as usize + k / across * SHADED) as f32);
+            let pixel =
+                Vec2::new((x0 as usize + k % across * SHADED) as f32, (y0 as usize + k / across * SHADED) as f32);
             self.shaded.push(dark(layers, pixel, maps) * light.shadow_strength());
         }
         for y in y0 as usize..y1 as usize {
@@ -211,7 +226,8 @@ impl Painter {
         let at = y / SHADED * across + x / SHADED;
         let [dx, dy] = [x, y].map(|n| (n % SHADED) as f32 / SHADED as f32);
         let of = |i: usize| self.shaded.get(i).copied().unwrap_or(0.0);
-        let (upper, lower) = (of(at) + (of(at + 1) - of(at)) * dx, of(at + across) + (of(at + across + 1) - of(at + across)) * dx);
+        let (upper, lower) =
+            (of(at) + (of(at + 1) - of(at)) * dx, of(at + across) + (of(at + across + 1) - of(at + across)) * dx);
         upper + (lower - upper) * dy
     }
 }

@@ -39,6 +39,9 @@ const LIMBS: [(Joint, Joint); 13] = {
     ]
 };
 
+/// Ends of limbs that are too short for their length to say whose they are.
+const SHORT: [Joint; 4] = [Joint::LeftHand, Joint::RightHand, Joint::LeftToe, Joint::RightToe];
+
 /// Joints of the trunk, and how far each goes with the shoulders rather than with the hips.
 const TRUNK: [(Joint, f32); 6] = {
     use Joint::*;
@@ -70,7 +73,10 @@ impl Repose {
         let seen_shoulders = [to(LeftShoulder)?, to(RightShoulder)?];
         let trunk = Trunk { hips: hips.map(own), shoulders: shoulders.map(own) };
         let seen_trunk = Trunk { hips: seen_hips, shoulders: seen_shoulders };
-        let (below, above) = (seen_trunk.at_hips()? * trunk.at_hips()?.inverse(), seen_trunk.at_shoulders()? * trunk.at_shoulders()?.inverse());
+        let (below, above) = (
+            seen_trunk.at_hips()? * trunk.at_hips()?.inverse(),
+            seen_trunk.at_shoulders()? * trunk.at_shoulders()?.inverse(),
+        );
         let mut lengths = [seen_trunk.height() / trunk.height().max(SHORTEST_M); 2];
         let mut joints = [Affine3A::IDENTITY; JOINTS];
         for (joint, share) in TRUNK {
@@ -86,12 +92,16 @@ impl Repose {
             joints[i] = match seen_way.filter(|w| w.length().min(way.length()) > SHORTEST_M) {
                 Some(seen_way) => {
                     let ratio = seen_way.length() / way.length();
-                    if a != Joint::Neck && b != Joint::LeftHand && b != Joint::RightHand {
+                    // Hands, feet and the head are short, and say little.
+                    if b != Joint::Head && !SHORT.contains(&b) {
                         lengths = [lengths[0].min(ratio), lengths[1].max(ratio)];
                     }
                     limb(own(a), begin, way, seen_way, ratio.clamp(*DRAWN_LENGTHS.start(), *DRAWN_LENGTHS.end()))
                 }
-                None => Affine3A { translation: (begin - Vec3::from(parent.matrix3 * Vec3A::from(own(a)))).into(), ..parent },
+                None => Affine3A {
+                    translation: (begin - Vec3::from(parent.matrix3 * Vec3A::from(own(a)))).into(),
+                    ..parent
+                },
             };
             joints[j] = joints[i];
         }

@@ -15,16 +15,8 @@ const GAP_M: f32 = 0.012;
 const REACH_M: f32 = 1.1;
 
 /// Places around a point that are looked at (pixels of the map): a sunflower's seeds.
-const PLACES: [[f32; 2]; 8] = [
-    [0.9, 0.0],
-    [-0.8, 0.75],
-    [0.1, -1.7],
-    [1.3, 1.7],
-    [-2.4, -0.4],
-    [2.2, -1.5],
-    [-0.7, 2.9],
-    [-1.6, -2.7],
-];
+const PLACES: [[f32; 2]; 8] =
+    [[0.9, 0.0], [-0.8, 0.75], [0.1, -1.7], [1.3, 1.7], [-2.4, -0.4], [2.2, -1.5], [-0.7, 2.9], [-1.6, -2.7]];
 
 /// What shades.
 #[derive(Debug, Clone, Default)]
@@ -61,7 +53,11 @@ impl ShadowMap {
     fn place(&self, p: Vec3) -> Seen {
         let off = p - self.middle;
         let half = 0.5 * SIDE as f32;
-        Vec3::new(off.dot(self.right) * self.scale + half, off.dot(self.up) * self.scale + half, 100.0 + off.dot(self.toward))
+        Vec3::new(
+            off.dot(self.right) * self.scale + half,
+            off.dot(self.up) * self.scale + half,
+            100.0 + off.dot(self.toward),
+        )
     }
 
     /// Share of the light that arrives at a place (m), 0 to 1.
@@ -90,7 +86,12 @@ mod tests {
     #[test]
     fn what_lies_below_a_sheet_is_shaded_and_what_lies_beside_or_above_is_not() {
         let mut map = ShadowMap::default();
-        let sheet = [Vec3::new(-0.3, 1.0, -0.3), Vec3::new(0.3, 1.0, -0.3), Vec3::new(0.3, 1.0, 0.3), Vec3::new(-0.3, 1.0, 0.3)];
+        let sheet = [
+            Vec3::new(-0.3, 1.0, -0.3),
+            Vec3::new(0.3, 1.0, -0.3),
+            Vec3::new(0.3, 1.0, 0.3),
+            Vec3::new(-0.3, 1.0, 0.3),
+        ];
         map.begin(Vec3::Y, Vec3::Y, 1.0);
         map.draw(&sheet, &[[0, 1, 2], [0, 2, 3]]);
         assert!(map.open(Vec3::new(0.0, 0.8, 0.0)) < 0.25);

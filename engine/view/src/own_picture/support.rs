@@ -70,7 +70,8 @@ mod tests {
     fn a_body_where_the_picture_shows_a_wall_is_not_borne_out() {
         let depth = DepthInPicture::default();
         for (odds, enough) in [(0.9, true), (0.2, false)] {
-            let mask = PersonMask { side: 1, odds: vec![odds], from_picture: glam::Affine2::from_scale(Vec2::splat(1e-3)) };
+            let mask =
+                PersonMask { side: 1, odds: vec![odds], from_picture: glam::Affine2::from_scale(Vec2::splat(1e-3)) };
             let mut support = Support::default();
             (0..FEWEST).for_each(|i| support.look(Vec2::splat(i as f32), 2.0, &depth, Some(&mask)));
             assert_eq!(support.is_enough(), enough);

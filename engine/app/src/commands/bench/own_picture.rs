@@ -19,10 +19,12 @@ use crate::terminal::{self, Words};
 /// measured, dressed and followed as the mirror does it, by depth and, where the network that `toile doctor` names is fetched, by a webcam;
 /// reported are pixels between the garment's outline and the true one, at 1080 rows, and the time of a picture.
 #[derive(Debug, Clone, PartialEq, Eq, clap::Args)]
-#[command(after_help = "Example: the table of docs/own-picture.md, with pictures\n  toile bench own-picture --out look")]
+#[command(
+    after_help = "Example: the table of docs/own-picture.md, with pictures\n  toile bench own-picture --out look"
+)]
 pub struct OwnPictureArgs {
     /// Garment that is worn
-    #[arg(long, value_name = "G", default_value = "sun-dress")]
+    #[arg(long, value_name = "G", default_value = "strap-dress")]
     garment: String,
     /// Folder for pictures: the camera's, the mirror's and the truth, beside each other
     #[arg(long, value_name = "DIR")]
