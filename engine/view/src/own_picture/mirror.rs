@@ -58,7 +58,7 @@ pub struct OwnPictureOptions {
     pub size: Size,
     /// What is free of it, left and right (shares of its width): there the shopper stands.
     pub free: [f32; 2],
-    /// Whether the snapshot is brought to the picture's moment; if not, it is drawn as it is.
+    /// Whether the snapshot is brought to the picture's moment, as it has to be; if not, it is drawn as it is, for comparison.
     pub repose: bool,
 }
 
@@ -139,7 +139,11 @@ impl OwnPicture {
         let framing = self.framing(input, options);
         self.background.draw(picture, &framing, &mut self.rgb);
         let posed = self.pose(model, snapshot, input, options, &framing);
-        let borne_out = posed.and_then(|camera| self.bear_out(input, &camera, &framing).map(|()| camera));
+        // A body that is drawn where it is not seen cannot be borne out, and is for comparison alone.
+        let borne_out = posed.and_then(|camera| {
+            let found = self.bear_out(input, &camera, &framing);
+            found.or_else(|plain| if options.repose { Err(plain) } else { Ok(()) }).map(|()| camera)
+        });
         let camera = match borne_out {
             Ok(camera) => camera,
             Err(plain) => {
