@@ -27,7 +27,7 @@ use toile_view::own_picture::{OwnPicture, OwnPictureInput, OwnPictureModel, OwnP
 
 use super::OwnPictureError;
 use super::outline::SIZE;
-use super::truth::Moment;
+use super::truth::TruthMoment;
 use crate::webcam::scene;
 
 /// From a picture's arrival until its joints are there (ns): what the tables of docs/cameras.md and docs/webcam.md have at the median.
@@ -58,7 +58,7 @@ impl Seer {
     }
 
     /// What there is: depth, and a webcam where its network is. Each has seen somebody stand for a second.
-    pub fn all(network: Option<&Path>, standing: &[Moment]) -> Result<Vec<MeasuredShopper>, OwnPictureError> {
+    pub fn all(network: Option<&Path>, standing: &[TruthMoment]) -> Result<Vec<MeasuredShopper>, OwnPictureError> {
         let mut all = vec![MeasuredShopper::by_depth(standing)?];
         if let Some(folder) = network {
             all.push(MeasuredShopper::by_webcam(folder, standing)?);
@@ -70,7 +70,7 @@ impl Seer {
 /// Somebody who was measured, and what measured them.
 pub struct MeasuredShopper {
     kind: Seer,
-    sensor: Sensor,
+    sensor: FollowerSensor,
     measured: Measured,
 }
 
@@ -80,14 +80,14 @@ fn facts() -> ShopperFacts {
 }
 
 impl MeasuredShopper {
-    fn by_depth(standing: &[Moment]) -> Result<Self, OwnPictureError> {
+    fn by_depth(standing: &[TruthMoment]) -> Result<Self, OwnPictureError> {
         let frames: Vec<DepthFrame> = standing.iter().map(|m| m.depth.clone()).collect();
         let measured = measured::measure(&session::of_depth(frames), facts())?;
         let tracker = BodyTracker::new(SHOPPER.0, Zone::default(), FitOptions::LIVE);
-        Ok(Self { kind: Seer::Depth, sensor: Sensor::Depth(Box::new(tracker)), measured })
+        Ok(Self { kind: Seer::Depth, sensor: FollowerSensor::Depth(Box::new(tracker)), measured })
     }
 
-    fn by_webcam(folder: &Path, standing: &[Moment]) -> Result<Self, OwnPictureError> {
+    fn by_webcam(folder: &Path, standing: &[TruthMoment]) -> Result<Self, OwnPictureError> {
         let options =
             WebcamOptions { sex: SHOPPER.0, mount: scene::mount(), own_picture: true, ..WebcamOptions::default() };
         let mut webcam = WebcamJoints::load(folder, options)?;
@@ -97,7 +97,7 @@ impl MeasuredShopper {
             folder,
             WebcamOptions { stature_m: measured.best.measures.stature.map(|s| s.value), ..options },
         )?;
-        Ok(Self { kind: Seer::Webcam, sensor: Sensor::Webcam(Box::new(webcam)), measured })
+        Ok(Self { kind: Seer::Webcam, sensor: FollowerSensor::Webcam(Box::new(webcam)), measured })
     }
 
     /// The garment in the size that fits them.
@@ -121,7 +121,7 @@ struct SeenPicture {
 pub struct Follower {
     /// What sees.
     pub seer: Seer,
-    sensor: Sensor,
+    sensor: FollowerSensor,
     frame: Frame,
     reader: Reader<Snapshot>,
     model: std::sync::Arc<OwnPictureModel>,
@@ -150,7 +150,7 @@ impl Follower {
     pub fn new(
         shopper: MeasuredShopper,
         garments: &[(String, String)],
-        standing: &[Moment],
+        standing: &[TruthMoment],
     ) -> Result<Self, OwnPictureError> {
         let MeasuredShopper { kind, mut sensor, measured } = shopper;
         let recipe = Recipe::of("own picture", &measured.best, SHOPPER.0, garments.to_vec(), Quality::default())?;
@@ -173,7 +173,7 @@ impl Follower {
     }
 
     /// Looks at a picture: its joints come a little later.
-    pub fn look(&mut self, moment: &Moment) {
+    pub fn look(&mut self, moment: &TruthMoment) {
         self.seen = Some(self.sensor.look(moment));
     }
 
@@ -197,7 +197,7 @@ impl Follower {
     }
 
     /// Draws the last picture that was seen, in every way.
-    pub fn draw(&mut self, moment: &Moment) -> Drawn {
+    pub fn draw(&mut self, moment: &TruthMoment) -> Drawn {
         let Some(seen) = &self.seen else {
             return Drawn { plain: Some(Plain::NoPicture), masks: Vec::new(), rgb: Vec::new(), ms: 0.0 };
         };
@@ -233,13 +233,13 @@ impl Follower {
 }
 
 /// A sensor's own part.
-enum Sensor {
+enum FollowerSensor {
     Depth(Box<BodyTracker>),
     Webcam(Box<WebcamJoints>),
 }
 
-impl Sensor {
-    fn look(&mut self, moment: &Moment) -> SeenPicture {
+impl FollowerSensor {
+    fn look(&mut self, moment: &TruthMoment) -> SeenPicture {
         let time_ns = moment.time_ns;
         match self {
             Self::Depth(tracker) => {

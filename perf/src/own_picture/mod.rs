@@ -22,7 +22,7 @@ use toile_view::image::Image;
 
 use follower::{Follower, Seer};
 use outline::Outline;
-use truth::{Actor, Moment};
+use truth::{Actor, TruthMoment};
 
 pub use motion::OwnMotion;
 
@@ -35,6 +35,9 @@ const STANDING: u64 = 36;
 /// Pictures in which they begin to move, which do not count; and those that do.
 const BEGINNING: u64 = 24;
 const MEASURED: u64 = 45;
+
+/// Which of these is kept as a picture: whoever walks is in the middle then.
+const KEPT: u64 = 6;
 
 /// Errors that are asked for (px of 1080 rows).
 pub const TARGETS: [(OwnMotion, f32); 2] = [(OwnMotion::Rest, 8.0), (OwnMotion::Walk, 16.0)];
@@ -162,7 +165,7 @@ fn one(
                 let number = moment.number;
                 let counts = number >= STANDING + BEGINNING;
                 judge(follower, record, &mut actor, moment, counts);
-                if number == STANDING + BEGINNING + MEASURED / 2 {
+                if number == STANDING + BEGINNING + KEPT {
                     let name = format!("{}-{}", motion.word(), follower.seer.word());
                     keep(KeptPicture { name, image: outline::beside(follower, &mut actor, moment) });
                 }
@@ -173,7 +176,7 @@ fn one(
 }
 
 /// Draws a picture in every way, and compares it with the truth.
-fn judge(follower: &mut Follower, record: &mut Record, actor: &mut Actor, moment: &Moment, counts: bool) {
+fn judge(follower: &mut Follower, record: &mut Record, actor: &mut Actor, moment: &TruthMoment, counts: bool) {
     let drawn = follower.draw(moment);
     if !counts {
         return;

@@ -3,7 +3,7 @@
 use toile_view::image::{Image, Size};
 
 use super::follower::Follower;
-use super::truth::{Actor, Moment};
+use super::truth::{Actor, TruthMoment};
 
 /// Size of the mirror in which outlines are compared: 1080 rows.
 pub const SIZE: [u32; 2] = [1440, 1080];
@@ -109,7 +109,7 @@ fn envelope(f: &[f32], out: &mut [f32]) {
 }
 
 /// Camera's picture, mirror and truth beside each other.
-pub fn beside(follower: &mut Follower, actor: &mut Actor, moment: &Moment) -> Image {
+pub fn beside(follower: &mut Follower, actor: &mut Actor, moment: &TruthMoment) -> Image {
     let drawn = follower.draw(moment);
     let [width, height] = SIZE.map(|n| n as usize);
     let (across, down) = (KEPT_COLUMNS / SMALLER, height / SMALLER);

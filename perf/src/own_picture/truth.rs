@@ -23,7 +23,7 @@ use crate::webcam::scene;
 const GARMENT: u8 = room::PERSON + 1;
 
 /// What the cameras see at a moment.
-pub struct Moment {
+pub struct TruthMoment {
     /// Which picture it is.
     pub number: u64,
     /// When it was taken (ns).
@@ -81,7 +81,7 @@ impl Actor {
     }
 
     /// The same after the steps that lead to a picture.
-    pub fn moment_at(&mut self, tick: u64, number: u64) -> Moment {
+    pub fn moment_at(&mut self, tick: u64, number: u64) -> TruthMoment {
         while self.frame.tick() <= tick {
             self.step(self.frame.tick());
         }
@@ -89,7 +89,7 @@ impl Actor {
     }
 
     /// What the cameras see now.
-    pub fn moment(&mut self, tick: u64, number: u64) -> Moment {
+    pub fn moment(&mut self, tick: u64, number: u64) -> TruthMoment {
         let time_ns = ticks_to_ns(tick);
         let snapshot = self.reader.latest().clone();
         self.bare.place(&[] as &[Box<[Vec3]>], &snapshot.skin);
@@ -99,11 +99,11 @@ impl Actor {
         let view = room::view(&camera, scene::WALL, &[(surfaces[0].positions, surfaces[0].triangles)]);
         let depth = camera.frame(time_ns, self.noise.apply(&camera.intrinsics, &view.z));
         let picture = scene::picture(&surfaces, &mut self.random);
-        Moment { number, time_ns, picture, depth }
+        TruthMoment { number, time_ns, picture, depth }
     }
 
     /// Where the garment is seen in this moment, which is the last that was taken.
-    pub fn outline(&mut self, moment: &Moment) -> &Outline {
+    pub fn outline(&mut self, moment: &TruthMoment) -> &Outline {
         if self.known.as_ref().is_none_or(|(number, _)| *number != moment.number) {
             let [width, height] = outline::SIZE;
             let small = scene::camera();
@@ -125,7 +125,7 @@ impl Actor {
     }
 
     /// The picture as it would be of somebody who wears the garment.
-    pub fn real(&mut self, moment: &Moment) -> &ColourImage {
+    pub fn real(&mut self, moment: &TruthMoment) -> &ColourImage {
         if self.real.as_ref().is_none_or(|(number, _)| *number != moment.number) {
             let picture = scene::picture(&self.dressed.surfaces(None), &mut self.random);
             self.real = Some((moment.number, picture));
@@ -135,7 +135,7 @@ impl Actor {
     }
 
     /// Brightness of the cloth in the mirror (RGB) and in the truth, where both show it: sums; looked at in every sixth picture.
-    pub fn brightness(&mut self, moment: &Moment, mirror: &[u8]) -> [f64; 2] {
+    pub fn brightness(&mut self, moment: &TruthMoment, mirror: &[u8]) -> [f64; 2] {
         if !moment.number.is_multiple_of(10) {
             return [0.0; 2];
         }

@@ -13,7 +13,8 @@ use toile_pose::tracker::PoseModel;
 use toile_sensors::segment::Zone;
 use toile_sensors::source::live::{self, CameraName, CameraOptions};
 
-use super::config::{Config, OwnPictureUse};
+use super::config::Config;
+use super::picture_config::OwnPictureUse;
 use crate::error::KioskError;
 
 /// A camera that is open, and all that comes from it.

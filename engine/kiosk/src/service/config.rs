@@ -11,7 +11,7 @@ use toile_engine::cloth::Quality;
 use toile_engine::workers::SHARES;
 
 use super::config_keys;
-use super::picture_config::PictureConfig;
+use super::picture_config::{OwnPictureUse, PictureConfig};
 use super::session::SessionTimes;
 use crate::error::KioskError;
 use toile_fitting::dress::measured::ShopperFacts;
@@ -230,19 +230,6 @@ pub struct DisplayConfig {
     pub hair: String,
     /// Whether shoppers may see the camera's own picture of them with the clothes on it.
     pub own_picture: OwnPictureUse,
-}
-
-/// Whether shoppers see themselves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum OwnPictureUse {
-    /// The mannequin alone; the camera's colour is not even asked for.
-    Never,
-    /// The mannequin first; whoever wants it sees themselves.
-    #[default]
-    Offered,
-    /// Themselves first; whoever wants it sees the mannequin.
-    First,
 }
 
 /// Figures for Prometheus.

@@ -19,7 +19,7 @@ use super::*;
 use crate::image::Size;
 
 /// Somebody who stands dressed, and what sees them.
-struct Scene {
+struct DressedPicture {
     model: std::sync::Arc<OwnPictureModel>,
     snapshot: Snapshot,
     joints: Joints,
@@ -29,7 +29,7 @@ struct Scene {
 
 const SIZE: Size = Size::new(320, 240);
 
-fn scene() -> Scene {
+fn scene() -> DressedPicture {
     let body = Body::build(SHOPPER.0, &SHOPPER.1).unwrap();
     let dress = wardrobe::style("sun-dress").unwrap().dress("38", &body).unwrap();
     let (mut frame, mut reader) = Frame::new(body.clone(), &Rig::fit(&body), vec![dress], Settings::default()).unwrap();
@@ -44,10 +44,10 @@ fn scene() -> Scene {
     let place = Affine3A::from_mat3_translation(rotation, Vec3::new(0.0, 0.9, 3.0));
     let picture = ColourImage { width: 320, height: 240, rgb: [150, 140, 130].repeat(320 * 240) };
     let model = OwnPictureModel::of(frame.body(), frame.garments());
-    Scene { model, snapshot, joints, camera: ColourCamera::pinhole(intrinsics, place), picture }
+    DressedPicture { model, snapshot, joints, camera: ColourCamera::pinhole(intrinsics, place), picture }
 }
 
-impl Scene {
+impl DressedPicture {
     fn input(&self) -> OwnPictureInput<'_> {
         let Self { picture, camera, joints, .. } = self;
         OwnPictureInput { picture, camera: Some(camera), joints, depth: None, mask: None, colours: &[] }
