@@ -25,7 +25,7 @@ use toile_track::fit::tracker::BodyTracker;
 use toile_view::image::Size;
 use toile_view::own_picture::{OwnPicture, OwnPictureInput, OwnPictureModel, OwnPictureOptions, Plain};
 
-use super::OwnPictureError;
+use super::error::OwnPictureError;
 use super::outline::SIZE;
 use super::truth::TruthMoment;
 use crate::webcam::scene;

@@ -5,7 +5,9 @@
 //! Budget: two minutes, most of it drawing.
 //! Thread: the caller's, which lends all cores to the ray tracer.
 
+mod error;
 mod follower;
+mod kept_picture;
 mod motion;
 mod outline;
 mod truth;
@@ -16,14 +18,13 @@ use std::path::Path;
 use serde::Serialize;
 use toile_assets::numeric::statistics::quantile_of;
 use toile_assets::put_line;
-use toile_fitting::FittingError;
-use toile_pose::files::PoseError;
 use toile_view::image::Image;
 
 use follower::{Follower, Seer};
 use outline::Outline;
 use truth::{Actor, TruthMoment};
 
+pub use error::OwnPictureError;
 pub use motion::OwnMotion;
 
 /// Steps between two pictures: 30 Hz.
@@ -76,17 +77,6 @@ pub struct OwnPictureTable {
     pub draw_ms: [f64; 2],
     /// Rows of the mirror (pixels).
     pub size: [u32; 2],
-}
-
-/// Why it cannot be measured.
-#[derive(Debug, thiserror::Error)]
-pub enum OwnPictureError {
-    /// Somebody cannot be dressed.
-    #[error(transparent)]
-    Fitting(#[from] FittingError),
-    /// The network is there, and is another one.
-    #[error(transparent)]
-    Pose(#[from] PoseError),
 }
 
 /// A picture that was kept: what it shows, and camera, mirror and truth beside each other.
@@ -167,7 +157,7 @@ fn one(
                 judge(follower, record, &mut actor, moment, counts);
                 if number == STANDING + BEGINNING + KEPT {
                     let name = format!("{}-{}", motion.word(), follower.seer.word());
-                    keep(KeptPicture { name, image: outline::beside(follower, &mut actor, moment) });
+                    keep(KeptPicture { name, image: kept_picture::beside(follower, &mut actor, moment) });
                 }
             }
         }
