@@ -114,6 +114,11 @@ impl Play {
         self.update(Input::Presence(seen.unwrap_or_default()));
     }
 
+    /// The camera's picture can be shown, and this became of the last one.
+    pub(crate) fn picture_is(&mut self, outcome: u8) {
+        self.update(Input::OwnPicture(outcome));
+    }
+
     /// The first shopper is seen in depth, facing so far to their left (rad).
     pub(crate) fn face(&mut self, facing: f32) {
         let seen = Presence {
