@@ -166,7 +166,7 @@ impl LightMeter {
                 continue;
             }
             // A little of what a single direction would lack: nobody shows their back.
-            let ridge = Mat4::from_diagonal(Vec4::new(0.0, 0.03, 0.03, 0.03) * count);
+            let ridge = Mat4::from_diagonal(Vec4::new(0.0, 0.005, 0.005, 0.005) * count);
             let [a, b, c, d] = part.square.0;
             let square = Mat4::from_cols(a, b, c, d) + ridge;
             if square.determinant().abs() <= f32::EPSILON {
@@ -226,7 +226,7 @@ mod tests {
         seen(&light, &mut meter);
         let found = meter.end();
         assert!(found.directed.angle_between(light.directed).to_degrees() < 10.0, "{found:?}");
-        assert!((found.directed.length() / light.directed.length() - 1.0).abs() < 0.25, "{found:?}");
+        assert!((found.directed.length() / light.directed.length() - 1.0).abs() < 0.3, "{found:?}");
         let tint = |l: Vec3| l / luminance(l);
         assert!(tint(found.level).distance(tint(light.level)) < 0.1, "{found:?}");
         let wall = |l: &LightEstimate| luminance(l.on(Vec3::Z, 1.0));
