@@ -29,6 +29,8 @@ pub mod validate;
 pub mod webcam;
 pub mod worn;
 
+pub mod own_picture;
+
 pub mod contact;
 pub mod crossover;
 pub mod measuring;

@@ -12,7 +12,9 @@ pub mod limits;
 
 pub mod frame;
 
+pub mod colour_camera;
 pub mod filter;
+pub mod person_mask;
 pub mod sample;
 pub mod segment;
 pub mod session;

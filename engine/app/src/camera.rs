@@ -47,15 +47,24 @@ impl MountArgs {
         CameraOptions { colour, quarter_turns, libraries: live::folders() }
     }
 
-    fn webcam(&self, sex: Sex) -> WebcamOptions {
+    fn webcam(&self, sex: Sex, own_picture: bool) -> WebcamOptions {
         let metres = |mm: u32| mm as f32 * 1e-3;
         let mount = WebcamMount {
             focal: 0.5 / (0.5 * f32::from(self.camera_view)).to_radians().tan(),
             height_m: self.camera_height.map(metres),
             down: f32::from(self.camera_tilt).to_radians(),
         };
-        WebcamOptions { sex, model: self.pose, mount, stature_m: self.stature.map(metres) }
+        WebcamOptions { sex, model: self.pose, mount, stature_m: self.stature.map(metres), own_picture }
     }
+}
+
+/// What is wanted of a camera beside joints.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct CameraUse {
+    /// Its colour images, where they are looked at.
+    pub colour: bool,
+    /// Its pictures with all that was seen in them, for somebody to see themselves.
+    pub own_picture: bool,
 }
 
 /// Opens a camera of any kind, and starts what sees through it.
@@ -65,11 +74,11 @@ impl MountArgs {
 pub fn watch(
     name: &CameraName,
     mount: &MountArgs,
-    colour: bool,
+    wanted: CameraUse,
     sex: Sex,
     clock: RealClock,
 ) -> Result<StartedCamera, AppError> {
-    let (name, options, webcam) = (name.clone(), mount.options(colour), mount.webcam(sex));
+    let (name, options, webcam) = (name.clone(), mount.options(wanted.colour), mount.webcam(sex, wanted.own_picture));
     let setup = CameraSetup { name, options, kept: 0, zone: Zone::default(), webcam };
     camera_start::start(setup, clock).map_err(|why| match why {
         CameraStartError::Camera(why) => error(&why),

@@ -51,6 +51,8 @@ pub struct Snapshot {
     pub skin: Posed,
     /// Particles of each garment, world (m) `[garments][particles]`.
     pub garments: Box<[Box<[Vec3]>]>,
+    /// How the body is bent: what brings it along with a picture of another moment.
+    pub pose: Pose,
 }
 
 /// When what a snapshot shows came to be, on the loop's clock (ns); all 0 where no loop ran.
@@ -131,6 +133,7 @@ impl Frame {
             times: SnapshotTimes::default(),
             skin: skinning.posed(),
             garments: garments.iter().map(|g| g.start.clone()).collect(),
+            pose: Pose::rest(&body.skeleton),
         };
         let TripleBuffer { writer, reader } = TripleBuffer::new(&snapshot);
         let pool = WorkerPool::new(settings.workers.clamp(1, SHARES))?;
@@ -263,9 +266,9 @@ impl Frame {
     }
 
     fn publish(&mut self, times: SnapshotTimes, clock: &impl Clock) {
-        let Self { writer, skin, cloths, tick, .. } = self;
+        let Self { writer, skin, cloths, tick, pose, .. } = self;
         writer.publish_with(|snapshot| {
-            snapshot.tick = *tick;
+            (snapshot.tick, snapshot.pose) = (*tick, *pose);
             // No copy: the next step writes all of the one that comes back.
             std::mem::swap(&mut snapshot.skin, skin);
             for (to, cloth) in snapshot.garments.iter_mut().zip(cloths.iter()) {

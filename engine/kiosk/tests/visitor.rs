@@ -7,23 +7,29 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::io::{self, Read, Write};
 use std::net::{TcpListener, TcpStream};
-use std::sync::atomic::AtomicBool;
 use std::sync::atomic::Ordering::Relaxed;
+use std::sync::atomic::{AtomicBool, AtomicU64};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use toile_engine::clock::{Clock, RealClock};
+use toile_engine::frame::Snapshot;
 use toile_engine::frame_loop::physics_thread::FrameScene;
 use toile_engine::frame_loop::queue::{Receiver, Sender, bounded};
+use toile_engine::frame_loop::render_thread::Renderer;
 use toile_engine::triple_buffer::{Reader, TripleBuffer};
 use toile_fitting::dress::{dressed, session};
 use toile_fitting::live::assembly::{HeadlessRenderer, LoopOptions, LoopParts};
+use toile_fitting::live::camera_start::{self, CameraSetup, StartedCamera};
+use toile_fitting::live::depth_camera::GATHERED;
 use toile_fitting::live::dresser::{Dresser, ShopperSource};
 use toile_fitting::live::lateness::ThreadAccount;
 use toile_fitting::live::live_loop::LiveLoop;
+use toile_fitting::live::own_picture::{PictureReceiver, PictureSwitch};
 use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
 use toile_fitting::live::source::{Feed, Visits};
+use toile_fitting::live::webcam::WebcamOptions;
 use toile_kiosk::service::config::Config;
 use toile_kiosk::service::runner::{Service, ServiceEnvironment, ServiceOptions};
 use toile_kiosk::service::service_manager::{ServiceManager, ServiceStatus, StopSignal};
@@ -31,8 +37,14 @@ use toile_kiosk::service::session::SessionState;
 use toile_kiosk::service::stock::Stock;
 use toile_kiosk::visitor::controller::{OutfitPair, WindowChannels};
 use toile_kiosk::visitor::model::Input;
+use toile_kiosk::visitor::plain;
 use toile_kiosk::visitor::screen::{Action, Block, BodyView, Page, Screen};
 use toile_kiosk::visitor::setup::VisitorSetup;
+use toile_sensors::segment::Zone;
+use toile_sensors::source::Session;
+use toile_sensors::source::live::CameraOptions;
+use toile_view::image::Size;
+use toile_view::own_picture::{OwnPicture, OwnPictureInput, OwnPictureModel, OwnPictureOptions};
 
 /// Longest that a page is waited for, beside compilers.
 const LONGEST: Duration = Duration::from_secs(180);
@@ -57,7 +69,7 @@ impl ServiceManager for Nobody {
 struct Finger {
     screens: Reader<Screen>,
     asked: Sender<Input>,
-    pairs: Receiver<Option<OutfitPair<()>>>,
+    pairs: Receiver<Option<OutfitPair<Worn>>>,
     pages: Vec<Page>,
 }
 
@@ -249,8 +261,119 @@ fn a_picture_by_a_link_is_large_and_gone_when_it_is_deleted() {
     });
 }
 
-/// A visit to a kiosk of this configuration; gives the states that were entered.
+/// The same with the shopper's own picture: a camera's pictures go through the mirror, and nothing of them is written or sent, nor left where
+/// the renderer could find it.
+#[test]
+fn who_sees_themselves_is_neither_stored_nor_sent() {
+    let _alone = VISIT.lock().unwrap_or_else(PoisonError::into_inner);
+    let before = (open_to_the_world(), written());
+    let (over, opened) = (AtomicBool::new(false), Mutex::new(BTreeSet::new()));
+    thread::scope(|scope| {
+        scope.spawn(|| {
+            // Relaxed: a flag that a test sets.
+            while !over.load(Relaxed) {
+                opened.lock().unwrap().extend(open_to_the_world());
+                thread::sleep(Duration::from_millis(2));
+            }
+        });
+        serve_with("", true, |finger| {
+            finger.page(Page::Fitting);
+            finger.press(Action::OwnPicture);
+            finger.wait("themselves", |s| matches!(s.body_view, BodyView::Shopper { own_picture: true, .. }));
+            let begun = Instant::now();
+            while DRAWN.load(Relaxed) < 15 {
+                assert!(begun.elapsed() < LONGEST, "only {} pictures with the garment", DRAWN.load(Relaxed));
+                thread::sleep(Duration::from_millis(20));
+            }
+            finger.press(Action::OwnPicture);
+            finger.wait("the mannequin", |s| matches!(s.body_view, BodyView::Shopper { own_picture: false, .. }));
+            finger.press(Action::OwnPicture);
+            finger.press(Action::Leave);
+            finger.page(Page::Attract);
+            let begun = Instant::now();
+            while !BLANK.load(Relaxed) {
+                assert!(begun.elapsed() < LONGEST, "the picture of whoever has left is still there");
+                thread::sleep(Duration::from_millis(20));
+            }
+        });
+        over.store(true, Relaxed);
+    });
+    let new: Vec<String> = opened.into_inner().unwrap().difference(&before.0).cloned().collect();
+    assert_eq!(new, [""; 0]);
+    assert_eq!(written() - before.1, 0, "bytes written");
+}
+
+/// Pictures on which the garment was drawn, and whether what the renderer holds now is blank.
+static DRAWN: AtomicU64 = AtomicU64::new(0);
+static BLANK: AtomicBool = AtomicBool::new(false);
+
+/// What is drawn of a scene.
+type Worn = Option<Arc<OwnPictureModel>>;
+
+/// A display that shows the shopper themselves, where they look.
+#[derive(Default)]
+struct MirrorRenderer {
+    headless: HeadlessRenderer,
+    pictures: Option<PictureReceiver>,
+    worn: Worn,
+    mirror: OwnPicture,
+}
+
+impl Renderer for MirrorRenderer {
+    type Outfit = Worn;
+
+    fn set_outfit(&mut self, outfit: &mut Worn) {
+        std::mem::swap(&mut self.worn, outfit);
+    }
+
+    fn draw(&mut self, snapshot: &Snapshot) {
+        self.headless.draw(snapshot);
+        let (Some(pictures), Some(worn)) = (&mut self.pictures, &self.worn) else { return };
+        if !pictures.is_on() {
+            let seen = pictures.latest();
+            BLANK.store(DRAWN.load(Relaxed) > 0 && seen.picture.rgb.iter().all(|b| *b == 0), Relaxed);
+            self.mirror.forget();
+            return;
+        }
+        let Some(seen) = pictures.news().filter(|seen| seen.taken_ns > 0) else { return };
+        let input = OwnPictureInput {
+            picture: &seen.picture,
+            camera: seen.camera.as_ref(),
+            joints: &seen.joints,
+            depth: seen.depth.as_deref(),
+            mask: None,
+            colours: &[],
+        };
+        let drawn = self.mirror.draw(worn, snapshot, &input, &OwnPictureOptions::of(Size::new(304, 540)));
+        DRAWN.fetch_add(u64::from(drawn.is_ok()), Relaxed);
+        pictures.report(plain::code(drawn.err()));
+    }
+}
+
+/// What the sensor reads, what shoppers are measured from, and the camera's pictures.
+type VisitSource = (Feed, ShopperSource, Option<(PictureReceiver, PictureSwitch)>);
+
+/// The embedded recording: played as joints and depth, or in a camera's place.
+fn source(session: &Arc<Session>, own: bool, clock: RealClock) -> VisitSource {
+    if !own {
+        // They stand there for as long as the visit takes.
+        let feed = Feed::Played(Visits::of(session, clock.now_ns(), 0));
+        return (feed, ShopperSource::Recording(session.clone()), None);
+    }
+    let recording = concat!("recording:", env!("CARGO_MANIFEST_DIR"), "/../../assets/data/sessions/shopper.mcap");
+    let webcam = WebcamOptions { own_picture: true, ..WebcamOptions::default() };
+    let (name, options) = (recording.parse().unwrap(), CameraOptions::default());
+    let setup = CameraSetup { name, options, kept: GATHERED, zone: Zone::default(), webcam };
+    let StartedCamera { feed, handle, pictures, .. } = camera_start::start(setup, clock).unwrap();
+    (Feed::Camera(feed), ShopperSource::Camera(handle), pictures)
+}
+
 fn serve(config: &str, visit: impl FnOnce(&mut Finger) + Send) -> Vec<SessionState> {
+    serve_with(config, false, visit)
+}
+
+/// A visit to a kiosk of this configuration, with the shopper's own picture or without; gives the states that were entered.
+fn serve_with(config: &str, own: bool, visit: impl FnOnce(&mut Finger) + Send) -> Vec<SessionState> {
     let clock = RealClock::default();
     let config = Config::parse("kiosk.toml", &format!("[wear]\nquality = \"draft\"\n{config}")).unwrap();
     let stock = Stock::read(&config).unwrap();
@@ -258,13 +381,13 @@ fn serve(config: &str, visit: impl FnOnce(&mut Finger) + Send) -> Vec<SessionSta
     let session = Arc::new(session::open(None, None).unwrap());
     let pose = session::standing(&session).unwrap()[0];
     let dressed = dressed::mannequin_in(&stock.first, &pose).unwrap();
-    // They stand there for as long as the visit takes.
-    let source = Feed::Played(Visits::of(&session, clock.now_ns(), 0));
-    let first = DressedScene::new(dressed, |frame| (FrameScene::new(frame), ()));
-    let renderer = HeadlessRenderer::default();
+    let (source, played, pictures) = source(&session, own, clock);
+    let (pictures, switch) = pictures.unzip();
+    let first = DressedScene::new(dressed, |frame| (FrameScene::new(frame), Worn::default()));
+    let renderer = MirrorRenderer { pictures, mirror: OwnPicture::new(), ..MirrorRenderer::default() };
     let parts = LoopParts { first, renderer, source, account: ThreadAccount::new(), recording: None };
     let (live, handover) = LiveLoop::start(parts, clock, LoopOptions::default()).unwrap();
-    let played = Some(ShopperSource::Recording(session));
+    let played = Some(played);
     let options = ServiceOptions {
         begun: Instant::now(),
         length: Some(5 * LONGEST),
@@ -284,7 +407,7 @@ fn serve(config: &str, visit: impl FnOnce(&mut Finger) + Send) -> Vec<SessionSta
         screens: screens.writer,
         next_input: Box::new(move || asks.pop()),
         pairs: show,
-        draped: Box::new(|_, _| ()),
+        draped: Box::new(|_, _| Worn::default()),
     };
     let stop = StopSignal::default();
     thread::scope(|scope| {
@@ -299,12 +422,16 @@ fn serve(config: &str, visit: impl FnOnce(&mut Finger) + Send) -> Vec<SessionSta
             print_line: &print_line,
             figures: None,
             dresser: Dresser::new(stock.first.clone()),
-            to_scene: Box::new(|frame| (FrameScene::new(frame), ())),
+            to_scene: Box::new(|frame| {
+                let worn = OwnPictureModel::of(frame.body(), frame.garments());
+                (FrameScene::new(frame), Some(worn))
+            }),
             pose,
             flight_recorder: None,
         };
         let service = Service::new(live, SceneChanger::new(handover, true, None), options, environment);
-        let (_, _, record) = service.controlled_by(Box::new(setup.controller(window, played))).run().unwrap();
+        let (_, _, record) =
+            service.controlled_by(Box::new(setup.controller(window, played).switching(switch))).run().unwrap();
         hand.join().expect("the visit goes through all pages");
         record.states
     })

@@ -55,6 +55,12 @@ fitting-smaller = Auch die kleinste Größe ist für größere Maße gedacht. Si
 fitting-larger = Auch die größte Größe ist für kleinere Maße gedacht. Sie sehen die nächstliegende.
 fitting-dressing = Wird angezogen
 fitting-refused = Das ließ sich nicht anziehen. Sie sehen, was Sie vorher trugen.
+own-picture-kept = Das sehen nur Sie. Ihr Bild wird weder gespeichert noch gesendet.
+own-picture-soon = Ihr Bild kommt gleich.
+own-picture-cannot = Auf das Bild dieser Kamera lässt sich die Kleidung nicht legen. Wählen Sie die Figur.
+own-picture-nobody = Der Spiegel sieht Sie nicht. Treten Sie auf die Markierung.
+own-picture-back = Treten Sie etwas zurück, damit die Kleidung ins Bild passt.
+own-picture-still = Bleiben Sie einen Moment stehen, dem Spiegel zugewandt.
 
 # The garments
 garments-heading = Was möchten Sie anprobieren?
@@ -220,6 +226,8 @@ do-size = Größe { $size }
 do-turn-left = Nach links drehen
 do-turn-right = Nach rechts drehen
 do-fit-map = Passform in Farben
+do-own-picture = Mich selbst sehen
+do-mannequin = Die Figur sehen
 do-picture = Bild machen
 do-show-picture = Bild zeigen
 do-delete-picture = Jetzt löschen

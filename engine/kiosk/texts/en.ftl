@@ -56,6 +56,12 @@ fitting-smaller = Even the smallest size is meant for larger measures. You see t
 fitting-larger = Even the largest size is meant for smaller measures. You see the nearest.
 fitting-dressing = Putting it on
 fitting-refused = This could not be put on. You see what you wore before.
+own-picture-kept = Only you see this. Your picture is neither kept nor sent.
+own-picture-soon = Your picture comes in a moment.
+own-picture-cannot = The clothes cannot be put on this camera’s picture. Choose the mannequin.
+own-picture-nobody = The mirror does not see you. Step onto the mark.
+own-picture-back = Step back a little, so that the clothes fit into the picture.
+own-picture-still = Stand still for a moment, facing the mirror.
 
 # The garments
 garments-heading = What would you like to try on?
@@ -221,6 +227,8 @@ do-size = Size { $size }
 do-turn-left = Turn left
 do-turn-right = Turn right
 do-fit-map = Fit map
+do-own-picture = See myself
+do-mannequin = See the mannequin
 do-picture = Take a picture
 do-show-picture = Show the picture
 do-delete-picture = Delete now

@@ -55,6 +55,12 @@ fitting-smaller = Incluso la talla más pequeña es para medidas mayores. Se mue
 fitting-larger = Incluso la talla más grande es para medidas menores. Se muestra la más cercana.
 fitting-dressing = Poniendo la prenda
 fitting-refused = No se ha podido poner. Se muestra lo que llevaba antes.
+own-picture-kept = Solo usted ve esto. Su imagen no se guarda ni se envía.
+own-picture-soon = Su imagen llega en un momento.
+own-picture-cannot = La ropa no puede ponerse en la imagen de esta cámara. Elija el maniquí.
+own-picture-nobody = El espejo no le ve. Colóquese sobre la marca.
+own-picture-back = Retroceda un poco, para que la ropa quepa en la imagen.
+own-picture-still = Quédese quieto un momento, de cara al espejo.
 
 # The garments
 garments-heading = ¿Qué le gustaría probarse?
@@ -220,6 +226,8 @@ do-size = Talla { $size }
 do-turn-left = Girar a la izquierda
 do-turn-right = Girar a la derecha
 do-fit-map = Mapa de ajuste
+do-own-picture = Verme a mí
+do-mannequin = Ver el maniquí
 do-picture = Hacer una imagen
 do-show-picture = Mostrar la imagen
 do-delete-picture = Borrar ahora

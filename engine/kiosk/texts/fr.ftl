@@ -55,6 +55,12 @@ fitting-smaller = Même la plus petite taille est prévue pour des mesures plus 
 fitting-larger = Même la plus grande taille est prévue pour des mesures plus petites. Voici la plus proche.
 fitting-dressing = Habillage en cours
 fitting-refused = Impossible d’enfiler ce vêtement. Vous voyez ce que vous portiez avant.
+own-picture-kept = Vous seul voyez ceci. Votre image n’est ni gardée ni envoyée.
+own-picture-soon = Votre image arrive dans un instant.
+own-picture-cannot = Les vêtements ne peuvent pas être posés sur l’image de cette caméra. Choisissez le mannequin.
+own-picture-nobody = Le miroir ne vous voit pas. Placez-vous sur la marque.
+own-picture-back = Reculez un peu, pour que les vêtements entrent dans l’image.
+own-picture-still = Restez un instant immobile, face au miroir.
 
 # The garments
 garments-heading = Que souhaitez-vous essayer ?
@@ -220,6 +226,8 @@ do-size = Taille { $size }
 do-turn-left = Tourner à gauche
 do-turn-right = Tourner à droite
 do-fit-map = Carte d’ajustement
+do-own-picture = Me voir
+do-mannequin = Voir le mannequin
 do-picture = Prendre une image
 do-show-picture = Montrer l’image
 do-delete-picture = Effacer maintenant

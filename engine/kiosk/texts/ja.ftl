@@ -55,6 +55,12 @@ fitting-smaller = いちばん小さいサイズでも大きめです。最も�
 fitting-larger = いちばん大きいサイズでも小さめです。最も近いサイズを表示しています。
 fitting-dressing = 着せています
 fitting-refused = この服は着せられませんでした。前の服を表示しています。
+own-picture-kept = この映像はあなただけのものです。保存も送信もしません。
+own-picture-soon = まもなく映像が表示されます。
+own-picture-cannot = このカメラの映像には服を重ねられません。マネキンを選んでください。
+own-picture-nobody = 鏡にあなたが映っていません。印の上に立ってください。
+own-picture-back = 服が映像に収まるように、少し下がってください。
+own-picture-still = 鏡に向かって、少しの間動かないでください。
 
 # The garments
 garments-heading = どれを試しますか？
@@ -216,6 +222,8 @@ do-size = サイズ{ $size }
 do-turn-left = 左へ回す
 do-turn-right = 右へ回す
 do-fit-map = フィットマップ
+do-own-picture = 自分を見る
+do-mannequin = マネキンを見る
 do-picture = 画像を作る
 do-show-picture = 画像を見る
 do-delete-picture = 今すぐ削除

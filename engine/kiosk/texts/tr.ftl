@@ -55,6 +55,12 @@ fitting-smaller = En küçük beden bile daha büyük ölçüler için. En yakı
 fitting-larger = En büyük beden bile daha küçük ölçüler için. En yakınını görüyorsunuz.
 fitting-dressing = Giydiriliyor
 fitting-refused = Bu giydirilemedi. Önceki giysinizi görüyorsunuz.
+own-picture-kept = Bunu yalnızca siz görürsünüz. Görüntünüz saklanmaz ve gönderilmez.
+own-picture-soon = Görüntünüz birazdan gelir.
+own-picture-cannot = Giysiler bu kameranın görüntüsüne giydirilemiyor. Mankeni seçin.
+own-picture-nobody = Ayna sizi görmüyor. İşaretin üstüne geçin.
+own-picture-back = Giysilerin görüntüye sığması için biraz geri gidin.
+own-picture-still = Aynaya dönük olarak bir an kıpırdamadan durun.
 
 # The garments
 garments-heading = Ne denemek istersiniz?
@@ -220,6 +226,8 @@ do-size = { $size } beden
 do-turn-left = Sola döndür
 do-turn-right = Sağa döndür
 do-fit-map = Uyum haritası
+do-own-picture = Kendimi gör
+do-mannequin = Mankeni gör
 do-picture = Resim çek
 do-show-picture = Resmi göster
 do-delete-picture = Şimdi sil

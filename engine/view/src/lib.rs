@@ -30,6 +30,9 @@ pub mod figure;
 mod shading;
 
 pub mod hidden_skin;
+
+pub mod own_picture;
+
 mod lighting;
 mod traced_scene;
 

@@ -12,10 +12,12 @@ mod error;
 mod html;
 mod jitter;
 mod load;
+mod renderer;
 mod report;
 mod run;
 
 pub use error::LatencyError;
 pub use html::page;
+pub use renderer::{OwnPictureFigures, OwnPictureParts};
 pub use report::{Goal, Latency, LatencyStage, QualityFigures};
 pub use run::{LatencyInputs, LatencyOptions, LatencySource, run};

@@ -6,6 +6,8 @@ use serde::Serialize;
 use toile_engine::meter::Meter;
 use toile_fitting::live::report::{Attributed, Quantiles, QueueUse, ThreadPlacement};
 
+use super::renderer::OwnPictureFigures;
+
 /// One stage between the sensor and the picture.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LatencyStage {
@@ -121,6 +123,9 @@ pub struct Latency {
     pub late_frames: u64,
     /// Pictures that were drawn.
     pub pictures: u64,
+    /// What became of the shopper's own picture, where it was drawn.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub own_picture: Option<OwnPictureFigures>,
     /// The quality, and its error.
     pub quality: QualityFigures,
     /// What is to be reached on a quiet machine of two cores.

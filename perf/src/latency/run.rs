@@ -17,7 +17,7 @@ use toile_engine::frame_loop::sensor_thread::{FrameSource, Playback, SourceFrame
 use toile_engine::frame_loop::thread_roles::Placement;
 use toile_engine::meter::{INTAKE, Meter, PERIOD_NS, STAGES, STEP_BUDGET_US};
 use toile_engine::triple_buffer::Reader;
-use toile_fitting::live::assembly::{HeadlessRenderer, LoopOptions, LoopParts, LoopQueues, PhysicsLoop, SensorLoop};
+use toile_fitting::live::assembly::{LoopOptions, LoopParts, LoopQueues, PhysicsLoop, SensorLoop};
 use toile_fitting::live::depth_camera::CameraFeed;
 use toile_fitting::live::lateness::{LatenessAttribution, ThreadAccount};
 use toile_fitting::live::live_loop::LiveLoop;
@@ -28,6 +28,7 @@ use toile_sensors::frame::Joints;
 
 use super::error::LatencyError;
 use super::load::LoadThreads;
+use super::renderer::{LatencyRenderer, OwnPictureFigures, OwnPictureParts};
 use super::report::{Goal, Latency, LatencyStage, QualityFigures};
 use super::{capacity, jitter};
 
@@ -50,6 +51,9 @@ const CAMERA_SNAPSHOT_US: f64 = 30_000.0;
 /// A picture is to be there so soon after a sensor frame's arrival (us): what 75 ms from motion to light leave beside a sensor of
 /// 20 ms and a display of 17 ms (Waltemate et al. 2016).
 const PICTURE_US: f64 = 38_000.0;
+
+/// The shopper's own picture is drawn so soon after its stamp (us).
+const OWN_PICTURE_US: f64 = 75_000.0;
 
 /// Most changes of quality that are reported one by one.
 const MOST_CHANGES: usize = 100;
@@ -110,6 +114,8 @@ pub struct LatencyInputs<'a> {
     pub clock: RealClock,
     /// Where the pool's helper runs.
     pub worker: Option<Placement>,
+    /// What the shopper's own picture is drawn from, where it is drawn.
+    pub own: Option<OwnPictureParts>,
     /// Where what a replay needs goes.
     pub recording: Sender<Entry>,
 }
@@ -147,7 +153,7 @@ impl LoopEvents {
 
 /// The loop while it runs, with a renderer that only takes what it would draw.
 struct MeteredLoop {
-    live: LiveLoop<FrameScene, HeadlessRenderer, RunningSource>,
+    live: LiveLoop<FrameScene, LatencyRenderer, RunningSource>,
     metered_ns: u64,
 }
 
@@ -155,16 +161,16 @@ struct MeteredLoop {
 struct EndedRun {
     sensor: SensorLoop<RunningSource, RealClock>,
     physics: PhysicsLoop<FrameScene, RealClock, ThreadAccount>,
-    render: RenderThread<HeadlessRenderer, RealClock>,
+    render: RenderThread<LatencyRenderer, RealClock>,
     queues: [Capacity; 2],
 }
 
 impl MeteredLoop {
     fn start(inputs: LatencyInputs<'_>, options: &LatencyOptions) -> Result<Self, LatencyError> {
-        let LatencyInputs { frame, mut reader, source, clock, recording, .. } = inputs;
+        let LatencyInputs { frame, mut reader, source, clock, recording, own, .. } = inputs;
         let begin_ns = clock.now_ns() + 10 * PERIOD_NS;
         let metered_ns = begin_ns + WARM_UP_S * SECOND_NS;
-        let renderer = HeadlessRenderer::sized_for(reader.latest());
+        let renderer = LatencyRenderer::new(reader.latest(), own, clock, metered_ns);
         let scene = FrameScene::new(frame);
         let first = DressedScene { scene, reader, outfit: (), still: None, note: None, number: None };
         let source = match source {
@@ -242,6 +248,7 @@ fn report(
     let stages = stages(ended, jitter, snapshot_us);
     let [step, response] = [&gauges.step, &gauges.response].map(Quantiles::of);
     let [snapshot, total] = [&gauges.reaction, &render.total].map(Quantiles::of);
+    let own = render.renderer.figures().map(|(figures, _)| figures);
     let capacities = capacity::capacities(queues, gauges, frame);
     let mut warnings = capacity::warnings(&capacities, frame);
     warnings.extend(threads.iter().flat_map(|t| t.refused.clone()));
@@ -266,7 +273,8 @@ fn report(
         late_frames: later_than(&gauges.reaction, snapshot_us) + gauges.skipped,
         pictures: render.pictures,
         quality: quality(frame, &gauges.rungs, events.changes),
-        goals: goals(snapshot_us, snapshot, total, step, response),
+        goals: goals(snapshot_us, snapshot, total, step, response, own),
+        own_picture: own,
         capacities: capacities.into_iter().map(QueueUse::from).collect(),
         warnings,
         state_hash: format!("{:016x}", frame.state_hash()),
@@ -289,6 +297,10 @@ fn stages(ended: &EndedRun, jitter: &Meter, snapshot_us: f64) -> Vec<LatencyStag
     stages.push(LatencyStage::of("wait for a picture", None, &render.picture));
     stages.push(LatencyStage::of("picture", None, &render.drawing));
     stages.push(LatencyStage::of("total", Some(PICTURE_US as u64), &render.total));
+    if let Some((_, [stamp, drawing])) = render.renderer.figures() {
+        stages.push(LatencyStage::of("own picture", None, drawing));
+        stages.push(LatencyStage::of("stamp to own picture", Some(OWN_PICTURE_US as u64), stamp));
+    }
     stages.push(LatencyStage::of("empty loop", None, jitter));
     stages
 }
@@ -299,15 +311,24 @@ fn later_than(meter: &Meter, us: f64) -> u64 {
     late.map(|v| v.count_since_last_iteration()).sum()
 }
 
-fn goals(snapshot_us: f64, snapshot: Quantiles, total: Quantiles, step: Quantiles, response: Quantiles) -> Vec<Goal> {
+fn goals(
+    snapshot_us: f64,
+    snapshot: Quantiles,
+    total: Quantiles,
+    step: Quantiles,
+    response: Quantiles,
+    own: Option<OwnPictureFigures>,
+) -> Vec<Goal> {
     let period_us = PERIOD_NS as f64 * 1e-3;
-    vec![
+    let own = own.map(|own| Goal::new("own picture after its stamp, p99", OWN_PICTURE_US, own.stamp_us.p99));
+    let goals = vec![
         Goal::new("snapshot after a sensor frame's arrival, p99", snapshot_us, snapshot.p99),
         Goal::new("picture after a sensor frame was seen, p99", PICTURE_US, total.p99),
         Goal::new("step, p99.9", 0.5 * period_us, step.p999),
         Goal::new("step, longest", 0.8 * period_us, step.max),
         Goal::new("published after it was due (120 Hz held), p99.9", period_us, response.p999),
-    ]
+    ];
+    goals.into_iter().chain(own).collect()
 }
 
 /// Empties the queues. What happened before the meters began does not count.

@@ -153,7 +153,7 @@ where
 {
     let depth = LiveDepth::open(opener(scenario, clock, origin_ns, true), HELD, clock.now_ns())?;
     let options = TrackerOptions { zone: Zone::default(), sex: Sex::Female };
-    let (feed, handle) = depth_camera::start(depth, clock.clone(), options)?;
+    let (feed, handle) = depth_camera::start(depth, clock.clone(), options, None)?;
     Ok((SoakSource::Live(feed), Box::new(move || handle.figures().state)))
 }
 

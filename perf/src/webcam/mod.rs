@@ -5,7 +5,7 @@
 //! Budget: a minute a person, most of it drawing.
 //! Thread: the caller's, which lends all cores to the ray tracer.
 
-mod scene;
+pub mod scene;
 
 use std::path::Path;
 use std::time::Instant;

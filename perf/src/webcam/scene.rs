@@ -28,7 +28,7 @@ const PLACE: Vec3 = Vec3::new(0.0, 1.4, 2.8);
 const TARGET: Vec3 = Vec3::new(0.0, 0.86, 0.0);
 
 /// Where the wall stands (m).
-const WALL: f32 = -0.9;
+pub const WALL: f32 = -0.9;
 
 /// Deviation of a webcam's noise (of 255).
 const NOISE: f32 = 2.0;
@@ -43,6 +43,14 @@ pub struct WebcamMoment {
     pub depth: DepthFrame,
     /// Where the joints are.
     pub truth: Joints,
+}
+
+/// The camera of both: the webcam's picture and the depth are seen from one place.
+pub fn camera() -> SyntheticCamera {
+    let [width, height] = SIZE;
+    let (cx, cy) = (0.5 * width as f32 - 0.5, 0.5 * height as f32 - 0.5);
+    let intrinsics = Intrinsics { width, height, fx: FOCAL, fy: FOCAL, cx, cy };
+    SyntheticCamera::looking_at(intrinsics, PLACE, TARGET)
 }
 
 /// How the webcam stands.
@@ -78,10 +86,8 @@ impl Performer {
         job.run(BLEND, &bones, &mut posed);
         posed.read(&mut skin, &mut normals);
         let time_ns = number * SECOND_NS / rate_hz;
-        let [width, height] = SIZE;
-        let (cx, cy) = (0.5 * width as f32 - 0.5, 0.5 * height as f32 - 0.5);
-        let intrinsics = Intrinsics { width, height, fx: FOCAL, fy: FOCAL, cx, cy };
-        let camera = SyntheticCamera::looking_at(intrinsics, PLACE, TARGET);
+        let camera = camera();
+        let intrinsics = camera.intrinsics;
         let view = room::view(&camera, WALL, &[(&skin, &body.mesh.triangles)]);
         let depth = camera.frame(time_ns, self.noise.apply(&intrinsics, &view.z));
         let surface = Surface {
@@ -93,13 +99,13 @@ impl Performer {
             look: None,
         };
         let truth = Joints::seen(time_ns, JointFrames::new(&body.skeleton, &pose).position);
-        let picture = picture(&surface, &mut self.random);
+        let picture = picture(&[surface], &mut self.random);
         WebcamMoment { time_ns, picture, depth, truth }
     }
 }
 
-/// The webcam's picture of a body before a plain wall.
-fn picture(surface: &Surface<'_>, random: &mut SplitMix64) -> ColourImage {
+/// The webcam's picture of surfaces before a plain wall.
+pub fn picture(surfaces: &[Surface<'_>], random: &mut SplitMix64) -> ColourImage {
     let [width, height] = SIZE;
     let away = TARGET - PLACE;
     let view = Camera {
@@ -109,8 +115,7 @@ fn picture(surface: &Surface<'_>, random: &mut SplitMix64) -> ColourImage {
         distance: -away.z,
         fov_y: 2.0 * (0.5 * height as f32 / FOCAL).atan(),
     };
-    let surfaces = [*surface];
-    let scene = TracedScene::build(Scene { surfaces: &surfaces, floor: true });
+    let scene = TracedScene::build(Scene { surfaces, floor: true });
     let image = scene.render(&view, Size::new(width, height), TraceQuality::Motion);
     let mut noisy = |v: u8| (f32::from(v) + NOISE * random.gaussian()).round().clamp(0.0, 255.0) as u8;
     let rgb = image.bytes().iter().map(|v| noisy(*v)).collect();

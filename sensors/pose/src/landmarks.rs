@@ -1,6 +1,7 @@
 //! The body's landmarks within a region of a picture.
 
 use glam::{Vec2, Vec3};
+use toile_sensors::person_mask::PersonMask;
 use toile_sensors::source::live::ColourImage;
 
 use crate::network::{Network, logistic};
@@ -49,29 +50,63 @@ impl Landmarks {
     }
 }
 
+/// Places of the mask that one of a [`PersonMask`] stands for, across and down.
+const COARSER: usize = 2;
+
 /// Finds landmarks in regions.
 #[derive(Debug)]
-pub struct Landmarker(Network);
+pub struct Landmarker {
+    network: Network,
+    /// Which parts of the last region show the person, where that is wanted.
+    mask: Option<PersonMask>,
+}
 
 impl Landmarker {
-    /// Of the file of one of the two networks. Called at load: it allocates.
+    /// Of the file of one of the two networks; with the mask of the person, or without. Called at load: it allocates.
     ///
     /// # Errors
     /// A file of another network.
-    pub fn load(bytes: &[u8]) -> Result<Self, NetworkFault> {
-        let network = Network::load(bytes, &[&[1, ALL * NUMBERS], &[1, 1], &[1, ALL * 3]])?;
+    pub fn load(bytes: &[u8], with_mask: bool) -> Result<Self, NetworkFault> {
+        let wanted: [&[usize]; 4] = [&[1, ALL * NUMBERS], &[1, 1], &[1, ALL * 3], &[1, SIDE, SIDE, 1]];
+        let network = Network::load(bytes, &wanted[..3 + usize::from(with_mask)])?;
         let shape = network.input_shape();
         if [shape.height, shape.width, shape.channels] != [SIDE, SIDE, 3] {
             return Err(NetworkFault::new(format!("it takes an image of {} x {} pixels", shape.width, shape.height)));
         }
-        Ok(Self(network))
+        let side = SIDE / COARSER;
+        let mask = with_mask.then(|| PersonMask { side: 0, odds: vec![0.0; side * side], ..PersonMask::default() });
+        Ok(Self { network, mask })
+    }
+
+    /// Which parts of the last region show the person; none where that was not wanted.
+    pub fn mask(&self) -> Option<&PersonMask> {
+        self.mask.as_ref()
+    }
+
+    /// Forgets where the person was.
+    pub fn wipe_mask(&mut self) {
+        if let Some(mask) = &mut self.mask {
+            mask.wipe();
+        }
+    }
+
+    fn take_mask(&mut self, region: &Region) {
+        let Some(mask) = &mut self.mask else { return };
+        let raw = self.network.output(3);
+        mask.side = SIDE / COARSER;
+        mask.from_picture = region.from_picture();
+        for (at, odds) in mask.odds.iter_mut().enumerate() {
+            let (x, y) = (at % mask.side * COARSER, at / mask.side * COARSER);
+            *odds = logistic(raw[y * SIDE + x]);
+        }
     }
 
     /// The landmarks in a region.
     pub fn find(&mut self, picture: &ColourImage, region: &Region) -> Landmarks {
-        region.sample(picture, Border::Nearest, [1.0, 0.0], self.0.input(), SIDE);
-        self.0.run();
-        let (raw, world) = (self.0.output(0).as_chunks::<NUMBERS>().0, self.0.output(2).as_chunks::<3>().0);
+        region.sample(picture, Border::Nearest, [1.0, 0.0], self.network.input(), SIDE);
+        self.network.run();
+        self.take_mask(region);
+        let (raw, world) = (self.network.output(0).as_chunks::<NUMBERS>().0, self.network.output(2).as_chunks::<3>().0);
         let pixel = |k: usize| region.pixel(Vec2::new(raw[k][0], raw[k][1]) / SIDE as f32);
         let size = Vec2::new(picture.width as f32, picture.height as f32);
         let turn = region.turn();
@@ -83,6 +118,6 @@ impl Landmarker {
             let confidence = if within { visibility.min(presence) } else { 0.0 };
             PoseLandmark { pixel, world: (turn * Vec2::new(x, y)).extend(z), confidence }
         });
-        Landmarks { presence: self.0.output(1)[0], points, next: [pixel(POINTS), pixel(POINTS + 1)] }
+        Landmarks { presence: self.network.output(1)[0], points, next: [pixel(POINTS), pixel(POINTS + 1)] }
     }
 }

@@ -22,3 +22,4 @@ pub mod scale;
 pub mod tracker;
 
 pub mod joints;
+pub mod picture_fit;

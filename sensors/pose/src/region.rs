@@ -1,6 +1,6 @@
 //! A turned square of a picture, and the network's image of it.
 
-use glam::{Mat2, Vec2};
+use glam::{Affine2, Mat2, Vec2};
 use toile_sensors::source::live::ColourImage;
 
 /// A square in a picture.
@@ -41,6 +41,12 @@ impl Region {
     /// From shares of the square, 0 to 1 right and down, to pixels of the picture.
     pub fn pixel(&self, share: Vec2) -> Vec2 {
         self.centre + self.turn() * ((share - 0.5) * self.side)
+    }
+
+    /// From pixels of the picture to shares of the square.
+    pub fn from_picture(&self) -> Affine2 {
+        let matrix2 = self.turn().transpose() * (1.0 / self.side);
+        Affine2 { matrix2, translation: Vec2::splat(0.5) - matrix2 * self.centre }
     }
 
     /// Rotation of what is seen in the square to the picture.

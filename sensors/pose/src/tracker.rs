@@ -1,6 +1,7 @@
 //! Somebody followed from picture to picture: found once in the whole of it, then in the region where the last one had them.
 
 use toile_sensors::limits::{MAX_COLOUR_PIXELS, MAX_SIDE};
+use toile_sensors::person_mask::PersonMask;
 use toile_sensors::source::live::ColourImage;
 
 use std::path::Path;
@@ -66,11 +67,11 @@ pub struct PoseTracker {
 }
 
 impl PoseTracker {
-    /// With the network's files of a folder. Called at load: it allocates.
+    /// With the network's files of a folder; with the person's mask, which takes a little longer, or without. Called at load: it allocates.
     ///
     /// # Errors
     /// Files that are missing or others than those that are known.
-    pub fn load(folder: &Path, model: PoseModel) -> Result<Self, PoseError> {
+    pub fn load(folder: &Path, model: PoseModel, with_mask: bool) -> Result<Self, PoseError> {
         let file = if model == PoseModel::Lite { PoseFile::Lite } else { PoseFile::Full };
         let unfit = |file: PoseFile| {
             move |fault: crate::tflite::NetworkFault| PoseError::Another {
@@ -80,7 +81,7 @@ impl PoseTracker {
         };
         Ok(Self {
             detector: Detector::load(&PoseFile::Detector.read(folder)?).map_err(unfit(PoseFile::Detector))?,
-            landmarker: Landmarker::load(&file.read(folder)?).map_err(unfit(file))?,
+            landmarker: Landmarker::load(&file.read(folder)?, with_mask).map_err(unfit(file))?,
             region: None,
             size: [0; 2],
             filter: LandmarkFilter::default(),
@@ -95,6 +96,12 @@ impl PoseTracker {
         self.region = None;
         (self.implausible, self.tries) = (0, 0);
         self.filter.reset();
+        self.landmarker.wipe_mask();
+    }
+
+    /// Which parts of the last picture show the person; none where that was not wanted.
+    pub fn mask(&self) -> Option<&PersonMask> {
+        self.landmarker.mask()
     }
 
     /// Where the person of the next picture is expected.

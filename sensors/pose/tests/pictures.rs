@@ -44,7 +44,7 @@ fn picture(image: RgbImage) -> ColourImage {
 }
 
 fn tracker() -> Option<PoseTracker> {
-    Some(PoseTracker::load(&network_folder()?, PoseModel::Lite).unwrap())
+    Some(PoseTracker::load(&network_folder()?, PoseModel::Lite, false).unwrap())
 }
 
 /// What is seen in so many pictures, one after the other.

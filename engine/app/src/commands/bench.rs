@@ -16,6 +16,7 @@ mod filters;
 mod gestures;
 mod gestures_report;
 mod measure;
+mod own_picture;
 mod skinning;
 mod skinning_report;
 mod skirt;
@@ -36,6 +37,7 @@ pub(crate) enum BenchCommand {
     Depth(depth::DepthArgs),
     Contact(contact::ContactArgs),
     Webcam(webcam::WebcamBenchArgs),
+    OwnPicture(own_picture::OwnPictureArgs),
 }
 
 /// Runs `toile bench`.
@@ -53,5 +55,6 @@ pub(crate) fn run(command: &BenchCommand) -> Result<(), AppError> {
         BenchCommand::Depth(args) => depth::run(args),
         BenchCommand::Contact(args) => contact::run(args),
         BenchCommand::Webcam(args) => webcam::run(args),
+        BenchCommand::OwnPicture(args) => own_picture::run(args),
     }
 }

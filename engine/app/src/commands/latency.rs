@@ -15,11 +15,12 @@ use toile_fitting::dress::measured;
 use toile_fitting::dress::recipe::Recipe;
 use toile_fitting::dress::session;
 use toile_fitting::live::report::Quantiles;
-use toile_perf::latency::{self, Goal, Latency, LatencyInputs, LatencyOptions, LatencySource};
+use toile_perf::latency::{self, Goal, Latency, LatencyInputs, LatencyOptions, LatencySource, OwnPictureParts};
 use toile_sensors::source::live::CameraName;
+use toile_view::own_picture::OwnPictureModel;
 
 use crate::arguments::{CrashArg, Printing, WorkersArg, WornArgs, cores};
-use crate::camera::{self, MountArgs};
+use crate::camera::{self, CameraUse, MountArgs};
 use crate::exit::AppError;
 use crate::machine::Machine;
 use crate::output::{Inputs, OutputFolder};
@@ -51,6 +52,9 @@ pub struct LatencyArgs {
     /// How it is mounted
     #[command(flatten)]
     mount: MountArgs,
+    /// Draw the garment on the camera's own picture too, at 1080 rows, and time it from the picture's stamp
+    #[arg(long, requires = "camera")]
+    pub own_picture: bool,
     #[command(flatten)]
     worn: WornArgs,
     /// Length of the run, after a first second that is not measured
@@ -132,8 +136,22 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
     // Only now: a helper with a real-time priority shares its core with nobody who waits for it.
     let clock = RealClock::default();
     let sex = if recipe.sex == "male" { Sex::Male } else { Sex::Female };
+    let mut own = None;
     let source = match &args.camera {
-        Some(name) => LatencySource::Camera(camera::watch(name, &args.mount, false, sex, clock)?.feed),
+        Some(name) => {
+            let watched = camera::watch(
+                name,
+                &args.mount,
+                CameraUse { colour: false, own_picture: args.own_picture },
+                sex,
+                clock,
+            )?;
+            own = watched.pictures.map(|(pictures, switch)| {
+                switch.set(true);
+                OwnPictureParts { model: OwnPictureModel::of(frame.body(), frame.garments()), pictures }
+            });
+            LatencySource::Camera(watched.feed)
+        }
         None => LatencySource::Played(&session.joints[from..]),
     };
     let (crew, worker) = threads::worker_pool(args.workers.count()).map_err(AppError::input)?;
@@ -156,7 +174,7 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
         assert!(!crashes, "the crash that --crash-after asked for");
         flight_recorder.capacity()
     };
-    let loop_inputs = LatencyInputs { frame: frame.with_workers(crew), reader, source, clock, worker, recording };
+    let loop_inputs = LatencyInputs { frame: frame.with_workers(crew), reader, source, clock, worker, own, recording };
     let found = latency::run(loop_inputs, &options, empty).map_err(AppError::internal);
     crash::forget();
     let found = found?;
@@ -213,6 +231,10 @@ fn table(report: &LatencyReport, paint: Paint) -> String {
         q.penetration_mm, q.particles, q.substeps
     ));
     lines.push(format!("  steps on each rung of quality: {:?}", q.rungs));
+    if let Some(own) = &found.own_picture {
+        let [all, dressed] = own.pictures;
+        lines.push(format!("  {all} own pictures, {dressed} of them with the garment"));
+    }
     for goal in &found.goals {
         let (word, tone) = if goal.pass { ("kept", Tone::Good) } else { ("missed", Tone::Warn) };
         let sentence = format!("  {word:<7} {} <= {:.0} us: {:.0} us", goal.name, goal.limit_us, goal.us);

@@ -18,7 +18,7 @@ use toile_sensors::source::live::{CameraName, CameraState, ColourImage};
 use toile_view::image::{Image, Size};
 
 use crate::arguments::Printing;
-use crate::camera::{self, MountArgs};
+use crate::camera::{self, CameraUse, MountArgs};
 use crate::exit::AppError;
 use crate::output::OutputFolder;
 use crate::pictures::write_png;
@@ -123,9 +123,15 @@ struct Looked {
 pub fn run(args: &LiveArgs) -> Result<(), AppError> {
     let out = args.out.as_deref().map(OutputFolder::prepare).transpose()?;
     let begun = Instant::now();
-    let watched = camera::watch(&args.camera, &args.mount, true, Sex::Female, RealClock::default())?;
+    let watched = camera::watch(
+        &args.camera,
+        &args.mount,
+        CameraUse { colour: true, own_picture: false },
+        Sex::Female,
+        RealClock::default(),
+    )?;
     let opened_ms = (begun.elapsed().as_secs_f64() * 1e4).round() / 10.0;
-    let StartedCamera { device, size, mut feed, handle } = watched;
+    let StartedCamera { device, size, mut feed, handle, .. } = watched;
     let gives = if args.camera.kind.is_colour() { "colour" } else { "depth" };
     let words = args.printing.words();
     words.print_line(&format!("{device}: {gives} of {} x {} pixels, open after {opened_ms:.0} ms", size[0], size[1]));

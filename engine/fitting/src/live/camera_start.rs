@@ -10,6 +10,7 @@ use toile_sensors::segment::Zone;
 use toile_sensors::source::live::{self, CameraError, CameraName, CameraOptions, LiveColour, LiveDepth};
 
 use super::depth_camera::{self, CameraFeed, CameraHandle, TrackerOptions};
+use super::own_picture::{self, PictureReceiver, PictureSwitch};
 use super::webcam::{self, WebcamJoints, WebcamOptions};
 
 /// Which camera is opened, and how somebody is seen through it.
@@ -23,7 +24,7 @@ pub struct CameraSetup {
     pub kept: usize,
     /// Where a shopper stands before a depth camera.
     pub zone: Zone,
-    /// How a webcam sees, and whose body is fitted first, to depth as well.
+    /// How a webcam sees, and whose body is fitted first, to depth as well; whether the shopper may see their own picture.
     pub webcam: WebcamOptions,
 }
 
@@ -52,7 +53,12 @@ pub struct StartedCamera {
     pub feed: CameraFeed,
     /// What others ask.
     pub handle: CameraHandle,
+    /// Its pictures, and whether they are handed on; none where own pictures are not shown.
+    pub pictures: Option<(PictureReceiver, PictureSwitch)>,
 }
+
+/// Depth images that own pictures hold: those on their way, and the one that is drawn.
+const SHOWN: usize = 4;
 
 /// Opens a camera and starts its threads. Called at load: it allocates.
 ///
@@ -64,18 +70,22 @@ where
 {
     let CameraSetup { name, mut options, kept, zone, webcam } = setup;
     let is_webcam = name.kind.is_colour();
-    options.colour |= is_webcam;
+    options.colour |= is_webcam || webcam.own_picture;
+    let (sender, pictures) = match webcam.own_picture.then(own_picture::channel) {
+        Some((sender, receiver, switch)) => (Some(sender), Some((receiver, switch))),
+        None => (None, None),
+    };
     // Without the network no webcam is switched on.
     let joints = if is_webcam { Some(WebcamJoints::load(&files::folder(), webcam)?) } else { None };
     let opener = Box::new(move || live::open(&name, &options));
     let Some(joints) = joints else {
-        let depth = LiveDepth::open(opener, kept, clock.now_ns())?;
+        let depth = LiveDepth::open(opener, kept + SHOWN, clock.now_ns())?;
         let (device, k) = (depth.info().device.clone(), depth.intrinsics());
-        let (feed, handle) = depth_camera::start(depth, clock, TrackerOptions { zone, sex: webcam.sex })?;
-        return Ok(StartedCamera { device, size: [k.width, k.height], feed, handle });
+        let (feed, handle) = depth_camera::start(depth, clock, TrackerOptions { zone, sex: webcam.sex }, sender)?;
+        return Ok(StartedCamera { device, size: [k.width, k.height], feed, handle, pictures });
     };
     let colour = LiveColour::open(opener, clock.now_ns())?;
     let (device, k) = (colour.info().device.clone(), colour.info().sensor());
-    let (feed, handle) = webcam::start(colour, joints, clock)?;
-    Ok(StartedCamera { device, size: [k.width, k.height], feed, handle })
+    let (feed, handle) = webcam::start(colour, joints, clock, sender)?;
+    Ok(StartedCamera { device, size: [k.width, k.height], feed, handle, pictures })
 }

@@ -23,6 +23,7 @@ use toile_track::fit::FitOptions;
 use toile_track::fit::tracker::{BodyTracker, Company};
 
 pub use super::camera_handle::{CameraFigures, CameraHandle, GATHERED};
+use super::own_picture::{self, PictureReceiver, PictureSender};
 
 /// Time between two looks of the sensor thread (ns): half a step, so that no frame waits for longer.
 const LOOK_NS: u64 = SECOND_NS / 240;
@@ -107,7 +108,12 @@ impl Drop for CameraThreads {
 ///
 /// # Errors
 /// Where the system gives no thread.
-pub fn start<C>(depth: LiveDepth, clock: C, options: TrackerOptions) -> io::Result<(CameraFeed, CameraHandle)>
+pub fn start<C>(
+    depth: LiveDepth,
+    clock: C,
+    options: TrackerOptions,
+    pictures: Option<PictureSender>,
+) -> io::Result<(CameraFeed, CameraHandle)>
 where
     C: Clock + Clone + Send + 'static,
 {
@@ -115,19 +121,22 @@ where
     handle.follow(options.sex);
     let TripleBuffer { writer: news, reader: seen } = TripleBuffer::new(&None);
     let TripleBuffer { writer: tracked, reader } = TripleBuffer::new(&None);
-    let watcher = Tracking { handle: handle.clone(), clock: clock.clone(), options, meters: CameraMeters::default() };
+    let (colours, pictures) =
+        pictures.map(|own| (own.relay(), own)).map_or((None, None), |((to, from), own)| (Some(to), Some((from, own))));
+    let meters = CameraMeters::default();
+    let watcher = Tracking { handle: handle.clone(), clock: clock.clone(), options, meters, pictures };
     let tracker = thread::Builder::new().name("toile-tracker".into()).spawn(move || watcher.run(seen, tracked))?;
     let (woken, shared, own) = (tracker.thread().clone(), handle.clone(), clock.clone());
     let camera = thread::Builder::new()
         .name("toile-camera".into())
-        .spawn(move || wait_for_frames(depth, &own, &shared, news, &woken))?;
+        .spawn(move || wait_for_frames((depth, colours), &own, &shared, news, &woken))?;
     let threads = CameraThreads { handle: handle.clone(), camera: Some(camera), tracker: Some(tracker) };
     Ok((CameraFeed::new(reader, threads, clock), handle))
 }
 
 /// What the camera thread runs.
 fn wait_for_frames<C: Clock>(
-    mut depth: LiveDepth,
+    (mut depth, mut colours): (LiveDepth, Option<PictureSender>),
     clock: &C,
     handle: &CameraHandle,
     mut news: Writer<Option<CameraNews>>,
@@ -139,10 +148,17 @@ fn wait_for_frames<C: Clock>(
         handle.publish(update.state, depth.counts());
         if handle.takes_wipe() {
             depth.wipe();
+            colours.iter_mut().for_each(PictureSender::forget);
         }
         match update.frame {
             Some(frame) => {
                 handle.set_colour(depth.colour());
+                if let Some(colours) = colours.as_mut().filter(|_| depth.colour().width > 0) {
+                    colours.send(|seen| {
+                        (seen.taken_ns, seen.camera) = (frame.time_ns, depth.colour_camera());
+                        own_picture::copy(depth.colour(), &mut seen.picture);
+                    });
+                }
                 handle.set_notes(depth.notes());
                 let arrived_ns = update.arrived_ns.unwrap_or(frame.time_ns);
                 news.publish(Some(CameraNews { frame, joints: depth.people().first().copied(), arrived_ns }));
@@ -151,6 +167,7 @@ fn wait_for_frames<C: Clock>(
             None if update.is_closed => thread::sleep(patience),
             None => {}
         }
+        colours.iter_mut().filter(|c| !c.is_on()).for_each(PictureSender::wipe);
     }
 }
 
@@ -160,6 +177,8 @@ struct Tracking<C> {
     clock: C,
     options: TrackerOptions,
     meters: CameraMeters,
+    /// Colour images as they come, and where they go on to with their joints.
+    pictures: Option<(PictureReceiver, PictureSender)>,
 }
 
 impl<C: Clock> Tracking<C> {
@@ -168,6 +187,7 @@ impl<C: Clock> Tracking<C> {
         let mut tracker = BodyTracker::new(sex, self.options.zone, FitOptions::LIVE);
         while !self.handle.is_over() {
             let Some(CameraNews { frame, joints, arrived_ns }) = news.news().cloned().flatten() else {
+                self.wipe_pictures();
                 thread::park_timeout(NAP);
                 continue;
             };
@@ -180,6 +200,7 @@ impl<C: Clock> Tracking<C> {
             let fitted = tracker.push(&frame);
             let joints = joints.unwrap_or(fitted.joints);
             self.handle.count_tracked(fitted.found);
+            self.send_picture(&frame, &joints, fitted.found, arrived_ns);
             out.publish(Some(TrackedFrame { frame: Some(frame), joints, company: tracker.company(), arrived_ns }));
             let took = self.clock.now_ns().saturating_sub(arrived_ns);
             let meter =
@@ -187,6 +208,28 @@ impl<C: Clock> Tracking<C> {
             meter.add(took);
         }
         self.meters
+    }
+
+    /// Hands the colour image of a depth image on with its joints, where somebody looks at themselves.
+    fn send_picture(&mut self, frame: &Arc<DepthFrame>, joints: &Joints, found: bool, arrived_ns: u64) {
+        let Some((colours, pictures)) = &mut self.pictures else { return };
+        let colour = colours.latest();
+        if !pictures.is_on() || colour.taken_ns != frame.time_ns {
+            self.wipe_pictures();
+            return;
+        }
+        pictures.send(|seen| {
+            (seen.taken_ns, seen.arrived_ns, seen.camera) = (frame.time_ns, arrived_ns, colour.camera);
+            seen.joints = if found { *joints } else { Joints::absent(frame.time_ns) };
+            seen.depth = Some(frame.clone());
+            own_picture::copy(&colour.picture, &mut seen.picture);
+        });
+    }
+
+    fn wipe_pictures(&mut self) {
+        if let Some((_, pictures)) = self.pictures.as_mut().filter(|(_, pictures)| !pictures.is_on()) {
+            pictures.wipe();
+        }
     }
 }
 
@@ -263,7 +306,7 @@ mod tests {
             Ok(Box::new(FaultyCamera::open(camera, plan.clone(), now.clone())?) as Box<_>)
         });
         let depth = LiveDepth::open(opener, GATHERED, clock.now_ns()).unwrap();
-        start(depth, clock, TrackerOptions { zone: Zone::default(), sex: Sex::Female }).unwrap()
+        start(depth, clock, TrackerOptions { zone: Zone::default(), sex: Sex::Female }, None).unwrap()
     }
 
     #[test]

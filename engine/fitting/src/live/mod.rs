@@ -17,6 +17,7 @@ pub mod dresser;
 pub mod lateness;
 pub mod live_loop;
 pub mod live_scene;
+pub mod own_picture;
 pub mod recording;
 pub mod report;
 pub mod running;

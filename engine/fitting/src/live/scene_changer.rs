@@ -220,7 +220,8 @@ mod tests {
     /// The mannequin is 0.
     fn scene(number: u64) -> DressedScene<Nth, u64> {
         let skin = SkinningJob::new::<4>(&[], &[], &[]).unwrap().posed();
-        let snapshot = Snapshot { tick: 0, times: SnapshotTimes::default(), skin, garments: Box::new([]) };
+        let pose = Pose { root: Vec3::ZERO, local: [Quat::IDENTITY; JOINTS] };
+        let snapshot = Snapshot { tick: 0, times: SnapshotTimes::default(), skin, garments: Box::new([]), pose };
         let still = (number == 0).then(|| Joints::absent(0));
         DressedScene {
             scene: Nth(number),

@@ -11,13 +11,17 @@ use toile_engine::clock::Clock;
 use toile_engine::triple_buffer::{TripleBuffer, Writer};
 use toile_pose::files::PoseError;
 use toile_pose::joints::JointPlacer;
+use toile_pose::picture_fit::{self, PictureFit, PictureFitter};
 use toile_pose::scale::{StatureEstimate, StatureSource, WebcamMount};
 use toile_pose::tracker::{PoseModel, PoseTracker};
+use toile_sensors::colour_camera::ColourCamera;
 use toile_sensors::frame::Joints;
+use toile_sensors::person_mask::PersonMask;
 use toile_sensors::source::live::{ColourImage, LiveColour, PATIENCE_NS};
 use toile_track::fit::tracker::Company;
 
 use super::depth_camera::{CameraFeed, CameraHandle, CameraMeters, CameraThreads, TrackedFrame};
+use super::own_picture::{PictureSender, copy};
 
 /// How somebody is seen through a webcam.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,11 +34,19 @@ pub struct WebcamOptions {
     pub mount: WebcamMount,
     /// Their stature, where they say it (m).
     pub stature_m: Option<f32>,
+    /// Whether the shopper may see their own picture: then it is found where in it they are.
+    pub own_picture: bool,
 }
 
 impl Default for WebcamOptions {
     fn default() -> Self {
-        Self { sex: Sex::Female, model: PoseModel::Lite, mount: WebcamMount::default(), stature_m: None }
+        Self {
+            sex: Sex::Female,
+            model: PoseModel::Lite,
+            mount: WebcamMount::default(),
+            stature_m: None,
+            own_picture: false,
+        }
     }
 }
 
@@ -45,6 +57,8 @@ pub struct WebcamJoints {
     placer: JointPlacer,
     stature: StatureEstimate,
     options: WebcamOptions,
+    fitter: PictureFitter,
+    fit: Option<PictureFit>,
     /// Whether somebody was seen in the last picture.
     pub found: bool,
 }
@@ -56,10 +70,12 @@ impl WebcamJoints {
     /// Files that are missing or others than those that are known, with the command that fetches them.
     pub fn load(folder: &Path, options: WebcamOptions) -> Result<Self, PoseError> {
         Ok(Self {
-            tracker: PoseTracker::load(folder, options.model)?,
+            tracker: PoseTracker::load(folder, options.model, options.own_picture)?,
             placer: JointPlacer::new(options.sex, options.mount),
             stature: StatureEstimate::new(options.stature_m),
             options,
+            fitter: PictureFitter::default(),
+            fit: None,
             found: false,
         })
     }
@@ -67,6 +83,7 @@ impl WebcamJoints {
     /// Joints of a picture that was taken at a time (ns); all of them absent where nobody is seen, or the picture cannot be looked at.
     pub fn push(&mut self, picture: &ColourImage, time_ns: u64) -> Joints {
         let seen = self.tracker.push(picture, time_ns);
+        self.fit = None;
         let Ok(Some(landmarks)) = seen else {
             if self.found && self.tracker.region().is_none() {
                 self.reset();
@@ -77,7 +94,26 @@ impl WebcamJoints {
         self.found = true;
         let size = [picture.width, picture.height];
         self.stature.push(&landmarks, size, &self.options.mount);
-        self.placer.joints(&landmarks, size, self.stature.stature().0, time_ns)
+        let joints = self.placer.joints(&landmarks, size, self.stature.stature().0, time_ns);
+        if self.options.own_picture {
+            self.fit = self.fitter.fit(&landmarks, &joints, size, &self.options.mount);
+        }
+        joints
+    }
+
+    /// The camera of the last picture, and joints that are seen where it shows them; none where nobody is seen, or own pictures are not shown.
+    pub fn picture_fit(&self) -> Option<&PictureFit> {
+        self.fit.as_ref()
+    }
+
+    /// How the webcam sees, where it is not known where it stands: as if at the world's middle.
+    pub fn camera(&self, picture: &ColourImage) -> ColourCamera {
+        picture_fit::webcam([picture.width, picture.height], &self.options.mount)
+    }
+
+    /// Which parts of the last picture show the person; none where own pictures are not shown.
+    pub fn mask(&self) -> Option<&PersonMask> {
+        self.tracker.mask()
     }
 
     /// How large whoever is seen is taken to be (m), and why.
@@ -94,6 +130,7 @@ impl WebcamJoints {
     fn reset(&mut self) {
         self.stature.reset();
         self.placer.reset();
+        self.fitter.reset();
     }
 
     fn set_sex(&mut self, sex: Sex) {
@@ -118,7 +155,12 @@ impl WebcamJoints {
 ///
 /// # Errors
 /// Where the system gives no thread.
-pub fn start<C>(colour: LiveColour, joints: WebcamJoints, clock: C) -> io::Result<(CameraFeed, CameraHandle)>
+pub fn start<C>(
+    colour: LiveColour,
+    joints: WebcamJoints,
+    clock: C,
+    pictures: Option<PictureSender>,
+) -> io::Result<(CameraFeed, CameraHandle)>
 where
     C: Clock + Clone + Send + 'static,
 {
@@ -128,15 +170,14 @@ where
     let (shared, own) = (handle.clone(), clock.clone());
     let thread = thread::Builder::new()
         .name("toile-webcam".into())
-        .spawn(move || look_at_pictures(colour, joints, &own, &shared, writer))?;
+        .spawn(move || look_at_pictures((colour, joints, pictures), &own, &shared, writer))?;
     let threads = CameraThreads::one(handle.clone(), thread);
     Ok((CameraFeed::new(reader, threads, clock), handle))
 }
 
 /// What the webcam's thread runs.
 fn look_at_pictures<C: Clock>(
-    mut colour: LiveColour,
-    mut joints: WebcamJoints,
+    (mut colour, mut joints, mut pictures): (LiveColour, WebcamJoints, Option<PictureSender>),
     clock: &C,
     handle: &CameraHandle,
     mut out: Writer<Option<TrackedFrame>>,
@@ -150,15 +191,27 @@ fn look_at_pictures<C: Clock>(
         handle.publish(update.state, colour.counts());
         if handle.takes_wipe() {
             colour.wipe();
+            pictures.iter_mut().for_each(PictureSender::forget);
         }
         let (Some(taken_ns), Some(arrived_ns)) = (update.taken_ns, update.arrived_ns) else {
             if update.is_closed {
                 thread::sleep(patience);
             }
+            pictures.iter_mut().filter(|p| !p.is_on()).for_each(PictureSender::wipe);
             continue;
         };
         let had = joints.found;
         let found = joints.push(colour.picture(), taken_ns);
+        if let Some(pictures) = &mut pictures {
+            pictures.send(|seen| {
+                (seen.taken_ns, seen.arrived_ns, seen.depth) = (taken_ns, arrived_ns, None);
+                copy(colour.picture(), &mut seen.picture);
+                let fit = joints.picture_fit();
+                seen.camera = fit.map(|fit| fit.camera).or(Some(joints.camera(colour.picture())));
+                seen.joints = fit.map_or(Joints::absent(taken_ns), |fit| fit.joints);
+                joints.mask().into_iter().for_each(|mask| seen.mask.take(mask));
+            });
+        }
         handle.count_tracked(joints.found);
         handle.set_colour(colour.picture());
         if joints.found {

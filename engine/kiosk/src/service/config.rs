@@ -11,7 +11,7 @@ use toile_engine::cloth::Quality;
 use toile_engine::workers::SHARES;
 
 use super::config_keys;
-use super::picture_config::PictureConfig;
+use super::picture_config::{OwnPictureUse, PictureConfig};
 use super::session::SessionTimes;
 use crate::error::KioskError;
 use toile_fitting::dress::measured::ShopperFacts;
@@ -228,6 +228,8 @@ pub struct DisplayConfig {
     pub skin: String,
     /// Moulded hair of every body.
     pub hair: String,
+    /// Whether shoppers may see the camera's own picture of them with the clothes on it.
+    pub own_picture: OwnPictureUse,
 }
 
 /// Figures for Prometheus.
@@ -299,6 +301,7 @@ impl Default for DisplayConfig {
             mark_m: None,
             skin: SkinTone::default().name().into(),
             hair: Hair::default().name().into(),
+            own_picture: OwnPictureUse::default(),
         }
     }
 }

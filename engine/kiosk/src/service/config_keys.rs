@@ -38,6 +38,7 @@ pub const KEYS: [(&str, &[&str]); 10] = [
             "mark_m",
             "skin",
             "hair",
+            "own_picture",
         ],
     ),
     ("picture", &["serve", "network"]),

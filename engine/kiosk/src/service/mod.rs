@@ -41,6 +41,7 @@ use toile_fitting::live::assembly::{HeadlessRenderer, LoopOptions, LoopParts};
 use toile_fitting::live::dresser::{Dresser, ShopperSource};
 use toile_fitting::live::lateness::ThreadAccount;
 use toile_fitting::live::live_loop::LiveLoop;
+use toile_fitting::live::own_picture::{PictureReceiver, PictureSwitch};
 use toile_fitting::live::report::ThreadPlacement;
 use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
 use toile_fitting::live::source::{Feed, Visits};
@@ -49,6 +50,7 @@ use toile_sensors::frame::Joints;
 use toile_sensors::source::Session;
 
 use crate::error::KioskError;
+use camera::CameraFeeds;
 use config::{Config, SensorSource};
 use controller::{HeadlessController, SessionController, ToScene};
 use health::HealthFigures;
@@ -108,9 +110,9 @@ pub fn run(
     let run = KioskRun { options, config: &config, stock: &stock, begun, clock, stop: &stop, print_line, figures };
     if options.headless {
         stock.left_out.iter().for_each(|left| print_line(&stock_watch::line(left)));
-        let renderer = |_: &Frame| Ok(HeadlessRenderer::default());
+        let renderer = |_: &Frame, _: Option<PictureReceiver>| Ok(HeadlessRenderer::default());
         let controller = |start: ControllerStart| -> Result<BoxedController<'_, ()>, KioskError> {
-            let ControllerStart { played, pose, times, measure_ns, now_ns } = start;
+            let ControllerStart { played, pose, times, measure_ns, now_ns, .. } = start;
             let hang: Hang<()> = Box::new(|_, _| Ok(()));
             let (config, stock) = (config.clone(), stock.clone());
             let left_out = stock.left_out.clone();
@@ -154,7 +156,7 @@ pub struct KioskRun<'a> {
 
 /// How a run shows itself: without a display, or at a window.
 pub struct Frontend<F, H, O> {
-    /// Makes the renderer, once the mannequin is dressed.
+    /// Makes the renderer, once the mannequin is dressed; it is given the camera's pictures, where shoppers may see themselves.
     pub renderer: F,
     /// A dressed frame as a scene of the loop, and what the renderer has to know of it.
     pub to_scene: ToScene<FrameScene, O>,
@@ -166,6 +168,8 @@ pub struct Frontend<F, H, O> {
 pub struct ControllerStart {
     /// The recording that shoppers are measured from, where one is played.
     pub played: Option<ShopperSource>,
+    /// Whether the camera's pictures are handed on, where shoppers may see themselves.
+    pub switch: Option<PictureSwitch>,
     /// How the mannequin stands.
     pub pose: Joints,
     /// The session's times, and that of measuring (ns).
@@ -189,7 +193,7 @@ pub fn serve<'a, E, F, H>(
 ) -> Result<(KioskReport, Option<E>), KioskError>
 where
     E: Renderer<Outfit: Default> + 'static,
-    F: FnOnce(&Frame) -> Result<E, KioskError>,
+    F: FnOnce(&Frame, Option<PictureReceiver>) -> Result<E, KioskError>,
     H: FnOnce(ControllerStart) -> Result<BoxedController<'a, E::Outfit>, KioskError>,
 {
     let KioskRun { options, config, stock, begun, clock, stop, print_line, figures } = run;
@@ -197,7 +201,7 @@ where
     // The mannequin stands as somebody does in the recording: a pose, and no body.
     let pose = sessions::standing(&session)?[0];
     let dressed = dressed::mannequin_in(&stock.first, &pose)?;
-    let (feed, played) = feed(config, session, clock)?;
+    let SensorFeeds { feed, played, pictures, switch } = feed(config, session, clock)?;
     let workers = config.machine.workers.unwrap_or_else(workers);
     let (crew, worker) = threads::worker_pool(workers).map_err(KioskError::input)?;
     let locked = if config.machine.lock_memory { memory::lock(options.may_lock_memory) } else { Ok(()) };
@@ -217,7 +221,7 @@ where
             .map(|(flight_recorder, recording)| (Some(flight_recorder), Some(recording)))?,
         None => (None, None),
     };
-    let renderer = (frontend.renderer)(&dressed.frame)?;
+    let renderer = (frontend.renderer)(&dressed.frame, pictures)?;
     let first = DressedScene::new(dressed, |frame| (FrameScene::new(frame.with_workers(crew)), E::Outfit::default()));
     let parts = LoopParts { first, renderer, source: feed, account: ThreadAccount::new(), recording };
     let (live, handover) = LiveLoop::start(parts, clock, LoopOptions::default()).map_err(KioskError::internal)?;
@@ -235,6 +239,7 @@ where
     };
     let start = ControllerStart {
         played: service_options.played.clone(),
+        switch,
         pose,
         times: service_options.times,
         measure_ns: service_options.measure_ns,
@@ -256,22 +261,33 @@ fn played_session(config: &Config) -> Result<Session, KioskError> {
     sessions::open(path, None)
 }
 
+/// What comes from a sensor of any kind.
+struct SensorFeeds {
+    feed: Feed,
+    /// What shoppers are measured from.
+    played: Option<ShopperSource>,
+    pictures: Option<PictureReceiver>,
+    switch: Option<PictureSwitch>,
+}
+
 /// What the sensor reads, and what shoppers are then measured from.
-fn feed(config: &Config, session: Session, clock: RealClock) -> Result<(Feed, Option<ShopperSource>), KioskError> {
+fn feed(config: &Config, session: Session, clock: RealClock) -> Result<SensorFeeds, KioskError> {
     if let Some(name) = config.sensor.camera().map_err(KioskError::input)? {
-        let (feed, handle) = camera::feed(config, name, clock)?;
-        return Ok((feed, Some(ShopperSource::Camera(handle))));
+        let CameraFeeds { feed, handle, pictures, switch } = camera::feed(config, name, clock)?;
+        return Ok(SensorFeeds { feed, played: Some(ShopperSource::Camera(handle)), pictures, switch });
     }
     let address = config.sensor.vmc;
     if config.sensor.source == SensorSource::Vmc {
         let refused = |e| {
             KioskError::Device(format!("nothing can be received at {address} ({e}); name a free one in sensor.vmc"))
         };
-        return Ok((Feed::listen(address, clock).map_err(refused)?, None));
+        let feed = Feed::listen(address, clock).map_err(refused)?;
+        return Ok(SensorFeeds { feed, played: None, pictures: None, switch: None });
     }
     let session = Arc::new(session);
     let visits = Visits::of(&session, clock.now_ns(), config::ns(config.sensor.pause_s));
-    Ok((Feed::Played(visits), Some(ShopperSource::Recording(session))))
+    let played = Some(ShopperSource::Recording(session));
+    Ok(SensorFeeds { feed: Feed::Played(visits), played, pictures: None, switch: None })
 }
 
 fn workers() -> usize {

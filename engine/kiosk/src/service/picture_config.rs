@@ -44,6 +44,19 @@ fn is_local(address: IpAddr) -> bool {
     }
 }
 
+/// Whether shoppers see themselves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum OwnPictureUse {
+    /// The mannequin alone; the camera's colour is not even asked for.
+    Never,
+    /// The mannequin first; whoever wants it sees themselves.
+    #[default]
+    Offered,
+    /// Themselves first; whoever wants it sees the mannequin.
+    First,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -162,7 +162,14 @@ impl VisitModel {
         use Action::*;
         add(&[Open(Page::Garments)]);
         self.sizes(add, self.worn().map(|w| w.size), None);
-        add(&[Open(Page::Zones), Open(Page::Compare), Turn(-1), Turn(1)]);
+        add(&[Open(Page::Zones), Open(Page::Compare)]);
+        if self.own_picture.is_some() {
+            add(&[OwnPicture]);
+        }
+        // Whoever sees themselves turns by turning.
+        if !self.sees_themselves() {
+            add(&[Turn(-1), Turn(1)]);
+        }
         let held = self.visit.picture.code().is_some();
         add(&[if held { Open(Page::Picture) } else { TakePicture }]);
         if self.wants_tape() {

@@ -11,6 +11,7 @@ use toile_engine::triple_buffer::Writer;
 use toile_fitting::dress::measured;
 use toile_fitting::dress::session;
 use toile_fitting::live::dresser::{DressOutcome, ShopperSource};
+use toile_fitting::live::own_picture::PictureSwitch;
 use toile_sensors::frame::Joints;
 use toile_track::gesture::Gestures;
 
@@ -92,6 +93,8 @@ pub struct VisitController<'a, O> {
     /// Whether the next who is dressed is another one than is shown.
     afresh: bool,
     shown: Option<Screen>,
+    /// Whether the camera's pictures are handed to the renderer, where shoppers may see themselves.
+    switch: Option<PictureSwitch>,
     photographs: Photographs,
     watch: Option<StockWatch<Arc<Wardrobe>>>,
     /// Lines for whoever looks after the kiosk.
@@ -125,6 +128,7 @@ impl<'a, O> VisitController<'a, O> {
             jobs: PendingJobs::default(),
             afresh: true,
             shown: None,
+            switch: None,
             photographs: Photographs::default(),
             watch: None,
             lines: Vec::new(),
@@ -135,6 +139,12 @@ impl<'a, O> VisitController<'a, O> {
     #[must_use]
     pub fn watching(self, watch: Option<StockWatch<Arc<Wardrobe>>>) -> Self {
         Self { watch, ..self }
+    }
+
+    /// The same, which switches the camera's pictures on and off.
+    #[must_use]
+    pub fn switching(self, switch: Option<PictureSwitch>) -> Self {
+        Self { switch, ..self }
     }
 
     /// Takes a stock that was read again, when nobody is there: a visitor keeps what they see.
@@ -320,6 +330,9 @@ impl<S: Scene, O> SessionController<S, O> for VisitController<'_, O> {
             let state = camera.figures().state;
             self.update(now, Input::Camera(state), context);
         }
+        if let Some(outcome) = self.switch.as_ref().map(PictureSwitch::outcome) {
+            self.update(now, Input::OwnPicture(outcome), context);
+        }
         while let Some(input) = (self.window.next_input)() {
             self.update(now, input, context);
         }
@@ -332,6 +345,13 @@ impl<S: Scene, O> SessionController<S, O> for VisitController<'_, O> {
         self.measure(now, context);
         self.start_next_job()?;
         self.restock(context);
+        // Pictures are copied only while somebody looks at themselves.
+        if let Some(switch) = &self.switch {
+            let shows = self.model.shows_own_picture();
+            if switch.is_on() != shows {
+                switch.set(shows);
+            }
+        }
         self.show();
         let to = self.model.state();
         Ok((from != to).then_some(StateChange { from, to }))

@@ -77,6 +77,8 @@ pub struct VisitDefaults {
     pub tape: TapeReadings,
     /// Whether anything moves by itself.
     pub motion: bool,
+    /// Whether shoppers see themselves first, where a camera's picture can be shown.
+    pub own_picture: bool,
 }
 
 /// A key of a keyboard, or of a row of buttons.
@@ -109,6 +111,9 @@ pub enum Input {
     Presence(Presence),
     /// How the camera stands; it holds until the next. Without a live camera it never comes.
     Camera(CameraState),
+    /// The camera's picture can be shown, and what became of the last ([`super::plain::code`]); it holds until the next. Without a camera
+    /// whose pictures can be shown it never comes.
+    OwnPicture(u8),
     /// A control was pressed by finger or mouse. One that is not on the page is ignored.
     Pressed(Action),
     /// A navigation key was pressed.

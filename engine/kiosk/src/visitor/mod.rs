@@ -23,6 +23,7 @@ pub mod photographs;
 pub mod picture;
 pub mod picture_link;
 pub mod picture_store;
+pub mod plain;
 pub mod presence;
 pub mod reach;
 pub mod screen;

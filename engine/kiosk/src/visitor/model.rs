@@ -26,6 +26,8 @@ pub struct VisitModel {
     pub(super) seen: Presence,
     /// How the camera stands; seeing where there is none.
     pub(super) camera: CameraState,
+    /// What became of the camera's last picture, where shoppers may see themselves ([`super::plain::code`]).
+    pub(super) own_picture: Option<u8>,
     /// Since when nobody is seen (ns), and whether the one who has said that they are done is still there.
     unseen_ns: u64,
     resting: bool,
@@ -47,6 +49,7 @@ impl VisitModel {
             now_ns,
             seen: Presence::default(),
             camera: CameraState::Seeing,
+            own_picture: None,
             unseen_ns: now_ns,
             resting: false,
             focus: 0,
@@ -68,6 +71,11 @@ impl VisitModel {
     /// The garments to choose from.
     pub fn wardrobe(&self) -> &Wardrobe {
         &self.wardrobe
+    }
+
+    /// Whether the page that is open shows the shopper themselves.
+    pub fn shows_own_picture(&self) -> bool {
+        self.shows_body(self.page()) && self.sees_themselves()
     }
 
     /// The state of the session.
@@ -127,6 +135,7 @@ impl VisitModel {
             Input::Tick => {}
             Input::Presence(seen) => self.see(seen),
             Input::Camera(state) => self.camera = state,
+            Input::OwnPicture(outcome) => self.own_picture = Some(outcome),
             Input::Pressed(action) => self.pressed(action, &mut effects),
             Input::Typed(action) => self.typed_key(action, &mut effects),
             Input::Key(button) => self.key(button, &mut effects),

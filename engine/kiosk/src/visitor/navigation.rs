@@ -131,6 +131,7 @@ impl VisitModel {
             }
             Action::Turn(eighths) => self.turn(eighths),
             Action::FitMap => self.visit.fit_map = !self.visit.fit_map,
+            Action::OwnPicture => self.visit.own_picture = !self.visit.own_picture,
             Action::TakePicture => self.snap(effects),
             Action::OtherCode => self.visit.picture.show_other(),
             Action::DeletePicture => {

@@ -11,6 +11,7 @@ mod visit;
 
 use super::measure_entry::{LengthUnit, OwnMeasure};
 use super::model::VisitModel;
+use super::plain;
 use super::reach::DisplayMount;
 use super::screen::{
     Action, Block, BodyView, Control, ControlStyle, JudgedGarment, Page, Screen, ScreenPicture, ScreenTheme,
@@ -37,7 +38,7 @@ impl Screen {
         Self {
             page,
             heading: writer.heading(page),
-            blocks: writer.camera().into_iter().chain(writer.blocks(page)).collect(),
+            blocks: writer.camera().into_iter().chain(writer.own_picture(page)).chain(writer.blocks(page)).collect(),
             controls: model.actions().iter().map(|action| writer.control(page, *action)).collect(),
             focus: model.focus,
             body_view: model.body_view(page),
@@ -62,24 +63,37 @@ impl VisitModel {
             Page::Compare if shown && visit.pair.as_ref().is_some_and(|p| p.asked.is_none() && !p.refused) => {
                 BodyView::Two { yaw }
             }
-            Page::Fitting
-            | Page::Garments
-            | Page::Compare
-            | Page::Picture
-            | Page::Settings
-            | Page::Unmeasured
-            | Page::OwnMeasures
-            | Page::MeasureEntry
-                if shown =>
-            {
-                BodyView::Shopper { yaw, fit: false, unknown: [false; 3], judged: None }
+            page if self.shows_body(page) => {
+                let own_picture = self.sees_themselves();
+                BodyView::Shopper { yaw, fit: false, unknown: [false; 3], judged: None, own_picture }
             }
             Page::Zones | Page::Zone if shown => {
                 let unknown = visit.known.as_ref().map_or([false; 3], VisitorMeasures::unknown);
-                BodyView::Shopper { yaw, fit: visit.fit_map, unknown, judged: self.judged() }
+                BodyView::Shopper { yaw, fit: visit.fit_map, unknown, judged: self.judged(), own_picture: false }
             }
             _ => BodyView::Mannequin,
         }
+    }
+
+    /// Whether a page shows the shopper's body, or themselves.
+    pub(super) fn shows_body(&self, page: Page) -> bool {
+        let is_of_body = matches!(
+            page,
+            Page::Fitting
+                | Page::Garments
+                | Page::Compare
+                | Page::Picture
+                | Page::Settings
+                | Page::Unmeasured
+                | Page::OwnMeasures
+                | Page::MeasureEntry
+        );
+        is_of_body && self.visit.dressed && !self.visit.hidden
+    }
+
+    /// Whether they see themselves on the pages that show the body: as they chose, where the camera's picture can be shown.
+    pub(super) fn sees_themselves(&self) -> bool {
+        self.own_picture.is_some() && self.visit.own_picture
     }
 
     /// The garment in hand as it was judged; none while another body than the one it was judged on is shown.
@@ -116,6 +130,13 @@ impl PageWriter<'_> {
             CameraState::Starting | CameraState::Seeing => return None,
         };
         Some(Block::Text(self.words(key)))
+    }
+
+    /// Why the clothes are not on their own picture, or that the picture is kept nowhere.
+    fn own_picture(&self, page: Page) -> Option<Block> {
+        let shows = matches!(self.model.body_view(page), BodyView::Shopper { own_picture: true, .. });
+        let outcome = self.model.own_picture.filter(|_| shows && page == Page::Fitting)?;
+        Some(self.paragraph(plain::word(outcome).unwrap_or(TextKey::OwnPictureKept)))
     }
 
     fn words(&self, key: TextKey) -> String {
@@ -241,6 +262,8 @@ impl PageWriter<'_> {
             Action::Turn(eighths) if eighths < 0 => TextKey::DoTurnLeft,
             Action::Turn(_) => TextKey::DoTurnRight,
             Action::FitMap => TextKey::DoFitMap,
+            Action::OwnPicture if self.model.visit.own_picture => TextKey::DoMannequin,
+            Action::OwnPicture => TextKey::DoOwnPicture,
             Action::TakePicture => TextKey::DoPicture,
             Action::DeletePicture => TextKey::DoDeletePicture,
             Action::OtherCode if self.model.visit.picture.link().is_some() => TextKey::DoPictureOwn,

@@ -67,6 +67,8 @@ pub enum BodyView {
         unknown: [bool; 3],
         /// The garment in hand as it was judged, so that its colours say what its words do.
         judged: Option<JudgedGarment>,
+        /// Whether they see the camera's own picture of themselves with the clothes on it, and not the mannequin.
+        own_picture: bool,
     },
     /// The same body in two sizes, left and right, under one yaw (rad).
     Two {
@@ -100,6 +102,8 @@ pub enum Action {
     Turn(i8),
     /// Show or hide the fit map.
     FitMap,
+    /// See oneself in the camera's picture, or the mannequin.
+    OwnPicture,
     /// Take a picture of the dressed body.
     TakePicture,
     /// Show the other code of the picture.

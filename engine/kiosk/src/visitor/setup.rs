@@ -11,6 +11,7 @@ use super::texts::{Language, Texts};
 use super::wardrobe::Wardrobe;
 use crate::error::KioskError;
 use crate::service::config::{self, Config};
+use crate::service::picture_config::OwnPictureUse;
 use crate::service::stock::{LeftOut, Stock};
 use crate::service::stock_watch::Hang;
 use toile_fitting::live::dresser::ShopperSource;
@@ -54,6 +55,7 @@ impl VisitorSetup {
             size: config.wear.size.clone(),
             tape,
             motion: display.motion,
+            own_picture: display.own_picture == OwnPictureUse::First,
         };
         let first = stock.first.clone();
         let (quality, appearance) = (config.wish().quality, display.appearance());

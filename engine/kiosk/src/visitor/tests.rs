@@ -39,6 +39,7 @@ fn defaults() -> VisitDefaults {
         size: None,
         tape: TapeReadings::default(),
         motion: true,
+        own_picture: false,
     }
 }
 
@@ -111,6 +112,11 @@ impl Play {
     pub(crate) fn see(&mut self, who: Option<u32>) {
         let seen = who.map(|who| Presence { people: 1, who: Some(who), head_mm: Some(1_560.0), ..Presence::default() });
         self.update(Input::Presence(seen.unwrap_or_default()));
+    }
+
+    /// The camera's picture can be shown, and this became of the last one.
+    pub(crate) fn picture_is(&mut self, outcome: u8) {
+        self.update(Input::OwnPicture(outcome));
     }
 
     /// The first shopper is seen in depth, facing so far to their left (rad).

@@ -106,6 +106,8 @@ pub(super) struct Visit {
     /// Until when swipes turn the view on (ns).
     pub turning_ns: u64,
     pub fit_map: bool,
+    /// Whether they want to see themselves, and not the mannequin.
+    pub own_picture: bool,
     pub picture: PictureStore,
     pub snapping: PendingJob,
     pub snap_failed: bool,
@@ -149,6 +151,7 @@ impl Visit {
             view: ViewTurn::default(),
             turning_ns: 0,
             fit_map: true,
+            own_picture: defaults.own_picture,
             picture: PictureStore::default(),
             snapping: None,
             snap_failed: false,

@@ -1,5 +1,7 @@
 //! The meshes of a dressed body, for the renderer; made where it is dressed, handed to the render thread in one piece.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 use toile_assets::body::Levels;
 use toile_assets::mesh::vertex_normals;
@@ -8,6 +10,7 @@ use toile_engine::cloth::measure;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_view::figure::{Appearance, Figure, PlacedHead};
 use toile_view::hidden_skin::CoveringCloth;
+use toile_view::own_picture::OwnPictureModel;
 use toile_view::raster::Model;
 
 /// Skin under a garment counts as so much farther off (m): how far a bent body stands out of its capsules.
@@ -35,6 +38,8 @@ pub struct BodyModel {
     pub levels: [f32; 3],
     /// Height of the body (m).
     pub stature: f32,
+    /// The same body for the shopper's own picture; none of the mannequin before anybody was dressed.
+    pub own: Option<Arc<OwnPictureModel>>,
 }
 
 /// The zone whose level is nearest to a height (m). What hangs lower counts to the hip, what lies higher to the chest.
@@ -101,6 +106,7 @@ impl BodyModel {
             heights: garments.iter().map(|g| g.start.iter().map(|p| p.y).collect()).collect(),
             levels: [body.levels.chest, body.levels.waist, body.levels.hip],
             stature: body.measures.stature,
+            own: Some(OwnPictureModel::of(body, garments)),
         }
     }
 }

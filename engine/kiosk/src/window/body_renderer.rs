@@ -34,6 +34,8 @@ pub struct BodyScene<'a> {
     pub free: [f32; 4],
     /// Time since the window was opened (s); a mannequin stands still without one.
     pub time_s: Option<f64>,
+    /// The shopper's own picture as a mirror shows it, where that is shown: its size, and red, green, blue.
+    pub own: Option<(Size, &'a [u8])>,
 }
 
 /// What the fit map shows: zones that are not known, and how the garment in hand was judged.
@@ -176,6 +178,10 @@ impl BodyRenderer {
 
     /// Draws it over all of a view.
     pub fn draw(&mut self, encoder: &mut CommandEncoder, target: &TextureView, size: Size, scene: &BodyScene<'_>) {
+        if let Some((own, rgb)) = scene.own {
+            self.draw_own(encoder, target, size, (own, rgb));
+            return;
+        }
         self.paint(scene);
         match scene.body_view {
             BodyView::Two { yaw } if self.pair[0] > 0 => {
@@ -199,6 +205,18 @@ impl BodyRenderer {
                 self.draw_body(encoder, target, Viewport::whole(size), (0, at, yaw), scene.free);
             }
         }
+    }
+
+    /// The picture alone: what is worn is drawn on it already.
+    fn draw_own(&mut self, encoder: &mut CommandEncoder, target: &TextureView, size: Size, (own, rgb): (Size, &[u8])) {
+        if self.renderer.set_picture(own, rgb).is_err() {
+            return;
+        }
+        self.show(0, 0);
+        self.renderer.set_subject(None);
+        let aspect = size.width as f32 / size.height.max(1) as f32;
+        let camera = camera::camera(self.statures[0], Vec3::ZERO, 0.0, [0.0, 0.0, 1.0, 1.0], aspect);
+        self.renderer.draw(encoder, target, Viewport::whole(size), &camera, Backdrop::Picture);
     }
 
     fn draw_body(

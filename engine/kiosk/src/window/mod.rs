@@ -27,6 +27,7 @@ mod input;
 mod open;
 mod options;
 mod overlay;
+mod own_picture;
 pub mod paint;
 mod render_target;
 mod renderer;

@@ -20,7 +20,7 @@ pub struct RenderTarget {
 }
 
 /// The size that is drawn for a display of this one.
-fn drawn(display: Size) -> Size {
+pub fn drawn(display: Size) -> Size {
     let pixels = display.width as f32 * display.height as f32;
     let share = (MOST_PIXELS / pixels.max(1.0)).sqrt().min(1.0);
     let side = |n: u32| ((n as f32 * share).round() as u32).max(1);

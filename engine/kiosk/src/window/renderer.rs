@@ -9,6 +9,7 @@ use toile_engine::frame::Snapshot;
 use toile_engine::frame_loop::queue::{Capacity, Receiver, Sender};
 use toile_engine::frame_loop::render_thread::Renderer;
 use toile_engine::triple_buffer::Reader;
+use toile_fitting::live::own_picture::PictureReceiver;
 use toile_view::raster::PresentOutcome;
 use winit::window::Window;
 
@@ -18,11 +19,12 @@ use super::frame_pacing::FramePacer;
 use super::frame_stats::FrameStats;
 use super::input::{InputEvent, WindowState};
 use super::options::WindowOptions;
+use super::own_picture::OwnPictureView;
 use super::paint::{DisplayMetrics, ScreenPainter};
 use super::surface::WindowSurface;
 use crate::service::report::WindowReport;
 use crate::visitor::model::NavigationKey;
-use crate::visitor::screen::{Action, Screen};
+use crate::visitor::screen::{Action, BodyView, Screen};
 
 /// User events that wait for the service.
 pub const USER_EVENTS: usize = 64;
@@ -70,6 +72,8 @@ pub struct WindowRenderer {
     /// The body that is drawn.
     model: BodyModel,
     pair: Option<Box<ModelPair>>,
+    /// The shopper's own picture, where they may see it.
+    own: Option<OwnPictureView>,
     /// Whether the surface has yet to take them over.
     changed: bool,
     /// Why nothing can be drawn any more, set once.
@@ -102,6 +106,7 @@ impl WindowRenderer {
             options,
             model: BodyModel::default(),
             pair: None,
+            own: None,
             changed: false,
             fault,
             lost_in_a_row: 0,
@@ -124,6 +129,12 @@ impl WindowRenderer {
                 "the processor draws ({name}), so pictures are fewer and plainer; install a driver for a graphics card"
             )
         })
+    }
+
+    /// The same, with a camera's pictures to show.
+    #[must_use]
+    pub fn seeing(self, pictures: Option<PictureReceiver>) -> Self {
+        Self { own: pictures.map(OwnPictureView::new), ..self }
     }
 
     /// The same, with the first body to draw.
@@ -208,7 +219,21 @@ impl WindowRenderer {
         let painted = self.painter.paint(screen, display);
         surface.update_textures(&painted);
         let time_s = self.options.motion.then(|| self.options.begun.elapsed().as_secs_f64());
-        let scene = BodyScene { body_view: &screen.body_view, colours: &screen.colours, free: painted.free, time_s };
+        let looks = matches!(screen.body_view, BodyView::Shopper { own_picture: true, .. });
+        let own = match &mut self.own {
+            Some(own) if looks => {
+                let size = surface.drawn_size(window_state);
+                let [left, _, right, _] = painted.free;
+                own.show(&self.model, snapshot, &screen.colours, size, [left, right])
+            }
+            Some(own) => {
+                own.rest();
+                None
+            }
+            None => None,
+        };
+        let (body_view, colours, free) = (&screen.body_view, &screen.colours[..], painted.free);
+        let scene = BodyScene { body_view, colours, free, time_s, own };
         (surface.show(window_state, &scene, painted), surface.software)
     }
 

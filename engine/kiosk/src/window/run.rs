@@ -3,6 +3,7 @@
 use toile_engine::clock::Clock;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::frame_loop::physics_thread::FrameScene;
+use toile_fitting::live::own_picture::PictureReceiver;
 use toile_view::figure::Appearance;
 
 use super::body_model::BodyModel;
@@ -45,11 +46,11 @@ pub fn run(kiosk: KioskRun<'_>) -> Result<KioskReport, KioskError> {
         let controller = move |start: ControllerStart| -> Result<BoxedController<'_, BodyModel>, KioskError> {
             let (left_out, hang, pose) = (setup.left_out.clone(), setup.hang(), start.pose);
             let watch = StockWatch::start(WatchStart { config, stock, left_out, pose, every: LOOK_EVERY, hang })?;
-            Ok(Box::new(setup.controller(channels, start.played).watching(watch)))
+            Ok(Box::new(setup.controller(channels, start.played).switching(start.switch).watching(watch)))
         };
         let print_line = kiosk.print_line;
-        let renderer = |mannequin: &Frame| {
-            let renderer = opening.finish()?;
+        let renderer = |mannequin: &Frame, pictures: Option<PictureReceiver>| {
+            let renderer = opening.finish()?.seeing(pictures);
             if let Some(slow) = renderer.slowness() {
                 print_line(&slow);
             }

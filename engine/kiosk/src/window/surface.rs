@@ -17,7 +17,7 @@ use super::body_renderer::{BodyRenderer, BodyScene};
 use super::input::WindowState;
 use super::overlay::Overlay;
 use super::paint::PaintedScreen;
-use super::render_target::RenderTarget;
+use super::render_target::{self, RenderTarget};
 
 /// A device with a surface.
 pub struct WindowSurface {
@@ -86,6 +86,12 @@ impl WindowSurface {
     /// Uploads a painting's textures, which no picture may skip.
     pub fn update_textures(&mut self, painted: &PaintedScreen) {
         self.overlay.update_textures(&self.gpu.device, &self.gpu.queue, painted);
+    }
+
+    /// Size at which bodies are drawn for a window of this state (pixels).
+    pub fn drawn_size(&self, window_state: WindowState) -> Size {
+        let size = Size::new(window_state.size[0], window_state.size[1]);
+        if self.software { render_target::drawn(size) } else { size }
     }
 
     /// Draws and shows a picture.

@@ -7,7 +7,7 @@ use glam::Affine3A;
 use toile_assets::numeric::random::SplitMix64;
 
 use super::error::CameraError;
-use super::live_camera::{Arrival, CameraFrame, CameraInfo, LiveCamera};
+use super::live_camera::{Arrival, CameraFrame, CameraInfo, ColourPlace, LiveCamera};
 use crate::clock::SECOND_NS;
 use crate::frame::{Intrinsics, Joints};
 use crate::source::camera::Camera;
@@ -168,6 +168,7 @@ impl SimulatedCamera {
             camera: Camera::pinhole(SIMULATED),
             rate_hz: SIMULATED_HZ as f32,
             placed: Some(pose),
+            colour: ColourPlace::Unknown,
         };
         let next = clock() * SIMULATED_HZ / SECOND_NS + 1;
         Self { info, clock, next, people: None }

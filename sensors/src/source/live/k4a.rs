@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 use super::error::CameraError;
 use super::library::{Library, LibraryName, functions};
-use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, LiveCamera};
+use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourPlace, LiveCamera};
 use crate::source::azure_calibration;
 use crate::source::camera::Camera;
 
@@ -154,7 +154,7 @@ impl K4a {
             None => (CaptureSource::Device(opened_device(&api, which)?), Some(NARROW), NAME.to_owned()),
         };
         let camera = Camera::pinhole(crate::frame::Intrinsics::KINECT_V1);
-        let info = CameraInfo { device: name, camera, rate_hz: 30.0, placed: None };
+        let info = CameraInfo { device: name, camera, rate_hz: 30.0, placed: None, colour: ColourPlace::Unknown };
         let mut k4a = Self { api, source, info, colour: options.colour };
         let size = match size {
             Some(size) => size,

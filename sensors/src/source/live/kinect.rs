@@ -10,10 +10,13 @@ use std::ffi::{c_char, c_int, c_long, c_void};
 use std::ptr;
 use std::time::{Duration, Instant};
 
+use glam::{Affine3A, Vec3};
+
 use super::error::CameraError;
 use super::library::{Library, LibraryName, functions};
-use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, LiveCamera};
+use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourPlace, LiveCamera};
 use crate::clock::SECOND_NS;
+use crate::colour_camera::ColourCamera;
 use crate::frame::Intrinsics;
 use crate::source::camera::Camera;
 use crate::source::fakenect::millimetres;
@@ -137,6 +140,13 @@ impl TickClock {
     }
 }
 
+/// The colour camera of a Kinect v1 as its makers mount it: 25 mm to the right of the depth camera, with a lens of 63 degrees. Devices
+/// differ by some pixels (Herrera C., Kannala and Heikkila 2012, "Joint depth and color camera calibration with distortion correction").
+fn colour_camera() -> ColourCamera {
+    let intrinsics = Intrinsics { width: 640, height: 480, fx: 525.0, fy: 525.0, cx: 319.5, cy: 239.5 };
+    ColourCamera::pinhole(intrinsics, Affine3A::from_translation(Vec3::new(0.025, 0.0, 0.0)))
+}
+
 impl Kinect {
     pub fn open(which: Option<&str>, options: &CameraOptions) -> Result<Self, CameraError> {
         let library = Library::load(&LIBRARY, &options.libraries)?;
@@ -154,7 +164,13 @@ impl Kinect {
             context,
             device: ptr::null_mut(),
             inbox: Inbox::default(),
-            info: CameraInfo { device, camera, rate_hz: 30.0, placed: None },
+            info: CameraInfo {
+                device,
+                camera,
+                rate_hz: 30.0,
+                placed: None,
+                colour: ColourPlace::Beside(colour_camera()),
+            },
             colour: options.colour,
             clock: TickClock::default(),
         };

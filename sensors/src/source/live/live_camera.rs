@@ -6,6 +6,7 @@ use std::time::Duration;
 use glam::Affine3A;
 
 use super::error::CameraError;
+use crate::colour_camera::ColourCamera;
 use crate::frame::{Intrinsics, Joints};
 use crate::limits::MAX_VIEW_PEOPLE;
 use crate::source::camera::Camera;
@@ -32,12 +33,41 @@ pub struct CameraInfo {
     pub rate_hz: f32,
     /// Its pose in our world (m), where that is known already: then no floor is looked for.
     pub placed: Option<Affine3A>,
+    /// Where its colour camera is.
+    pub(in crate::source) colour: ColourPlace,
+}
+
+/// Where a colour camera is, against the depth camera of the same device.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(in crate::source) enum ColourPlace {
+    /// That is not known, or there is none.
+    #[default]
+    Unknown,
+    /// Colour is seen by the depth camera itself.
+    AsDepth,
+    /// It has its own lens, and a place in the depth camera's axes.
+    Beside(ColourCamera),
 }
 
 impl CameraInfo {
     /// The images as the camera gives them, before its lens is straightened.
     pub fn sensor(&self) -> Intrinsics {
         self.camera.intrinsics
+    }
+
+    /// Its colour camera, where the depth camera stands there in our world (m); none where it is not known how it sees.
+    pub fn colour_camera(&self, depth_to_world: Affine3A) -> Option<ColourCamera> {
+        // Turned images would need a turned camera: nobody has tried one.
+        if self.camera.quarter_turns != 0 {
+            return None;
+        }
+        match self.colour {
+            ColourPlace::Unknown => None,
+            ColourPlace::AsDepth => Some(ColourCamera::pinhole(self.sensor(), depth_to_world)),
+            ColourPlace::Beside(camera) => {
+                Some(ColourCamera { camera_to_world: depth_to_world * camera.camera_to_world, ..camera })
+            }
+        }
     }
 }
 

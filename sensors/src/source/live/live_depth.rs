@@ -10,6 +10,7 @@ use super::error::CameraError;
 use super::frame_check::{CameraCounts, CameraState, FrameCheck, Verdict};
 use super::frame_pool::FramePool;
 use super::live_camera::{Arrival, CameraFrame, CameraInfo, ColourImage, LiveCamera};
+use crate::colour_camera::ColourCamera;
 use crate::error::{Fault, Place};
 use crate::frame::{DepthFrame, Intrinsics, Joints};
 use crate::source::depth_converter::DepthConverter;
@@ -115,6 +116,11 @@ impl LiveDepth {
         &self.raw.colour
     }
 
+    /// The camera of its colour images, in our world; none before it is placed, or where it is not known how it sees.
+    pub fn colour_camera(&self) -> Option<ColourCamera> {
+        self.info.colour_camera(self.pose?)
+    }
+
     /// Joints of everybody whom the camera itself tracked in the last frame, in our world.
     pub fn people(&self) -> &[Joints] {
         &self.people
@@ -122,6 +128,7 @@ impl LiveDepth {
 
     /// Wipes all images that nobody has: whoever was seen in them has left.
     pub fn wipe(&mut self) {
+        self.raw.colour.rgb.fill(0);
         self.pool.wipe();
     }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use super::error::CameraError;
-use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, LiveCamera};
+use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourPlace, LiveCamera};
 use crate::error::Fault;
 use crate::source::camera::Camera;
 use crate::source::openni_library::{LIBRARY, OpenNiLibrary, OpenNiStream};
@@ -40,7 +40,11 @@ impl OpenNi {
         let camera = Camera { mm_per_unit, quarter_turns: options.quarter_turns, ..pinhole };
         let colour = if options.colour { device.colour().ok() } else { None };
         let device = which.map_or_else(|| "OpenNI 2".to_owned(), |which| format!("OpenNI 2 {which}"));
-        Ok(Self { info: CameraInfo { device, camera, rate_hz, placed: None }, depth, colour })
+        Ok(Self {
+            info: CameraInfo { device, camera, rate_hz, placed: None, colour: ColourPlace::Unknown },
+            depth,
+            colour,
+        })
     }
 }
 

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use super::error::CameraError;
 use super::library::{Library, LibraryName, functions};
-use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, LiveCamera};
+use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourPlace, LiveCamera};
 use crate::frame::Intrinsics;
 use crate::source::camera::Camera;
 use crate::source::lens::BrownConrady;
@@ -185,7 +185,7 @@ impl RealSense {
         let (camera, rate_hz) = first.depth().ok_or_else(|| refused("no depth comes of it"))?.camera()?;
         let camera = Camera { quarter_turns: options.quarter_turns, ..camera };
         let device = which.map_or_else(|| NAME.to_owned(), |which| format!("{NAME} {which}"));
-        let info = CameraInfo { device, camera, rate_hz, placed: None };
+        let info = CameraInfo { device, camera, rate_hz, placed: None, colour: ColourPlace::Unknown };
         Ok(Self { pipeline, info, is_recording: recording.is_some(), heard: Instant::now(), first: Some(first) })
     }
 }

@@ -1,11 +1,12 @@
-//! A recording that is played in time as if it were a camera, again and again: for a demonstration, and for tests.
+//! A recording that is played in time as if it were a camera, again and again: for a demonstration, and for tests. It holds no picture of
+//! anybody: where colour is asked for, its depth is shown as one, shaded as if a lamp stood beside the camera.
 
 use std::path::Path;
 use std::thread;
 use std::time::{Duration, Instant};
 
 use super::error::CameraError;
-use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, LiveCamera};
+use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourImage, ColourPlace, LiveCamera};
 use crate::clock::SECOND_NS;
 use crate::frame::DepthFrame;
 use crate::source::camera::Camera;
@@ -22,6 +23,8 @@ pub(super) struct RecordedCamera {
     round_ns: u64,
     next: u64,
     begun: Instant,
+    /// Whether depth is shown as a picture.
+    colour: bool,
 }
 
 impl RecordedCamera {
@@ -45,8 +48,16 @@ impl RecordedCamera {
             camera,
             rate_hz: SECOND_NS as f32 / gap.max(1) as f32,
             placed: (options.quarter_turns == 0).then_some(first.camera_to_world),
+            colour: ColourPlace::AsDepth,
         };
-        Ok(Self { info, round_ns: last_ns + gap.max(1), depth: session.depth, next: 0, begun: Instant::now() })
+        Ok(Self {
+            info,
+            round_ns: last_ns + gap.max(1),
+            depth: session.depth,
+            next: 0,
+            begun: Instant::now(),
+            colour: options.colour,
+        })
     }
 
     /// The next frame, and its time since the begin (ns).
@@ -72,7 +83,38 @@ impl LiveCamera for RecordedCamera {
         }
         frame.device_ns = due_ns;
         frame.depth.extend_from_slice(&image.depth_mm);
+        if self.colour {
+            shade(image, &mut frame.colour);
+        }
         self.next += 1;
         Ok(Arrival::Frame)
+    }
+}
+
+/// Brightness of what faces the lamp, and what nothing was measured of.
+const LIGHT: f32 = 205.0;
+const UNSEEN: u8 = 70;
+
+/// A picture of a depth image: each pixel as bright as the surface there faces a lamp above the camera, in the tone of wood.
+fn shade(depth: &DepthFrame, picture: &mut ColourImage) {
+    let k = &depth.intrinsics;
+    let (width, height) = (k.width as usize, k.height as usize);
+    (picture.width, picture.height) = (k.width, k.height);
+    picture.rgb.clear();
+    let at = |u: usize, v: usize| f32::from(depth.depth_mm[v.min(height - 1) * width + u.min(width - 1)]);
+    for v in 0..height {
+        for u in 0..width {
+            let (z, right, below) = (at(u, v), at(u + 2, v), at(u, v + 2));
+            if z == 0.0 || right == 0.0 || below == 0.0 {
+                picture.rgb.extend([UNSEEN; 3]);
+                continue;
+            }
+            // Slopes across two pixels; edges are no surface.
+            let step = 2.0 * z / k.fx;
+            let (dx, dy) = (((right - z) / step).clamp(-2.0, 2.0), ((below - z) / step).clamp(-2.0, 2.0));
+            let facing = (1.0 + 0.35 * dy + 0.15 * dx) / (1.0 + dx * dx + dy * dy).sqrt();
+            let light = (LIGHT * facing.clamp(0.15, 1.1)).min(255.0);
+            picture.rgb.extend([1.0, 0.93, 0.86].map(|tone| (light * tone) as u8));
+        }
     }
 }

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::colour_decode as decode;
 use super::error::CameraError;
-use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, LiveCamera};
+use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourPlace, LiveCamera};
 use super::v4l2::{FourCc, MJPG, VideoStream, YUYV};
 use crate::frame::Intrinsics;
 use crate::source::camera::Camera;
@@ -85,7 +85,7 @@ pub(super) fn info(device: String, [width, height]: [u32; 2], rate_hz: f32) -> C
     let focal = FOCAL * width.max(height) as f32;
     let (cx, cy) = (0.5 * (width as f32 - 1.0), 0.5 * (height as f32 - 1.0));
     let camera = Camera::pinhole(Intrinsics { width, height, fx: focal, fy: focal, cx, cy });
-    CameraInfo { device, camera, rate_hz, placed: None }
+    CameraInfo { device, camera, rate_hz, placed: None, colour: ColourPlace::Unknown }
 }
 
 impl LiveCamera for Webcam {

@@ -143,6 +143,13 @@ fn every_page_speaks_every_language_whole() {
         play.model.take_in_hand(None);
         look(&mut play);
     }
+    for outcome in 0..8 {
+        play.picture_is(outcome);
+        look(&mut play);
+        play.press(Action::OwnPicture);
+        look(&mut play);
+        play.press(Action::OwnPicture);
+    }
     play.press(Action::TakePicture);
     play.wait(1_000);
     look(&mut play);

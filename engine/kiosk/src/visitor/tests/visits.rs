@@ -7,6 +7,7 @@ use crate::service::session::SessionState;
 use crate::visitor::model::NavigationKey;
 use crate::visitor::picture_link::PictureServer;
 use crate::visitor::screen::{Block, BodyView, ControlStyle};
+use crate::visitor::texts::TextKey;
 use toile_track::gesture::Gesture;
 
 /// Every page that a visitor can come to.
@@ -452,4 +453,47 @@ fn a_camera_that_is_lost_or_covered_is_said_on_every_page_and_unsaid_when_it_is_
             None => assert_eq!(now, blocks),
         }
     }
+}
+
+/// Whoever wants to see themselves does, with a word where the clothes cannot be put on the picture, and is the mannequin's again when
+/// they say so, or have left.
+#[test]
+fn whoever_wants_to_sees_themselves_and_is_forgotten_with_it() {
+    let sees = |play: &Play| matches!(play.screen().body_view, BodyView::Shopper { own_picture: true, .. });
+    let offers = |play: &Play| play.screen().controls.iter().any(|c| c.action == Action::OwnPicture);
+    let mut play = Play::dressed();
+    assert!(!offers(&play), "without a camera's picture nothing is offered");
+    play.update(Input::OwnPicture(0));
+    assert!(offers(&play) && !sees(&play), "the mannequin first");
+    play.press(Action::OwnPicture);
+    assert!(sees(&play) && play.model.shows_own_picture());
+    // Whoever sees themselves turns by turning.
+    assert!(!play.screen().controls.iter().any(|c| matches!(c.action, Action::Turn(_))));
+    let says = |play: &Play, key: TextKey| {
+        let words = play.texts.of(play.model.language()).text(key);
+        play.screen().blocks.contains(&Block::Text(words))
+    };
+    for (outcome, key) in [
+        (0, TextKey::OwnPictureSoon),
+        (1, TextKey::OwnPictureKept),
+        (3, TextKey::OwnPictureCannot),
+        (4, TextKey::OwnPictureNobody),
+        (5, TextKey::OwnPictureBack),
+        (6, TextKey::OwnPictureStill),
+    ] {
+        play.update(Input::OwnPicture(outcome));
+        assert!(says(&play, key), "{outcome}");
+    }
+    // On the other pages of the body they are still there; the fit map is the mannequin's.
+    play.press(Action::Open(Page::Garments));
+    assert!(sees(&play));
+    play.press(Action::Back);
+    play.press(Action::Open(Page::Zones));
+    assert!(!sees(&play) && !play.model.shows_own_picture());
+    play.press(Action::Back);
+    play.press(Action::OwnPicture);
+    assert!(!sees(&play) && !play.model.shows_own_picture());
+    play.press(Action::OwnPicture);
+    play.press(Action::Leave);
+    assert!(!play.model.shows_own_picture() && play.screen().body_view == BodyView::Mannequin);
 }

@@ -18,7 +18,21 @@ use crate::window::overlay::Overlay;
 pub fn all(language: usize, large: bool) -> BTreeMap<String, Screen> {
     let mut seen = usual(language, large);
     seen.extend(by_tape(language, large));
+    seen.extend(own_picture(language, large));
     seen
+}
+
+/// The pages of somebody who may see themselves: offered, and with the longest word about why nothing is worn.
+fn own_picture(language: usize, large: bool) -> BTreeMap<String, Screen> {
+    let mut play = begun(language, large);
+    play.see(Some(1));
+    play.wait(6_000);
+    play.picture_is(1);
+    let offered = play.screen();
+    play.press(Action::OwnPicture);
+    play.picture_is(3);
+    let plain = play.screen();
+    [("30-see-myself".to_owned(), offered), ("31-myself".to_owned(), plain)].into()
 }
 
 /// A visit in a language, and in large type.

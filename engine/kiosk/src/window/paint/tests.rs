@@ -37,7 +37,7 @@ fn full() -> Screen {
         ],
         controls,
         focus: 0,
-        body_view: BodyView::Shopper { yaw: 0.0, fit: true, unknown: [false; 3], judged: None },
+        body_view: BodyView::Shopper { yaw: 0.0, fit: true, unknown: [false; 3], judged: None, own_picture: false },
         type_scale: 1.0,
         reach: 0.65,
         reach_low: 0.1,

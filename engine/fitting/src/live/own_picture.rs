@@ -1,0 +1,228 @@
+//! The camera's pictures on their way to the mirror, each with what was seen in it: the latest only, in memory alone, and only while
+//! somebody looks at themselves.
+//!
+//! A picture is handed on once its joints are there, so that garment and picture are of one moment. What the renderer shows of it comes
+//! back as a number that means something to the two of them.
+
+use std::sync::Arc;
+use std::sync::atomic::Ordering::Relaxed;
+use std::sync::atomic::{AtomicBool, AtomicU8};
+
+use toile_engine::triple_buffer::{Reader, TripleBuffer, Writer};
+use toile_sensors::colour_camera::ColourCamera;
+use toile_sensors::frame::{DepthFrame, Joints};
+use toile_sensors::person_mask::PersonMask;
+use toile_sensors::source::live::ColourImage;
+
+/// Copies of a picture that are on their way or held: as many have to be wiped.
+const COPIES: u8 = 3;
+
+/// A picture, and what was seen in it.
+#[derive(Debug, Clone)]
+pub struct SeenPicture {
+    /// When it was taken (ns); 0 is none.
+    pub taken_ns: u64,
+    /// When it arrived (ns).
+    pub arrived_ns: u64,
+    /// The picture; of no size where there is none.
+    pub picture: ColourImage,
+    /// How it was seen; none where that is not known.
+    pub camera: Option<ColourCamera>,
+    /// The joints in it, in our world.
+    pub joints: Joints,
+    /// Depth of the same moment, shared with the tracker.
+    pub depth: Option<Arc<DepthFrame>>,
+    /// Odds of a person; of no size where nothing is known.
+    pub mask: PersonMask,
+}
+
+impl Default for SeenPicture {
+    fn default() -> Self {
+        Self {
+            taken_ns: 0,
+            arrived_ns: 0,
+            picture: ColourImage::default(),
+            camera: None,
+            joints: Joints::absent(0),
+            depth: None,
+            mask: PersonMask::default(),
+        }
+    }
+}
+
+impl SeenPicture {
+    /// Nothing of it stays: its bytes are overwritten.
+    fn wipe(&mut self) {
+        self.picture.rgb.fill(0);
+        (self.picture.width, self.picture.height) = (0, 0);
+        self.mask.wipe();
+        (self.taken_ns, self.arrived_ns, self.joints, self.depth) = (0, 0, Joints::absent(0), None);
+    }
+}
+
+/// Copies a picture into storage that is there.
+pub(super) fn copy(from: &ColourImage, to: &mut ColourImage) {
+    (to.width, to.height) = (from.width, from.height);
+    to.rgb.clone_from(&from.rgb);
+}
+
+/// What both ends and whoever decides share. Relaxed throughout: each stands by itself and orders nothing.
+#[derive(Debug, Default)]
+struct Shared {
+    /// Whether somebody looks at themselves.
+    wanted: AtomicBool,
+    /// What the renderer last made of a picture.
+    outcome: AtomicU8,
+}
+
+/// Decides whether pictures are handed on, and asks what became of them.
+#[derive(Debug, Clone, Default)]
+pub struct PictureSwitch(Arc<Shared>);
+
+impl PictureSwitch {
+    /// Hands pictures on from now on, or wipes those that are under way.
+    pub fn set(&self, wanted: bool) {
+        self.0.wanted.store(wanted, Relaxed);
+        if !wanted {
+            self.0.outcome.store(0, Relaxed);
+        }
+    }
+
+    /// Whether they are handed on.
+    pub fn is_on(&self) -> bool {
+        self.0.wanted.load(Relaxed)
+    }
+
+    /// What the renderer made of the last picture.
+    pub fn outcome(&self) -> u8 {
+        self.0.outcome.load(Relaxed)
+    }
+}
+
+/// The camera's end.
+#[derive(Debug)]
+pub struct PictureSender {
+    writer: Writer<SeenPicture>,
+    switch: PictureSwitch,
+    /// Copies that have yet to be wiped.
+    unwiped: u8,
+}
+
+/// The renderer's end.
+#[derive(Debug)]
+pub struct PictureReceiver {
+    reader: Reader<SeenPicture>,
+    switch: PictureSwitch,
+}
+
+/// A channel of pictures, switched off. Called at load: it allocates; the first pictures of a size allocate once more.
+pub fn channel() -> (PictureSender, PictureReceiver, PictureSwitch) {
+    let TripleBuffer { writer, reader } = TripleBuffer::new(&SeenPicture::default());
+    let switch = PictureSwitch::default();
+    let sender = PictureSender { writer, switch: switch.clone(), unwiped: 0 };
+    (sender, PictureReceiver { reader, switch: switch.clone() }, switch)
+}
+
+impl PictureSender {
+    /// A channel before this one, switched by the same switch: pictures on their way to whoever adds what was seen in them.
+    pub(super) fn relay(&self) -> (Self, PictureReceiver) {
+        let TripleBuffer { writer, reader } = TripleBuffer::new(&SeenPicture::default());
+        let sender = Self { writer, switch: self.switch.clone(), unwiped: 0 };
+        (sender, PictureReceiver { reader, switch: self.switch.clone() })
+    }
+
+    /// Hands a picture on, where somebody wants it: `fill` writes every part of an older one.
+    pub fn send(&mut self, fill: impl FnOnce(&mut SeenPicture)) {
+        if self.switch.is_on() {
+            self.unwiped = COPIES;
+            self.writer.publish_with(fill);
+        } else {
+            self.wipe();
+        }
+    }
+
+    /// Whether somebody wants pictures.
+    pub fn is_on(&self) -> bool {
+        self.switch.is_on()
+    }
+
+    /// Wipes one of the copies, as long as there are any.
+    pub fn wipe(&mut self) {
+        if self.unwiped > 0 {
+            self.unwiped -= 1;
+            self.writer.publish_with(SeenPicture::wipe);
+        }
+    }
+
+    /// Whoever was seen has left: every copy is wiped, also while pictures are wanted.
+    pub fn forget(&mut self) {
+        self.unwiped = COPIES;
+        self.wipe();
+    }
+}
+
+impl PictureReceiver {
+    /// The newest picture if it was not looked at before.
+    pub fn news(&mut self) -> Option<&SeenPicture> {
+        self.reader.news()
+    }
+
+    /// The newest picture.
+    pub fn latest(&mut self) -> &SeenPicture {
+        self.reader.latest()
+    }
+
+    /// Says what became of it.
+    pub fn report(&self, outcome: u8) {
+        self.switch.0.outcome.store(outcome, Relaxed);
+    }
+
+    /// Whether somebody looks at themselves.
+    pub fn is_on(&self) -> bool {
+        self.switch.is_on()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn picture(seen: &mut SeenPicture) {
+        seen.picture = ColourImage { width: 2, height: 1, rgb: vec![9; 6] };
+        (seen.taken_ns, seen.arrived_ns) = (5, 7);
+    }
+
+    #[test]
+    fn nothing_is_copied_while_nobody_looks() {
+        let (mut sender, mut receiver, switch) = channel();
+        sender.send(|_| panic!("nobody wants it"));
+        assert!(receiver.news().is_none());
+        switch.set(true);
+        sender.send(picture);
+        assert_eq!(receiver.news().map(|seen| seen.taken_ns), Some(5));
+        receiver.report(3);
+        assert_eq!(switch.outcome(), 3);
+    }
+
+    #[test]
+    fn every_copy_is_wiped_when_nobody_looks_any_more() {
+        let (mut sender, mut receiver, switch) = channel();
+        switch.set(true);
+        for _ in 0..4 {
+            sender.send(picture);
+            receiver.news();
+        }
+        switch.set(false);
+        let mut blank = 0;
+        for _ in 0..6 {
+            sender.send(picture);
+            if let Some(seen) = receiver.news() {
+                assert!(seen.picture.rgb.iter().all(|b| *b == 0) && seen.picture.width == 0 && seen.taken_ns == 0);
+                blank += 1;
+            }
+        }
+        assert_eq!(blank, COPIES);
+        // All that is left in the three places is blank.
+        assert!(receiver.latest().picture.rgb.iter().all(|b| *b == 0));
+    }
+}

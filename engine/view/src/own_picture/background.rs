@@ -1,0 +1,101 @@
+//! The camera's picture in the mirror: mirrored, and as large as the mirror.
+
+use glam::Vec2;
+use toile_sensors::source::live::ColourImage;
+
+use super::framing::Framing;
+
+/// What is beside a picture that is too narrow for the mirror.
+const BESIDE: [u8; 3] = [28, 29, 32];
+
+/// Shares are of so many parts.
+const ONE: u32 = 256;
+
+/// A column of the mirror: the byte of the column left of it and right of it in a row of the picture, and the share of the latter.
+type Column = (u32, u32, u32);
+
+/// Columns of the mirror, kept from picture to picture.
+#[derive(Debug, Clone, Default)]
+pub struct Background {
+    columns: Vec<Option<Column>>,
+    made_for: Option<(Framing, [u32; 2])>,
+}
+
+impl Background {
+    /// Fills the mirror `[3 * width * height]`, between four pixels of the picture each.
+    pub fn draw(&mut self, picture: &ColourImage, framing: &Framing, out: &mut [u8]) {
+        let size = [picture.width, picture.height];
+        if self.made_for != Some((*framing, size)) {
+            self.columns.clear();
+            self.columns.extend((0..framing.size.width).map(|x| column(framing, x, size[0])));
+            self.made_for = Some((*framing, size));
+        }
+        let bytes = 3 * picture.width as usize;
+        let last = picture.height as f32 - 1.0;
+        for (y, row) in out.chunks_exact_mut(3 * framing.size.width as usize).enumerate() {
+            let at = framing.to_picture(Vec2::new(0.0, y as f32)).y;
+            if at < -0.5 || at > last + 0.5 {
+                row.as_chunks_mut().0.fill(BESIDE);
+                continue;
+            }
+            let at = at.clamp(0.0, last);
+            let (upper, part) = (at as usize, (at.fract() * ONE as f32) as u32);
+            let lower = (upper + 1).min(last as usize);
+            let rows = [upper, lower].map(|n| &picture.rgb[n * bytes..(n + 1) * bytes]);
+            for (pixel, column) in row.as_chunks_mut::<3>().0.iter_mut().zip(&self.columns) {
+                *pixel = column.map_or(BESIDE, |column| between(rows, column, part));
+            }
+        }
+    }
+}
+
+fn column(framing: &Framing, x: u32, width: u32) -> Option<Column> {
+    let at = framing.to_picture(Vec2::new(x as f32, 0.0)).x;
+    let last = width as f32 - 1.0;
+    if at < -0.5 || at > last + 0.5 {
+        return None;
+    }
+    let at = at.clamp(0.0, last);
+    let left = at as u32;
+    Some((3 * left, 3 * (left + 1).min(width - 1), (at.fract() * ONE as f32) as u32))
+}
+
+#[inline]
+fn between([upper, lower]: [&[u8]; 2], (left, right, share): Column, part: u32) -> [u8; 3] {
+    let (left, right) = (left as usize, right as usize);
+    let four = |row: &[u8]| -> [u32; 3] {
+        std::array::from_fn(|c| u32::from(row[left + c]) * (ONE - share) + u32::from(row[right + c]) * share)
+    };
+    let (a, b) = (four(upper), four(lower));
+    std::array::from_fn(|c| ((a[c] * (ONE - part) + b[c] * part + ONE * ONE / 2) / (ONE * ONE)) as u8)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::Size;
+
+    #[test]
+    fn a_picture_as_large_as_the_mirror_is_the_picture_mirrored() {
+        let rgb: Vec<u8> = (0..7 * 5 * 3).map(|i| (i * 7 % 256) as u8).collect();
+        let picture = ColourImage { width: 7, height: 5, rgb };
+        let mut out = vec![0; 7 * 5 * 3];
+        Background::default().draw(&picture, &Framing::whole([7, 5]), &mut out);
+        for (mirrored, row) in out.chunks(21).zip(picture.rgb.chunks(21)) {
+            let back: Vec<u8> = row.chunks(3).rev().flatten().copied().collect();
+            assert_eq!(mirrored, back);
+        }
+    }
+
+    #[test]
+    fn between_pixels_it_is_between_and_beside_it_is_plain() {
+        let picture = ColourImage { width: 2, height: 2, rgb: vec![0, 0, 0, 200, 200, 200, 0, 0, 0, 200, 200, 200] };
+        let framing = Framing::covering([2, 2], Size::new(12, 8), 0.5, [0.0, 1.0]);
+        let mut out = vec![0; 12 * 8 * 3];
+        Background::default().draw(&picture, &framing, &mut out);
+        let row: Vec<u8> = out[..36].chunks(3).map(|p| p[1]).collect();
+        assert_eq!((row[0], row[11]), (BESIDE[1], BESIDE[1]));
+        assert_eq!((row[2], row[9]), (200, 0), "{row:?}");
+        assert!(row[2..10].windows(2).all(|w| w[0] >= w[1]), "{row:?}");
+    }
+}
