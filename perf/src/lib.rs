@@ -31,5 +31,6 @@ pub mod worn;
 
 pub mod contact;
 pub mod crossover;
+pub mod drape;
 pub mod measuring;
 pub mod pareto;

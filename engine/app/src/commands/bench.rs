@@ -12,6 +12,7 @@ pub(super) mod backend;
 mod body;
 mod contact;
 mod depth;
+mod drape;
 mod filters;
 mod gestures;
 mod gestures_report;
@@ -20,6 +21,7 @@ mod skinning;
 mod skinning_report;
 mod skirt;
 mod skirt_summary;
+mod tablecloth;
 mod webcam;
 mod worn_summary;
 
@@ -36,6 +38,8 @@ pub(crate) enum BenchCommand {
     Depth(depth::DepthArgs),
     Contact(contact::ContactArgs),
     Webcam(webcam::WebcamBenchArgs),
+    Drape(drape::DrapeArgs),
+    Tablecloth(tablecloth::TableclothArgs),
 }
 
 /// Runs `toile bench`.
@@ -53,5 +57,7 @@ pub(crate) fn run(command: &BenchCommand) -> Result<(), AppError> {
         BenchCommand::Depth(args) => depth::run(args),
         BenchCommand::Contact(args) => contact::run(args),
         BenchCommand::Webcam(args) => webcam::run(args),
+        BenchCommand::Drape(args) => drape::run(args),
+        BenchCommand::Tablecloth(args) => tablecloth::run(args),
     }
 }

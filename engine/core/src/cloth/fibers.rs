@@ -42,6 +42,8 @@ pub struct SolveFibers<'a> {
     pub columns: ParticleColumns<'a>,
     /// All warp fibers of the garment.
     pub fibers: &'a Fibers,
+    /// Rest length (m) and compliance (m/N) of their links, as baked or as their laws have them now.
+    pub links: [ReadColumn<'a>; 2],
     /// Owner whose bundles are solved.
     pub owner: usize,
     /// This worker's scratch.
@@ -153,7 +155,7 @@ impl Chain<'_> {
     /// Rest length and compliance of a link.
     #[inline(always)]
     fn link<L: Numbers, const FULL: bool>(&self, link: usize) -> (L, L) {
-        let (rest, soft) = (ReadColumn::new(&self.solve.fibers.rest), ReadColumn::new(&self.solve.fibers.compliance));
+        let [rest, soft] = self.solve.links;
         let first = self.bundle.at as usize;
         if self.bundle.alike {
             return (L::splat(rest.get(first + link)), L::splat(soft.get(first + link)));

@@ -37,6 +37,8 @@ pub enum Stage {
     StiffBendingRecords(u32),
     /// The forces of such a stage.
     StiffBending(u32),
+    /// What links are in this substep, by the strain that they have.
+    LinkLaws,
     /// Gravity, air, wind; skinned particles move on.
     Predict,
     /// A family of fibers along the bias.
@@ -82,7 +84,7 @@ impl Stage {
             | Self::StiffBendingRecords(_)
             | Self::StiffBending(_) => 1,
             Self::Diagonals(_) | Self::Shear(_) => 2,
-            Self::Weft(_) | Self::EnterRecords | Self::LeaveRecords => 3,
+            Self::Weft(_) | Self::LinkLaws | Self::EnterRecords | Self::LeaveRecords => 3,
             Self::Fibers | Self::Crossing(_) => 4,
             Self::ContactAndVelocities | Self::BroadPhase => 5,
             Self::Wind | Self::WindAcross => 6,
@@ -152,7 +154,9 @@ pub fn constraints(layout: &Layout, quality: Quality) -> Box<[Stage]> {
     let shear = || numbered(layout.shear.tuples.sets.len(), Stage::Shear);
     let wefts = || numbered(layout.weft.tuples.sets.len(), Stage::Weft);
     let fibers = || numbered(layout.crossing.sets.len(), Stage::Crossing).chain([Stage::Fibers]);
-    let mut stages = vec![Stage::Predict];
+    let mut stages = Vec::new();
+    stages.extend(layout.laws.acts().then_some(Stage::LinkLaws));
+    stages.push(Stage::Predict);
     stages.extend(numbered(layout.diagonals.families.len(), Stage::Diagonals));
     stages.extend(shear());
     stages.extend(wefts().chain(fibers()));
