@@ -107,24 +107,9 @@ impl DrapedCloth {
         toile_assets::numeric::statistics::median(&mut self.times_ns).map_or(0.0, |ns| ns as f64 * 1e-3)
     }
 
-    /// Steps that were rolled back.
-    pub fn rolled_back(&self) -> u64 {
-        self.cloth.events.rolled_back
-    }
-
-    /// The garment's triangles, in particles.
-    pub fn triangles(&self) -> &[[u32; 3]] {
-        &self.garment.triangles
-    }
-
-    /// Places of the particles (m).
-    pub fn particles(&self) -> impl Iterator<Item = Vec3> {
-        self.cloth.positions.iter().map(|p| Vec3::from(*p))
-    }
-
     /// A picture of it, from above and before.
     pub fn picture(&self, camera: &Camera, size: Size) -> Image {
-        let positions: Vec<Vec3> = self.particles().collect();
+        let positions: Vec<Vec3> = self.cloth.positions.iter().map(|p| Vec3::from(*p)).collect();
         let mut normals = vec![Vec3::ZERO; positions.len()];
         vertex_normals(&positions, &self.garment.triangles, &mut normals);
         let [r, g, b] = self.garment.fabric.colour.map(linear);

@@ -27,6 +27,9 @@ const SPECIMEN_M: f64 = 0.15;
 /// When the coefficient is read (s): as the figure, and before it, to see whether it creeps.
 const READ_S: [f64; 2] = [3.0, 5.0];
 
+/// Damping of the cloth's motion, for it to come to rest (1/s): a specimen is let down slowly.
+const DAMPING_PER_S: f32 = 6.0;
+
 /// Distances of particles that are tried (mm), coarsest first.
 pub const SPACINGS_MM: [f64; 3] = [20.0, 10.0, 5.0];
 
@@ -67,18 +70,19 @@ pub fn published_band(name: &str) -> Option<[f64; 2]> {
     kinds.into_iter().find(|(words, _)| words.iter().any(|w| name.contains(w))).map(|(_, band)| band)
 }
 
-/// Drapes a fabric at a spacing (mm); draws it where that is asked for.
+/// Drapes a fabric at a spacing (mm) in a quality; draws it where that is asked for.
 ///
 /// # Errors
 /// A specimen that cannot be baked.
-pub fn cusick(fabric: &Fabric, spacing_mm: f64, drawn: bool) -> Result<CusickRow, DrapeError> {
+pub fn cusick(fabric: &Fabric, spacing_mm: f64, quality: Quality, drawn: bool) -> Result<CusickRow, DrapeError> {
     let piece = specimen(1e-3 * spacing_mm);
-    let mut cloth = DrapedCloth::new(&piece, fabric, Colliders::new(&[], &[], false)?, Quality::Shop)?;
+    let damped = Fabric { damping_per_s: DAMPING_PER_S, ..fabric.clone() };
+    let mut cloth = DrapedCloth::new(&piece, &damped, Colliders::new(&[], &[], false)?, quality)?;
     let [before, after] = READ_S.map(|seconds| {
         cloth.run_to(seconds);
         coefficient(&piece, &cloth)
     });
-    let camera = Camera { target: Vec3::new(0.0, -0.03, 0.0), yaw: 0.5, height: 0.42, distance: 0.75, fov_y: 0.42 };
+    let camera = Camera { target: Vec3::new(0.0, -0.03, 0.0), yaw: 0.5, height: 0.42, distance: 0.62, fov_y: 0.42 };
     Ok(CusickRow {
         fabric: fabric.name.clone(),
         spacing_mm,
@@ -201,7 +205,7 @@ mod tests {
         let of = |bend: f32| {
             let mut fabric = Fabric::built_in("cotton-lawn").unwrap();
             (fabric.bend_warp_un_m, fabric.bend_weft_un_m) = (bend, bend);
-            cusick(&fabric, 20.0, false).unwrap().drape_percent
+            cusick(&fabric, 20.0, Quality::Shop, false).unwrap().drape_percent
         };
         let (limp, stiff) = (of(0.5), of(2_000.0));
         assert!(limp < 40.0 && stiff > 90.0, "{limp} and {stiff} %");

@@ -1,9 +1,10 @@
 //! Laws of links: what each link's rest length and compliance are in this substep.
 //!
-//! A link's force is that of `fabric::link_law`: three slopes and a slider in series with a spring. By the strain that a link has at the
-//! start of a substep one of its slopes holds, and it sticks or slips; that is a linear spring again, of another rest length and
-//! another compliance, and the solvers take these in place of the baked ones. So the tridiagonal systems stay linear, and what is
-//! stiff, the spring by which a link sticks too, is solved implicitly: no law has to be softened to fit a substep.
+//! A link's force is that of `fabric::link_law`: three slopes and a slider in series with a spring. By the strain that
+//! a link is about to have, as its ends are predicted, one of its slopes holds; by the strain at the start of the substep it
+//! sticks or slips. That is a linear spring again, of another rest length and another compliance, and the solvers take these
+//! in place of the baked ones. So the tridiagonal systems stay linear, and what is stiff, the spring by which a link sticks
+//! too, is solved implicitly: no law has to be softened to fit a substep.
 //!
 //! With e the strain, t the force over the link's stiffness k l, and s the strain at which it sticks:
 //!   t = g e - o,   g = 1, o = 0 between the knees;   g = G, o = E (G - 1) behind a knee at E with the slope G;
@@ -255,9 +256,10 @@ impl Kernel for FollowLaws<'_> {
             while t < row.len as usize {
                 let n = (row.len as usize - t).min(L::N);
                 let [a, b] = row.ends.map(|p| p as usize + t);
-                let d = V3::<L>::load(c.x, b, n) - V3::load(c.x, a, n);
+                let had = V3::<L>::load(c.previous, b, n) - V3::load(c.previous, a, n);
+                let has = V3::<L>::load(c.x, b, n) - V3::load(c.x, a, n);
                 let weight = some::<L>(c.w, a, n) + some(c.w, b, n);
-                self.follow(Beside { at: row.at as usize + t, n }, d, weight);
+                self.follow(Beside { at: row.at as usize + t, n }, [had, has], weight);
                 t += n;
             }
         }
@@ -266,9 +268,10 @@ impl Kernel for FollowLaws<'_> {
         while k < loose.end {
             let n = (loose.end - k).min(L::N);
             let [a, b] = [&a[k..k + n], &b[k..k + n]];
-            let d = V3::<L>::gather(c.x, b, n) - V3::gather(c.x, a, n);
+            let had = V3::<L>::gather(c.previous, b, n) - V3::gather(c.previous, a, n);
+            let has = V3::<L>::gather(c.x, b, n) - V3::gather(c.x, a, n);
             let weight = L::gather(c.w, a, n) + L::gather(c.w, b, n);
-            self.follow(Listed(&at[k..k + n]), d, weight);
+            self.follow(Listed(&at[k..k + n]), [had, has], weight);
             k += n;
         }
     }
@@ -315,19 +318,15 @@ impl Places for Listed<'_> {
 
 impl FollowLaws<'_> {
     #[inline(always)]
-    fn follow<L: Lanes>(&self, at: impl Places, d: V3<L>, weight: L) {
-        let [rest, compliance] = self.baked.map(|column| at.load::<L>(ReadColumn::new(column)));
-        let law = |column: &[f32]| at.load::<L>(ReadColumn::new(column));
-        let table = self.table;
-        let (one, length2) = (L::splat(1.0), d.dot(d));
-        let strain = (length2 * reciprocal_root(length2)).div(rest) - one;
-        let [slope, offset] = slope_at(
-            strain,
-            [law(&table.lower), law(&table.lower_slope)],
-            [law(&table.upper), law(&table.upper_slope)],
-        );
-        let (stuck, holds) = (at.load::<L>(self.to.sticks), law(&table.friction));
-        let [stuck, sticks, keeps] = rubbed(strain, stuck, holds);
+    fn follow<L: Lanes>(&self, at: impl Places, [had, has]: [V3<L>; 2], weight: L) {
+        let (table, one) = (self.table, L::splat(1.0));
+        let (rest, compliance) = (at.load::<L>(column(self.baked[0])), at.load::<L>(column(self.baked[1])));
+        let per_rest = one.div(rest);
+        let below = [at.load(column(&table.lower)), at.load(column(&table.lower_slope))];
+        let above = [at.load(column(&table.upper)), at.load(column(&table.upper_slope))];
+        let [slope, offset] = slope_at(strain(has, per_rest), below, above);
+        let (stuck, holds) = (at.load::<L>(self.to.sticks), at.load::<L>(column(&table.friction)));
+        let [stuck, sticks, keeps] = rubbed(strain(had, per_rest), stuck, holds);
         at.store(stuck, self.to.sticks);
         let (slope, offset) = (slope + sticks, offset + keeps);
         let soft = compliance.div(slope);
@@ -337,6 +336,18 @@ impl FollowLaws<'_> {
             at.store(gain(weight * L::splat(damped), soft * L::splat(per_dt2), passes), self.to.gain);
         }
     }
+}
+
+#[inline(always)]
+fn column(numbers: &[f32]) -> ReadColumn<'_> {
+    ReadColumn::new(numbers)
+}
+
+/// Strain of links of some vectors.
+#[inline(always)]
+fn strain<L: Numbers>(d: V3<L>, per_rest: L) -> L {
+    let length2 = d.dot(d);
+    length2 * reciprocal_root(length2) * per_rest - L::splat(1.0)
 }
 
 /// Slope and offset at a strain, given knees and slopes below and above.

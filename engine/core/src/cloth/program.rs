@@ -37,10 +37,10 @@ pub enum Stage {
     StiffBendingRecords(u32),
     /// The forces of such a stage.
     StiffBending(u32),
-    /// What links are in this substep, by the strain that they have.
-    LinkLaws,
     /// Gravity, air, wind; skinned particles move on.
     Predict,
+    /// What links are in this substep, by the strain that they had and are about to have.
+    LinkLaws,
     /// A family of fibers along the bias.
     Diagonals(u16),
     /// The particles' records, for the links that follow.
@@ -154,9 +154,8 @@ pub fn constraints(layout: &Layout, quality: Quality) -> Box<[Stage]> {
     let shear = || numbered(layout.shear.tuples.sets.len(), Stage::Shear);
     let wefts = || numbered(layout.weft.tuples.sets.len(), Stage::Weft);
     let fibers = || numbered(layout.crossing.sets.len(), Stage::Crossing).chain([Stage::Fibers]);
-    let mut stages = Vec::new();
+    let mut stages = vec![Stage::Predict];
     stages.extend(layout.laws.acts().then_some(Stage::LinkLaws));
-    stages.push(Stage::Predict);
     stages.extend(numbered(layout.diagonals.families.len(), Stage::Diagonals));
     stages.extend(shear());
     stages.extend(wefts().chain(fibers()));

@@ -5,9 +5,11 @@ use std::path::PathBuf;
 use serde::Serialize;
 use toile_assets::fabric::Fabric;
 use toile_assets::put_line;
+use toile_engine::cloth::Quality;
 use toile_perf::drape::{CusickRow, SPACINGS_MM, cusick};
 use toile_view::contact_sheet::contact_sheet;
 
+use crate::arguments::quality;
 use crate::exit::AppError;
 use crate::output::OutputFolder;
 use crate::pictures::write_png;
@@ -21,9 +23,12 @@ use crate::terminal::{self, Words};
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(after_help = "Example: three fabrics, with pictures\n  toile bench drape --fabric cotton-broad --fabric wool-tropical --fabric polyester-faille --pictures drape")]
 pub(crate) struct DrapeArgs {
-    /// Built-in fabric to drape; may be given again (default: all)
+    /// Built-in fabric to drape; may be given again (default: all that do not hang as another)
     #[arg(long, value_name = "NAME")]
     fabric: Vec<String>,
+    /// How much of the cloth is solved in a substep
+    #[arg(long, value_name = "Q", value_parser = quality(), default_value = "shop")]
+    quality: Quality,
     /// Folder for a picture of each fabric at 5 mm
     #[arg(long, value_name = "DIR")]
     pictures: Option<PathBuf>,
@@ -48,14 +53,11 @@ const COLUMNS: usize = 4;
 /// A fabric that is not built in, a folder that cannot be written.
 pub(crate) fn run(args: &DrapeArgs) -> Result<(), AppError> {
     let words = Words::new(args.json);
-    let names: Vec<&str> =
-        if args.fabric.is_empty() { Fabric::names() } else { args.fabric.iter().map(String::as_str).collect() };
-    let fabrics = names.iter().map(|name| Fabric::built_in(name)).collect::<Result<Vec<_>, _>>();
     let mut rows = Vec::new();
-    for fabric in fabrics.map_err(AppError::input)? {
+    for fabric in fabrics(&args.fabric)? {
         for spacing in SPACINGS_MM {
             let drawn = args.pictures.is_some() && spacing == SPACINGS_MM[SPACINGS_MM.len() - 1];
-            rows.push(cusick(&fabric, spacing, drawn).map_err(AppError::internal)?);
+            rows.push(cusick(&fabric, spacing, args.quality, drawn).map_err(AppError::internal)?);
         }
         words.print_line(&fabric.name);
     }
@@ -69,6 +71,29 @@ pub(crate) fn run(args: &DrapeArgs) -> Result<(), AppError> {
     terminal::print(&table(&rows))
 }
 
+/// Those asked for; else the built-in ones, of each that hangs otherwise than those before it.
+fn fabrics(names: &[String]) -> Result<Vec<Fabric>, AppError> {
+    if !names.is_empty() {
+        return names.iter().map(|name| Fabric::built_in(name).map_err(AppError::input)).collect();
+    }
+    let mut kept: Vec<Fabric> = Vec::new();
+    for fabric in Fabric::all().map_err(AppError::internal)? {
+        if kept.iter().all(|other| !hangs_alike(other, &fabric)) {
+            kept.push(fabric);
+        }
+    }
+    Ok(kept)
+}
+
+/// Whether two fabrics differ in their looks alone.
+fn hangs_alike(a: &Fabric, b: &Fabric) -> bool {
+    let figures = |f: &Fabric| {
+        let bending = [f.bend_warp_un_m, f.bend_weft_un_m, f.bend_bias_un_m.unwrap_or(-1.0)];
+        ([f.density_kg_m2, f.stretch_warp_n_m, f.stretch_weft_n_m, f.shear_n_m], bending, f.hysteresis, f.stretch)
+    };
+    figures(a) == figures(b)
+}
+
 fn draw(folder: &std::path::Path, rows: &[CusickRow]) -> Result<Vec<PathBuf>, AppError> {
     let mut out = OutputFolder::prepare(folder)?;
     let drawn: Vec<_> = rows.iter().filter_map(|row| Some((row, row.picture.as_ref()?))).collect();
@@ -77,7 +102,7 @@ fn draw(folder: &std::path::Path, rows: &[CusickRow]) -> Result<Vec<PathBuf>, Ap
     let (images, captions): (Vec<_>, Vec<&str>) =
         drawn.iter().map(|(_, image)| *image).zip(captions.iter().map(String::as_str)).unzip();
     write_png(&mut out, "drape.png", &contact_sheet(&images, COLUMNS.min(images.len()), &captions))?;
-    out.commit()
+    Ok(out.commit()?)
 }
 
 /// A line a fabric: the coefficient at each spacing, and what it is held against.

@@ -77,7 +77,7 @@ fn draw(folder: &std::path::Path, study: &TableclothStudy) -> Result<Vec<PathBuf
     let images: Vec<_> = study.rows.iter().filter_map(|row| row.picture.as_ref()).collect();
     let captions: Vec<&str> = captions.iter().map(String::as_str).collect();
     write_png(&mut out, "tablecloth.png", &contact_sheet(&images, columns, &captions))?;
-    out.commit()
+    Ok(out.commit()?)
 }
 
 fn table(study: &TableclothStudy) -> String {
