@@ -20,7 +20,7 @@ use toile_assets::garment::link_laws::LawTable;
 
 use super::links::{Passes, gain};
 use super::state::ParticleColumns;
-use crate::lanes::{Kernel, Lanes, MOST, Numbers, ReadColumn, Readable, Store, V3, WriteColumn, reciprocal_root};
+use crate::lanes::{Kernel, Lanes, Mask, MOST, Numbers, ReadColumn, Readable, Store, V3, WriteColumn, reciprocal_root};
 
 /// Kinds of links, in the order of `garment::link_laws::LinkLaws`.
 pub const KINDS: usize = 5;
@@ -142,6 +142,8 @@ pub struct LawColumns<'a> {
     pub compliance: WriteColumn<'a>,
     /// Gain, of links that are solved by Gauss-Seidel.
     pub gain: WriteColumn<'a>,
+    /// Least tension that they may come to, over the square of a substep (N s2): what a thread bears that is pushed together.
+    pub least: WriteColumn<'a>,
 }
 
 /// Columns of each kind, in one store.
@@ -153,14 +155,14 @@ pub struct LawState {
 }
 
 /// Columns of a kind.
-const COLUMNS: usize = 4;
+const COLUMNS: usize = 5;
 
 impl LawState {
     /// Of links that were never deformed. At load.
     pub fn new(layout: &Layout) -> Self {
         let lens = layout.laws.tables().map(|t| t.len().next_multiple_of(MOST));
         let mut state = Self { numbers: Store::zeros(COLUMNS * lens.iter().sum::<usize>()), lens };
-        // Places of no link, where a fiber has ended, stay as they were baked.
+        // Places of no link, where a fiber has ended, stay as they were baked, and carry what they like.
         let baked = |kind: usize| match kind {
             0 => [&layout.diagonals.rest, &layout.diagonals.compliance],
             SHEAR => [&layout.shear.rest, &layout.shear.compliance],
@@ -169,7 +171,8 @@ impl LawState {
             _ => [&layout.crossing.rest, &layout.crossing.compliance],
         };
         for kind in (0..KINDS).filter(|&kind| lens[kind] > 0) {
-            let first = state.first(kind);
+            let (first, len) = (state.first(kind), lens[kind]);
+            state.numbers.as_mut()[first + 4 * len..][..len].fill(NO_LEAST);
             for (column, values) in (1..).zip(baked(kind)) {
                 state.numbers.as_mut()[first + column * lens[kind]..][..values.len()].copy_from_slice(values);
             }
@@ -187,7 +190,8 @@ impl LawState {
         let all = self.numbers.column();
         std::array::from_fn(|kind| {
             let column = |k: usize| all.part(firsts[kind] + k * lens[kind], lens[kind]);
-            LawColumns { sticks: column(0), rest: column(1), compliance: column(2), gain: column(3) }
+            let [sticks, rest, compliance, gain, least] = [0, 1, 2, 3, 4].map(column);
+            LawColumns { sticks, rest, compliance, gain, least }
         })
     }
 
@@ -211,16 +215,17 @@ impl LawState {
     }
 }
 
-/// How the gain of links is made: 1 / dt^2 (1/s2), 1 + gamma, how often they are solved.
+/// How the gain of links is made.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LawGain {
-    /// 1 / dt^2 (1/s2).
-    pub per_dt2: f32,
     /// 1 and the damping time over the substep (1).
     pub damped: f32,
     /// How often they are solved.
     pub passes: Passes,
 }
+
+/// A tension that nothing comes to (N s2).
+pub const NO_LEAST: f32 = -1e20;
 
 /// One owner's links of one kind.
 pub struct FollowLaws<'a> {
@@ -236,6 +241,8 @@ pub struct FollowLaws<'a> {
     pub baked: [&'a [f32]; 2],
     /// What they are now.
     pub to: LawColumns<'a>,
+    /// 1 / dt^2 (1/s2).
+    pub per_dt2: f32,
     /// Gain to make, of links that are solved by Gauss-Seidel.
     pub gain: Option<LawGain>,
 }
@@ -326,14 +333,17 @@ impl FollowLaws<'_> {
         let above = [at.load(column(&table.upper)), at.load(column(&table.upper_slope))];
         let [slope, offset] = slope_at(strain(has, per_rest), below, above);
         let (stuck, holds) = (at.load::<L>(self.to.sticks), at.load::<L>(column(&table.friction)));
-        let [stuck, sticks, keeps] = rubbed(strain(had, per_rest), stuck, holds);
+        let had = strain(had, per_rest);
+        let [stuck, sticks, keeps, rubs] = rubbed(had, stuck, holds);
         at.store(stuck, self.to.sticks);
+        let stiff = rest.div(compliance * L::splat(self.per_dt2));
+        at.store(least(had, below, rubs, stiff), self.to.least);
         let (slope, offset) = (slope + sticks, offset + keeps);
         let soft = compliance.div(slope);
         at.store(rest * (one + offset.div(slope)), self.to.rest);
         at.store(soft, self.to.compliance);
-        if let Some(LawGain { per_dt2, damped, passes }) = self.gain {
-            at.store(gain(weight * L::splat(damped), soft * L::splat(per_dt2), passes), self.to.gain);
+        if let Some(LawGain { damped, passes }) = self.gain {
+            at.store(gain(weight * L::splat(damped), soft * L::splat(self.per_dt2), passes), self.to.gain);
         }
     }
 }
@@ -350,19 +360,29 @@ fn strain<L: Numbers>(d: V3<L>, per_rest: L) -> L {
     length2 * reciprocal_root(length2) * per_rest - L::splat(1.0)
 }
 
-/// Slope and offset at a strain, given knees and slopes below and above.
+/// Least tension of links that give way below their lower knee, of a strain, with what their friction holds, given their stiffness
+/// over the square of the substep: what is pushed on beyond it is not resisted. As a slope it would have to change from pass to
+/// pass: a link that goes slack while it is solved, or taut, would have the wrong one, and gain energy.
+#[inline(always)]
+fn least<L: Numbers>(strain: L, [lower, below]: [L; 2], rubs: L, stiff: L) -> L {
+    let further = (strain - lower).min(L::splat(0.0));
+    let bears = (lower + below * further + rubs) * stiff;
+    bears.select(below.lt(L::splat(1.0)), L::splat(NO_LEAST))
+}
+
+/// Slope and offset at a strain, given knees and slopes below and above; a slope below that is less than 1 is [`least`]'s.
 #[inline(always)]
 fn slope_at<L: Numbers>(strain: L, [lower, below]: [L; 2], [upper, above]: [L; 2]) -> [L; 2] {
     let one = L::splat(1.0);
-    let (long, short) = (upper.lt(strain), strain.lt(lower));
+    let (long, short) = (upper.lt(strain), strain.lt(lower).and(one.lt(below)));
     let slope = above.select(long, below.select(short, one));
     let knee = upper.select(long, lower.select(short, L::splat(0.0)));
     [slope, knee * (slope - one)]
 }
 
-/// Where a link sticks after it was strained so far, and what its friction adds to slope and offset.
+/// Where a link sticks after it was strained so far, what its friction adds to slope and offset, and what it holds.
 #[inline(always)]
-fn rubbed<L: Numbers>(strain: L, stuck: L, holds: L) -> [L; 3] {
+fn rubbed<L: Numbers>(strain: L, stuck: L, holds: L) -> [L; 4] {
     let (zero, sticking) = (L::splat(0.0), L::splat(STICKING as f32));
     let reach = holds * L::splat((1.0 / STICKING) as f32);
     let off = strain - stuck;
@@ -373,7 +393,7 @@ fn rubbed<L: Numbers>(strain: L, stuck: L, holds: L) -> [L; 3] {
     let (rubs, slipping) = (zero.lt(holds), zero.lt(far));
     let slope = zero.select(slipping, sticking.select(rubs, zero));
     let offset = (-(held * sticking)).select(slipping, (stuck * sticking).select(rubs, zero));
-    [stuck, slope, offset]
+    [stuck, slope, offset, held * sticking]
 }
 
 /// `n <= N` numbers side by side.

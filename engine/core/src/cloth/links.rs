@@ -7,7 +7,7 @@
 
 use toile_assets::garment::layout::{ConstraintRun, ConstraintSet, Links, Zigzag};
 
-use super::link_laws::LawColumns;
+use super::link_laws::{LawColumns, NO_LEAST};
 use super::state::{self, ParticleColumns};
 use crate::lanes::{Kernel, Lanes, MOST, Numbers, ReadColumn, Readable, Two, V3, WriteColumn, reciprocal_root};
 
@@ -77,6 +77,8 @@ pub struct LinkColumns<'a> {
     pub gain: ReadColumn<'a>,
     /// Inverse stiffness (m/N) `[places]`.
     pub compliance: ReadColumn<'a>,
+    /// Least tension that each may come to (N s2) `[places]`; nothing where they push as they pull.
+    pub least: Option<ReadColumn<'a>>,
     /// Whether `rest` is a length.
     pub lengths: bool,
 }
@@ -88,14 +90,16 @@ impl<'a> LinkColumns<'a> {
             rest: ReadColumn::new(if soft { &links.rest } else { &gains.per_rest2 }),
             gain: ReadColumn::new(&gains.gain),
             compliance: ReadColumn::new(&links.compliance),
+            least: None,
             lengths: soft,
         }
     }
 
     /// As their laws have them.
     pub fn lawful(law: LawColumns<'a>) -> Self {
-        let [rest, gain, compliance] = [law.rest, law.gain, law.compliance].map(WriteColumn::to_read);
-        Self { rest, gain, compliance, lengths: true }
+        let [rest, gain, compliance, least] =
+            [law.rest, law.gain, law.compliance, law.least].map(WriteColumn::to_read);
+        Self { rest, gain, compliance, least: Some(least), lengths: true }
     }
 }
 
@@ -159,8 +163,11 @@ impl SolveLinks<'_> {
             let first = share.loose.start as usize + k;
             let (at, number) = (share.loose_at as usize + k, share.loose_serial as usize + k);
             let slack = match self.tension.filter(|_| SOFT) {
-                Some((t, per_dt2)) => part::<L>(t, number, n) * part(soft, at, n) * L::splat(per_dt2),
-                None => L::splat(0.0),
+                Some((t, per_dt2)) => {
+                    let tension = part::<L>(t, number, n);
+                    Slack { gives: tension * part(soft, at, n) * L::splat(per_dt2), least: self.least::<L>(at, n) - tension }
+                }
+                None => Slack::none(),
             };
             let pull = self.listed::<L, SOFT>(&loose[first..first + n], [rest, gain], at, slack);
             self.count::<L, SOFT>(pull, number, n);
@@ -324,11 +331,21 @@ impl SolveLinks<'_> {
 
     /// What `n` links of a run give by their compliance under the tension that they have (m).
     #[inline(always)]
-    fn slack<L: Numbers, const SOFT: bool>(&self, run: &ConstraintRun<2>, t: usize, n: usize) -> L {
-        let Some((tension, per_dt2)) = self.tension.filter(|_| SOFT) else { return L::splat(0.0) };
+    fn slack<L: Numbers, const SOFT: bool>(&self, run: &ConstraintRun<2>, t: usize, n: usize) -> Slack<L> {
+        let Some((tension, per_dt2)) = self.tension.filter(|_| SOFT) else { return Slack::none() };
         let (soft, at) = (self.parameters.compliance, run.place(t as u32));
         let soft = if run.alike { L::splat(soft.get(at)) } else { part(soft, at, n) };
-        part::<L>(tension, run.serial as usize + t, n) * soft * L::splat(per_dt2)
+        let tension = part::<L>(tension, run.serial as usize + t, n);
+        Slack { gives: tension * soft * L::splat(per_dt2), least: self.least::<L>(at, n) - tension }
+    }
+
+    /// Least tension of `n` links from a place on; links that have one are not alike.
+    #[inline(always)]
+    fn least<L: Numbers>(&self, at: usize, n: usize) -> L {
+        match self.parameters.least {
+            Some(least) => part(least, at, n),
+            None => L::splat(NO_LEAST),
+        }
     }
 
     /// Adds to the tension of links.
@@ -346,7 +363,7 @@ impl SolveLinks<'_> {
         links: &[[u32; 2]],
         [rest, gain]: [ReadColumn<'_>; 2],
         at: usize,
-        slack: L,
+        slack: Slack<L>,
     ) -> L {
         let c = &self.columns;
         let n = links.len();
@@ -375,7 +392,7 @@ impl SolveLinks<'_> {
         &self,
         [a, b]: [usize; 2],
         parameters: [L; 4],
-        slack: L,
+        slack: Slack<L>,
         n: usize,
     ) -> L {
         let [rest, gain, wa, wb] = parameters;
@@ -394,6 +411,23 @@ impl SolveLinks<'_> {
     }
 }
 
+/// What links do under the tension that they have.
+#[derive(Clone, Copy)]
+pub struct Slack<L> {
+    /// What they give by their compliance (m).
+    pub gives: L,
+    /// Least growth of the tension (N s2): it may not fall below what they bear when pushed together.
+    pub least: L,
+}
+
+impl<L: Numbers> Slack<L> {
+    /// Of links that start from no tension and push as they pull.
+    #[inline(always)]
+    pub fn none() -> Self {
+        Self { gives: L::splat(0.0), least: L::splat(NO_LEAST) }
+    }
+}
+
 /// What is known of links side by side.
 #[derive(Clone, Copy)]
 pub struct LinkParameters<L> {
@@ -401,8 +435,8 @@ pub struct LinkParameters<L> {
     pub rest: L,
     /// Gain ([`LinkGains::gain`]).
     pub gain: L,
-    /// What they give by their compliance under the tension that they have (m).
-    pub slack: L,
+    /// What they give under the tension that they have, and by how much it may fall.
+    pub slack: Slack<L>,
     /// Inverse masses of both ends (1/kg).
     pub weights: [L; 2],
 }
@@ -420,11 +454,11 @@ pub fn push<L: Numbers, const SOFT: bool>(
     }
     let length2 = d.dot(d);
     let inverse = reciprocal_root(length2);
-    let mut stretch = length2 * inverse - rest - slack;
+    let mut stretch = length2 * inverse - rest - slack.gives;
     if let Some((moved, gamma)) = moved {
         stretch = stretch + d.dot(moved) * inverse * L::splat(gamma);
     }
-    let by = stretch * gain;
+    let by = (stretch * gain).max(slack.least);
     let pull = by * inverse;
     ([d * (pull * weights[0]), d * (pull * weights[1])], by)
 }

@@ -283,7 +283,7 @@ impl OwnerShare<'_, '_> {
     fn link_laws(&self) {
         let (work, p) = (self.work, self.work.prepared);
         let layout = work.layout();
-        let gain = |passes| Some(LawGain { per_dt2: (p.dt * p.dt).recip(), damped: 1.0 + p.gamma, passes });
+        let gain = |passes| Some(LawGain { damped: 1.0 + p.gamma, passes });
         let baked = [
             [&layout.diagonals.rest, &layout.diagonals.compliance],
             [&layout.shear.rest, &layout.shear.compliance],
@@ -300,6 +300,7 @@ impl OwnerShare<'_, '_> {
                 table,
                 baked: baked[kind].map(|c| &**c),
                 to: self.columns.laws[kind],
+                per_dt2: (p.dt * p.dt).recip(),
                 gain: gains[kind],
             });
         }
@@ -378,6 +379,7 @@ impl OwnerShare<'_, '_> {
             columns: self.columns.particles,
             fibers,
             links: self.parameters(link_laws::FIBERS, [&fibers.rest, &fibers.compliance]),
+            least: (!work.layout().laws.fibers.is_empty()).then(|| self.columns.laws[link_laws::FIBERS].least.to_read()),
             owner: self.owner,
             scratch: self.columns.scratch[self.owner],
             per_dt2: (p.dt * p.dt).recip(),

@@ -98,6 +98,7 @@ impl<'a> Twin<'a> {
                         columns,
                         fibers: &layout.fibers,
                         links: [&layout.fibers.rest, &layout.fibers.compliance].map(|c| ReadColumn::new(c)),
+                        least: None,
                         owner,
                         scratch: scratch.column(),
                         per_dt2,
