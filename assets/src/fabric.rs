@@ -338,7 +338,11 @@ impl Fabric {
     /// Whether its links have more than one slope, or rub.
     pub fn has_link_laws(&self) -> bool {
         let StretchCurves { warp, weft } = self.stretch;
-        warp.is_some() || weft.is_some() || self.shear_lock.is_some() || self.hysteresis.shear_n_m > 0.0 || self.buckling
+        warp.is_some()
+            || weft.is_some()
+            || self.shear_lock.is_some()
+            || self.hysteresis.shear_n_m > 0.0
+            || self.buckling
     }
 
     /// Whether its shear or its stretch rubs.

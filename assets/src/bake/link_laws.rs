@@ -25,6 +25,16 @@ pub struct LawMaker {
 const LEANS: f32 = 0.05;
 
 impl LawMaker {
+    /// Whether links along the bias, or along threads, have more than one slope at all.
+    pub fn acts(&self, bias: bool) -> bool {
+        let f = &self.fabric;
+        if bias {
+            f.shear_lock.is_some() || f.hysteresis.shear_n_m > 0.0
+        } else {
+            f.stretch.warp.is_some() || f.stretch.weft.is_some() || f.buckling
+        }
+    }
+
     /// The law of an edge as part of a fiber of the given direction.
     pub fn law(&self, edge: &Edge, fiber: Direction) -> Law {
         let f = &self.fabric;

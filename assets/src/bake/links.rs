@@ -30,7 +30,7 @@ pub struct BakeInput<'a> {
     pub order: &'a ParticleOrder,
     /// Inverse mass of each vertex (1/kg).
     pub weights: &'a [f32],
-    /// What links do beyond one slope, where the fabric says so. Then none is laid out as like another: each has a state.
+    /// What links do beyond one slope, where the fabric says so.
     pub laws: Option<&'a LawMaker>,
 }
 
@@ -40,9 +40,14 @@ impl BakeInput<'_> {
         self.weights[self.order.source[particle as usize] as usize]
     }
 
+    /// Whether links along the bias, or along threads, have laws: then none is like another, because each has a state.
+    fn lawful(&self, bias: bool) -> bool {
+        self.laws.is_some_and(|maker| maker.acts(bias))
+    }
+
     /// Laws of some edges, each as part of a fiber of a direction; nothing where one slope is all.
-    fn laws<'e>(&self, edges: impl Iterator<Item = (Option<&'e Edge>, Direction)> + Clone) -> LawTable {
-        let Some(maker) = self.laws else { return LawTable::default() };
+    fn laws<'e>(&self, bias: bool, edges: impl Iterator<Item = (Option<&'e Edge>, Direction)> + Clone) -> LawTable {
+        let Some(maker) = self.laws.filter(|maker| maker.acts(bias)) else { return LawTable::default() };
         LawTable::new(edges.map(|(edge, role)| edge.map_or(ONE_SLOPE, |e| maker.law(e, role))))
     }
 }
@@ -81,8 +86,8 @@ pub fn lay_out(baking: &BakeInput<'_>) -> Layout {
     let (diagonals, leaning_laws, whole) = diagonals(baking, &shear, baking.chains.iter().filter(|f| leans(f)));
     let shear: Vec<_> = shear.into_iter().filter(|(i, _)| !whole[*i]).collect();
     let stencils = bending::stencils(baking.shape, baking.edges, baking.fabric);
-    let (shear, shear_laws) = links(baking, &shear);
-    let (weft, weft_laws) = links(baking, &of(false));
+    let (shear, shear_laws) = links(baking, true, &shear);
+    let (weft, weft_laws) = links(baking, false, &of(false));
     let (fibers, fiber_laws) = fibers(baking, &chooser);
     let (crossing, crossing_laws) = lists(baking, lists_of);
     let laws = LinkLaws {
@@ -123,7 +128,7 @@ fn same(a: f32, b: f32) -> bool {
 }
 
 /// Links of single edges, each with the direction of the fiber that it belongs to.
-fn links(baking: &BakeInput<'_>, edges: &[(usize, Direction)]) -> (Links, LawTable) {
+fn links(baking: &BakeInput<'_>, bias: bool, edges: &[(usize, Direction)]) -> (Links, LawTable) {
     let edge = |i: usize| &baking.edges[edges[i].0];
     let soft = |i: usize| compliance(baking.fabric, edge(i), edges[i].1);
     let particle = |v: u32| baking.order.particle[v as usize];
@@ -135,13 +140,13 @@ fn links(baking: &BakeInput<'_>, edges: &[(usize, Direction)]) -> (Links, LawTab
         .collect();
     let weight = |i: usize, k: usize| baking.weight(constraints[i].1[k]);
     let alike = |i: usize, j: usize| {
-        baking.laws.is_none()
+        !baking.lawful(bias)
             && same(edge(i).rest, edge(j).rest)
             && same(soft(i), soft(j))
             && (0..2).all(|k| same(weight(i, k), weight(j, k)))
     };
     let (tuples, laid) = runs::lay_out(&constraints, &baking.order.owner, true, &alike);
-    let laws = baking.laws(laid.places.iter().map(|&i| (Some(edge(i)), edges[i].1)));
+    let laws = baking.laws(bias, laid.places.iter().map(|&i| (Some(edge(i)), edges[i].1)));
     let links = Links {
         tuples,
         rest: laid.places.iter().map(|&i| edge(i).rest).collect(),
@@ -175,14 +180,14 @@ fn diagonals<'a>(
     let alike = |i: usize, j: usize| {
         let ([a, b], [c, d]) = (weights(i), weights(j));
         let same_masses = same(a, b) && same(a, c) && same(a, d);
-        baking.laws.is_none() && same(edge(i).rest, edge(j).rest) && same(soft(i), soft(j)) && same_masses
+        !baking.lawful(true) && same(edge(i).rest, edge(j).rest) && same(soft(i), soft(j)) && same_masses
     };
     let (mut laid, places, numbers) = diagonals::lay_out(&fibers, &baking.order.owner, &alike);
     laid.rest = places.iter().map(|&i| edge(i).rest).collect();
     laid.compliance = places.iter().map(|&i| soft(i)).collect();
     let mut taken = vec![false; baking.edges.len()];
     numbers.iter().for_each(|&i| taken[i] = true);
-    let laws = baking.laws(places.iter().map(|&i| (Some(edge(i)), Direction::Bias)));
+    let laws = baking.laws(true, places.iter().map(|&i| (Some(edge(i)), Direction::Bias)));
     (laid, laws, taken)
 }
 
@@ -199,7 +204,7 @@ fn fibers(baking: &BakeInput<'_>, chooser: &SolverChoice) -> (Fibers, LawTable) 
             let first = baking.order.particle[pieces[0].vertices[row] as usize];
             rows.push(BundleRow { first, lanes: reach(row) });
         }
-        let alike = baking.laws.is_none() && pieces.iter().all(|p| fibers_alike(baking, pieces[0], p));
+        let alike = !baking.lawful(false) && pieces.iter().all(|p| fibers_alike(baking, pieces[0], p));
         let solver = chooser.choose(pieces[0]);
         for link in 0..pieces[0].edges.len() {
             for piece in if alike { &pieces[..1] } else { &pieces[..] } {
@@ -219,7 +224,7 @@ fn fibers(baking: &BakeInput<'_>, chooser: &SolverChoice) -> (Fibers, LawTable) 
             alike,
         });
     }
-    let laws = baking.laws(laid.into_iter().map(|edge| (edge, Direction::Warp)));
+    let laws = baking.laws(false, laid.into_iter().map(|edge| (edge, Direction::Warp)));
     (Fibers { bundles: bundles.into(), rows: rows.into(), links, rest: rest.into(), compliance: soft.into() }, laws)
 }
 
@@ -256,7 +261,8 @@ fn lists(baking: &BakeInput<'_>, mut left: Vec<(&Fiber, Solver)>) -> (FiberLists
         });
         out.set(baking, &set);
     }
-    let laws = baking.laws(out.laid.iter().map(|(i, role)| (i.map(|i| &baking.edges[i as usize]), *role)));
+    let bias = out.laid.iter().all(|(_, role)| *role == Direction::Bias);
+    let laws = baking.laws(bias, out.laid.iter().map(|(i, role)| (i.map(|i| &baking.edges[i as usize]), *role)));
     let lists = FiberLists {
         lists: out.lists.into(),
         sets: out.sets.into(),

@@ -50,9 +50,11 @@ impl TryFrom<CurveFile> for StretchCurve {
             (Some(knee_percent), Some(knee_n_m), Some(beyond_n_m), None) => {
                 Ok(Self { knee_percent, knee_n_m, beyond_n_m, hysteresis_n_m })
             }
-            (None, None, None, Some(points)) => Self::through(&points)
-                .map(|curve| Self { hysteresis_n_m, ..curve })
-                .ok_or_else(|| "a table of stretch needs four points or more, strain (%) and load (N/m), both rising".into()),
+            (None, None, None, Some(points)) => {
+                Self::through(&points).map(|curve| Self { hysteresis_n_m, ..curve }).ok_or_else(|| {
+                    "a table of stretch needs four points or more, strain (%) and load (N/m), both rising".into()
+                })
+            }
             _ => Err("a curve of stretch has knee_percent, knee_n_m and beyond_n_m, or a table".into()),
         }
     }
@@ -159,7 +161,8 @@ fn fit(points: &[[f64; 2]], knee: f64) -> Option<[f64; 4]> {
     }
     let det = m[0] * m[2] - m[1] * m[1];
     let [below, beyond] = [(r[0] * m[2] - r[1] * m[1]) / det, (r[1] * m[0] - r[0] * m[1]) / det];
-    let error = points.iter().map(|&[e, load]| (below * e.min(knee) + beyond * (e - knee).max(0.0) - load).powi(2)).sum();
+    let error =
+        points.iter().map(|&[e, load]| (below * e.min(knee) + beyond * (e - knee).max(0.0) - load).powi(2)).sum();
     (det > 1e-12 * m[0] * m[2] && below > 0.0 && beyond > 0.0).then_some([error, knee, below, beyond])
 }
 

@@ -29,13 +29,7 @@ impl LawTable {
     /// Of some links.
     pub fn new(laws: impl Iterator<Item = Law> + Clone) -> Self {
         let column = |k: usize| laws.clone().map(|law| law[k]).collect();
-        Self {
-            lower: column(0),
-            lower_slope: column(1),
-            upper: column(2),
-            upper_slope: column(3),
-            friction: column(4),
-        }
+        Self { lower: column(0), lower_slope: column(1), upper: column(2), upper_slope: column(3), friction: column(4) }
     }
 
     /// Places that it has.

@@ -167,8 +167,7 @@ fn table(fabric: &Fabric) -> Result<Colliders, DrapeError> {
     let below = -(EDGE_M as f32 + fabric.contact_offset_mm * 1e-3);
     let [low, high] = TABLE_M.map(DVec2::as_vec2);
     let corners = [[low.x, low.y], [high.x, low.y], [high.x, high.y], [low.x, high.y]];
-    let spheres =
-        corners.map(|[x, z]| RestSphere { bone: 0, centre: Vec3::new(x, below, z), radius: EDGE_M as f32 });
+    let spheres = corners.map(|[x, z]| RestSphere { bone: 0, centre: Vec3::new(x, below, z), radius: EDGE_M as f32 });
     let mut colliders = Colliders::new(&spheres, &[[0, 1], [1, 2], [2, 3], [3, 0]], false)?;
     colliders.place_spheres(&spheres.map(|s| s.centre.extend(s.radius)));
     Ok(colliders)
@@ -180,7 +179,8 @@ fn measured(run: Run, (finest, fine): &([usize; 2], [Vec<DVec3>; 2])) -> Tablecl
     for (k, (x, fine)) in seen.iter().zip(fine).enumerate() {
         let (mut all, mut hanging, mut count, mut max) = (0.0, 0.0, 0usize, 0.0f64);
         for (i, x) in x.iter().enumerate() {
-            let part = DVec2::new((i % (columns + 1)) as f64 / columns as f64, (i / (columns + 1)) as f64 / rows as f64);
+            let part =
+                DVec2::new((i % (columns + 1)) as f64 / columns as f64, (i / (columns + 1)) as f64 / rows as f64);
             let d = 100.0 * x.distance(between(*finest, fine, part));
             let p = CLOTH_M[0] + part * (CLOTH_M[1] - CLOTH_M[0]);
             all += d;

@@ -20,7 +20,7 @@ use toile_assets::garment::link_laws::LawTable;
 
 use super::links::{Passes, gain};
 use super::state::ParticleColumns;
-use crate::lanes::{Kernel, Lanes, Mask, MOST, Numbers, ReadColumn, Readable, Store, V3, WriteColumn, reciprocal_root};
+use crate::lanes::{Kernel, Lanes, MOST, Mask, Numbers, ReadColumn, Readable, Store, V3, WriteColumn, reciprocal_root};
 
 /// Kinds of links, in the order of `garment::link_laws::LinkLaws`.
 pub const KINDS: usize = 5;
@@ -74,7 +74,13 @@ impl LawRows {
         // Half of the links each: any would do, since each link is one's own.
         let all: u32 = rows.iter().map(|r| r.len).sum();
         let mut sum = 0;
-        let middle = rows.iter().take_while(|r| { sum += r.len; 2 * sum <= all }).count();
+        let middle = rows
+            .iter()
+            .take_while(|r| {
+                sum += r.len;
+                2 * sum <= all
+            })
+            .count();
         let half = loose[0].len().div_ceil(2).next_multiple_of(MOST).min(loose[0].len());
         let shares = [[0..middle, 0..half], [middle..rows.len(), half..loose[0].len()]];
         Self { rows: rows.into(), loose: loose.map(Into::into), shares }
@@ -83,7 +89,13 @@ impl LawRows {
     /// Of each kind that has laws.
     pub fn of(garment: &Garment) -> [Self; KINDS] {
         let layout = garment.layout();
-        let found = [bias(layout), tuples(&layout.shear), tuples(&layout.weft), fibers(&layout.fibers), lists(&layout.crossing)];
+        let found = [
+            bias(layout),
+            tuples(&layout.shear),
+            tuples(&layout.weft),
+            fibers(&layout.fibers),
+            lists(&layout.crossing),
+        ];
         let mut tables = layout.laws.tables().into_iter();
         found.map(|links| if tables.next().is_some_and(|t| !t.is_empty()) { Self::new(links) } else { Self::default() })
     }
@@ -144,6 +156,10 @@ pub struct LawColumns<'a> {
     pub gain: WriteColumn<'a>,
     /// Least tension that they may come to, over the square of a substep (N s2): what a thread bears that is pushed together.
     pub least: WriteColumn<'a>,
+    /// 1 over the rest length as baked (1/m); written at load.
+    pub per_rest: WriteColumn<'a>,
+    /// Rest length over compliance as baked: the force at a strain of 1 (N); written at load.
+    pub stiffness: WriteColumn<'a>,
 }
 
 /// Columns of each kind, in one store.
@@ -155,7 +171,7 @@ pub struct LawState {
 }
 
 /// Columns of a kind.
-const COLUMNS: usize = 5;
+const COLUMNS: usize = 7;
 
 impl LawState {
     /// Of links that were never deformed. At load.
@@ -173,8 +189,10 @@ impl LawState {
         for kind in (0..KINDS).filter(|&kind| lens[kind] > 0) {
             let (first, len) = (state.first(kind), lens[kind]);
             state.numbers.as_mut()[first + 4 * len..][..len].fill(NO_LEAST);
-            for (column, values) in (1..).zip(baked(kind)) {
-                state.numbers.as_mut()[first + column * lens[kind]..][..values.len()].copy_from_slice(values);
+            let [rest, compliance] = baked(kind);
+            for (at, (rest, compliance)) in rest.iter().zip(compliance.iter()).enumerate() {
+                let figures = [(1, *rest), (2, *compliance), (5, rest.recip()), (6, rest / compliance)];
+                figures.into_iter().for_each(|(column, v)| state.numbers.as_mut()[first + column * len + at] = v);
             }
         }
         state
@@ -190,8 +208,8 @@ impl LawState {
         let all = self.numbers.column();
         std::array::from_fn(|kind| {
             let column = |k: usize| all.part(firsts[kind] + k * lens[kind], lens[kind]);
-            let [sticks, rest, compliance, gain, least] = [0, 1, 2, 3, 4].map(column);
-            LawColumns { sticks, rest, compliance, gain, least }
+            let [sticks, rest, compliance, gain, least, per_rest, stiffness] = [0, 1, 2, 3, 4, 5, 6].map(column);
+            LawColumns { sticks, rest, compliance, gain, least, per_rest, stiffness }
         })
     }
 
@@ -328,19 +346,23 @@ impl FollowLaws<'_> {
     fn follow<L: Lanes>(&self, at: impl Places, [had, has]: [V3<L>; 2], weight: L) {
         let (table, one) = (self.table, L::splat(1.0));
         let (rest, compliance) = (at.load::<L>(column(self.baked[0])), at.load::<L>(column(self.baked[1])));
-        let per_rest = one.div(rest);
+        let per_rest = at.load::<L>(self.to.per_rest);
         let below = [at.load(column(&table.lower)), at.load(column(&table.lower_slope))];
         let above = [at.load(column(&table.upper)), at.load(column(&table.upper_slope))];
         let [slope, offset] = slope_at(strain(has, per_rest), below, above);
         let (stuck, holds) = (at.load::<L>(self.to.sticks), at.load::<L>(column(&table.friction)));
         let had = strain(had, per_rest);
+        // A thread that has given way does not rub: what was measured is friction of threads that are drawn.
+        let gives = had.lt(below[0]).and(below[1].lt(one));
+        let holds = L::splat(0.0).select(gives, holds);
         let [stuck, sticks, keeps, rubs] = rubbed(had, stuck, holds);
         at.store(stuck, self.to.sticks);
-        let stiff = rest.div(compliance * L::splat(self.per_dt2));
+        let stiff = at.load::<L>(self.to.stiffness) * L::splat(self.per_dt2.recip());
         at.store(least(had, below, rubs, stiff), self.to.least);
         let (slope, offset) = (slope + sticks, offset + keeps);
-        let soft = compliance.div(slope);
-        at.store(rest * (one + offset.div(slope)), self.to.rest);
+        let per_slope = one.div(slope);
+        let soft = compliance * per_slope;
+        at.store(rest * (one + offset * per_slope), self.to.rest);
         at.store(soft, self.to.compliance);
         if let Some(LawGain { damped, passes }) = self.gain {
             at.store(gain(weight * L::splat(damped), soft * L::splat(self.per_dt2), passes), self.to.gain);

@@ -97,8 +97,7 @@ impl<'a> LinkColumns<'a> {
 
     /// As their laws have them.
     pub fn lawful(law: LawColumns<'a>) -> Self {
-        let [rest, gain, compliance, least] =
-            [law.rest, law.gain, law.compliance, law.least].map(WriteColumn::to_read);
+        let [rest, gain, compliance, least] = [law.rest, law.gain, law.compliance, law.least].map(WriteColumn::to_read);
         Self { rest, gain, compliance, least: Some(least), lengths: true }
     }
 }
@@ -165,7 +164,10 @@ impl SolveLinks<'_> {
             let slack = match self.tension.filter(|_| SOFT) {
                 Some((t, per_dt2)) => {
                     let tension = part::<L>(t, number, n);
-                    Slack { gives: tension * part(soft, at, n) * L::splat(per_dt2), least: self.least::<L>(at, n) - tension }
+                    Slack {
+                        gives: tension * part(soft, at, n) * L::splat(per_dt2),
+                        least: self.least::<L>(at, n) - tension,
+                    }
                 }
                 None => Slack::none(),
             };

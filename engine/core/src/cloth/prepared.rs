@@ -90,8 +90,8 @@ impl Prepared {
             shear: LinkGains::new(&layout.shear),
             weft: LinkGains::new(&layout.weft),
             // Records hold what was baked, which laws change in each substep.
-            records: [&layout.shear, &layout.weft]
-                .map(|l| RecordLinks::of(l, &garment.inverse_mass).filter(|_| !layout.laws.acts())),
+            records: [(&layout.shear, &layout.laws.shear), (&layout.weft, &layout.laws.weft)]
+                .map(|(l, laws)| RecordLinks::of(l, &garment.inverse_mass).filter(|_| laws.is_empty())),
             matrix,
             friction,
             laws: LawRows::of(garment),
@@ -100,8 +100,12 @@ impl Prepared {
             stages: [ChebyshevStage::default(); stiff_bending::MAX_BENDING_STAGES as usize],
             stiff,
             load,
-            soft: [&layout.weft.compliance, &layout.fibers.compliance, &layout.crossing.compliance]
-                .map(|c| layout.laws.acts() || soft(c)),
+            soft: [
+                (&layout.weft.compliance, &layout.laws.weft),
+                (&layout.fibers.compliance, &layout.laws.fibers),
+                (&layout.crossing.compliance, &layout.laws.crossing),
+            ]
+            .map(|(compliance, laws)| !laws.is_empty() || soft(compliance)),
         }
     }
 

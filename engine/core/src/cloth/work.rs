@@ -379,7 +379,8 @@ impl OwnerShare<'_, '_> {
             columns: self.columns.particles,
             fibers,
             links: self.parameters(link_laws::FIBERS, [&fibers.rest, &fibers.compliance]),
-            least: (!work.layout().laws.fibers.is_empty()).then(|| self.columns.laws[link_laws::FIBERS].least.to_read()),
+            least: (!work.layout().laws.fibers.is_empty())
+                .then(|| self.columns.laws[link_laws::FIBERS].least.to_read()),
             owner: self.owner,
             scratch: self.columns.scratch[self.owner],
             per_dt2: (p.dt * p.dt).recip(),
@@ -432,14 +433,7 @@ impl OwnerShare<'_, '_> {
     }
 
     /// A set of links of one kind.
-    fn links(
-        &self,
-        links: &Links,
-        gains: &LinkGains,
-        kind: usize,
-        set: u16,
-        tension: Option<(WriteColumn<'_>, f32)>,
-    ) {
+    fn links(&self, links: &Links, gains: &LinkGains, kind: usize, set: u16, tension: Option<(WriteColumn<'_>, f32)>) {
         let (columns, owner, gamma) = (self.columns.particles, self.owner, self.work.prepared.gamma);
         let set = &links.tuples.sets[usize::from(set)];
         let parameters = if self.work.layout().laws.tables()[kind].is_empty() {

@@ -20,8 +20,7 @@ const REST_S: f64 = 6.0;
 const ROWS: usize = 32;
 
 /// Half of the strip hangs beyond the knee.
-const KNEE: StretchCurve =
-    StretchCurve { knee_percent: 1.0, knee_n_m: 1.0, beyond_n_m: 1_000.0, hysteresis_n_m: 0.0 };
+const KNEE: StretchCurve = StretchCurve { knee_percent: 1.0, knee_n_m: 1.0, beyond_n_m: 1_000.0, hysteresis_n_m: 0.0 };
 
 /// Loops: name, shear stiffness or curve.
 const SHEARED: [(&str, f64, f64); 2] = [("denim, tropical", 122.5, 4.915), ("wool suiting", 45.0, 1.0)];
@@ -123,11 +122,7 @@ fn read(branches: &Branches, at: [f64; 2]) -> [f64; 2] {
 }
 
 /// Loads a specimen by gravity (m/s2), `most` to `least` and back, and calls `deformed` with it and the gravity at each load.
-fn cycle(
-    specimen: &mut Specimen,
-    [least, most]: [f64; 2],
-    deformed: impl Fn(&Specimen, f64) -> [f64; 2],
-) -> Branches {
+fn cycle(specimen: &mut Specimen, [least, most]: [f64; 2], deformed: impl Fn(&Specimen, f64) -> [f64; 2]) -> Branches {
     let mut branches = [Vec::new(), Vec::new()];
     let mut load = |branch: Option<usize>, from: f64, to: f64| {
         for k in 1..=LOADS {

@@ -21,7 +21,9 @@ use crate::terminal::{self, Words};
 /// A round specimen of 30 cm lies on a disc of 18 cm; the drape coefficient is the part of the ring that its shadow covers. Read after
 /// five seconds, with what it changed by in the last two. Reported beside what was measured; nothing is fitted to it.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
-#[command(after_help = "Example: three fabrics, with pictures\n  toile bench drape --fabric cotton-broad --fabric wool-tropical --fabric polyester-faille --pictures drape")]
+#[command(
+    after_help = "Example: three fabrics, with pictures\n  toile bench drape --fabric cotton-broad --fabric wool-tropical --fabric polyester-faille --pictures drape"
+)]
 pub(crate) struct DrapeArgs {
     /// Built-in fabric to drape; may be given again (default: all that do not hang as another)
     #[arg(long, value_name = "NAME")]

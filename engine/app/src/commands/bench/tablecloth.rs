@@ -19,7 +19,9 @@ use crate::terminal::{self, Words};
 /// As the MIRAGES report measures it: the mean distance of the particles to the same points of the cloth, after 1.92 s and at rest.
 /// Theirs is to a real cloth, ours to the engine's own finest sampling. With friction and buckling, as far as the fabric has numbers.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
-#[command(after_help = "Example: as far as 1 cm, with a picture\n  toile bench tablecloth --finest 1 --pictures tablecloth")]
+#[command(
+    after_help = "Example: as far as 1 cm, with a picture\n  toile bench tablecloth --finest 1 --pictures tablecloth"
+)]
 pub(crate) struct TableclothArgs {
     /// Built-in fabric of the tablecloth
     #[arg(long, value_name = "NAME", default_value = "cotton-broad")]
@@ -55,7 +57,8 @@ pub(crate) fn run(args: &TableclothArgs) -> Result<(), AppError> {
     let fabric = Fabric::built_in(&args.fabric).map_err(AppError::input)?;
     let variants: Vec<&'static str> =
         VARIANTS.into_iter().filter(|v| args.variant.as_deref().is_none_or(|asked| asked == *v)).collect();
-    let study = tablecloth(&fabric, &variants, args.finest, &mut |done| words.print_line(done)).map_err(AppError::internal)?;
+    let study =
+        tablecloth(&fabric, &variants, args.finest, &mut |done| words.print_line(done)).map_err(AppError::internal)?;
     if study.rows.is_empty() {
         return Err(AppError::Usage("the coarsest sampling is 5 cm; give --finest 5 or less".into()));
     }
@@ -72,8 +75,11 @@ pub(crate) fn run(args: &TableclothArgs) -> Result<(), AppError> {
 fn draw(folder: &std::path::Path, study: &TableclothStudy) -> Result<Vec<PathBuf>, AppError> {
     let mut out = OutputFolder::prepare(folder)?;
     let columns = study.rows.chunk_by(|a, b| a.variant == b.variant).map(<[_]>::len).max().unwrap_or(1);
-    let captions: Vec<String> =
-        study.rows.iter().map(|row| format!("{}, {} cm: e {:.2} cm", row.variant, row.spacing_cm, row.error_cm[1])).collect();
+    let captions: Vec<String> = study
+        .rows
+        .iter()
+        .map(|row| format!("{}, {} cm: e {:.2} cm", row.variant, row.spacing_cm, row.error_cm[1]))
+        .collect();
     let images: Vec<_> = study.rows.iter().filter_map(|row| row.picture.as_ref()).collect();
     let captions: Vec<&str> = captions.iter().map(String::as_str).collect();
     write_png(&mut out, "tablecloth.png", &contact_sheet(&images, columns, &captions))?;

@@ -61,7 +61,7 @@ fn stretch(name: &'static str, curve: &StretchCurve) -> LoopKind {
         name,
         most: [0.0, 1.5 * knee],
         read: [0.4 * knee, 0.8 * knee],
-        symbols: ["E below", "width"],
+        symbols: ["E", "width"],
         unit: ["N/m", "N/m"],
         of_si: [1.0, 1.0],
         scale: [100.0, 1.0],
@@ -174,13 +174,13 @@ pub fn png(fabric: &Fabric) -> Result<Vec<u8>, AppError> {
 
 /// The loops as a drawing: bending above, shear and stretch below where they were measured.
 fn drawing(fabric: &Fabric) -> Drawing {
-    let [mut bent, shear, stretched] = laws(fabric);
-    if let [(_, _, warp), (_, _, weft)] = &bent[..]
-        && warp == weft
-    {
-        let (_, law, measured) = bent[0];
-        bent = vec![(bending("warp and weft"), law, measured)];
-    }
+    let [bent, shear, stretched] = laws(fabric);
+    let [bent, stretched] = [bent, stretched].map(|loops| match &loops[..] {
+        [(kind, warp, measured), (_, weft, _)] if warp == weft => {
+            vec![(LoopKind { name: "warp and weft", ..*kind }, *warp, *measured)]
+        }
+        _ => loops,
+    });
     let title = |what: &str| format!("{}: {what}", fabric.title);
     let axes = [
         ("bending", ["curvature (1/m)", "moment for a width (mN)"]),

@@ -48,7 +48,13 @@ fn what_links_are_carries_what_the_law_of_f64_says_at_every_width() {
             let mut state = LawState::new(&layout);
             let mut exact = [law(); LINKS as usize];
             for k in 0..60 {
-                let at = |i: u32| Vec3::new(0.3 * (i % LINKS) as f32, if i < LINKS { 0.0 } else { -REST * (1.0 + strain(i - LINKS, k) as f32) }, 0.0);
+                let at = |i: u32| {
+                    Vec3::new(
+                        0.3 * (i % LINKS) as f32,
+                        if i < LINKS { 0.0 } else { -REST * (1.0 + strain(i - LINKS, k) as f32) },
+                        0.0,
+                    )
+                };
                 let positions: Vec<Vec3> = (0..2 * LINKS).map(at).collect();
                 let mut particles = State::new(&positions, &[1.0; 2 * LINKS as usize]);
                 let to = state.columns()[WEFT];
@@ -71,7 +77,10 @@ fn what_links_are_carries_what_the_law_of_f64_says_at_every_width() {
                     let got = got.max(f64::from(to.least.get(i)) * 1e4);
                     // A link of 300 N/m and 1 cm carries 3 N a strain of 1 %, as cloth of 300 N/m does a metre wide.
                     let wanted = exact.force(e) * f64::from(REST) / (300.0 * f64::from(SOFT));
-                    assert!((got - wanted).abs() < 3e-4 * 300.0 * f64::from(REST), "{width} lanes, {i} in {k}: {got} for {wanted}");
+                    assert!(
+                        (got - wanted).abs() < 3e-4 * 300.0 * f64::from(REST),
+                        "{width} lanes, {i} in {k}: {got} for {wanted}"
+                    );
                 }
             }
         }
@@ -120,10 +129,8 @@ fn shear_force(garment: &Garment, state: &mut LawState, rows: &[LawRows; KINDS],
     let places: Vec<Vec3> = garment.start.iter().map(turned).collect();
     let mut particles = State::new(&places, &garment.inverse_mass);
     let layout = garment.layout();
-    let baked = [
-        [&layout.diagonals.rest, &layout.diagonals.compliance],
-        [&layout.shear.rest, &layout.shear.compliance],
-    ];
+    let baked =
+        [[&layout.diagonals.rest, &layout.diagonals.compliance], [&layout.shear.rest, &layout.shear.compliance]];
     let mut work = 0.0;
     for kind in [0, SHEAR].into_iter().filter(|&kind| !layout.laws.tables()[kind].is_empty()) {
         let to = state.columns()[kind];
@@ -144,7 +151,8 @@ fn shear_force(garment: &Garment, state: &mut LawState, rows: &[LawRows; KINDS],
             let place = |i: u32| places[i as usize].as_dvec3();
             let flat = |i: u32| garment.start[i as usize].as_dvec3();
             let (d, cut) = (place(b) - place(a), flat(b) - flat(a));
-            let carries = (d.length() - f64::from(to.rest.get(at as usize))) / f64::from(to.compliance.get(at as usize));
+            let carries =
+                (d.length() - f64::from(to.rest.get(at as usize))) / f64::from(to.compliance.get(at as usize));
             // How much longer it gets a radian, of the shape as cut.
             work += carries * cut.x * cut.y / cut.length();
         }
