@@ -18,7 +18,7 @@ use toile_assets::garment::Garment;
 use toile_assets::garment::layout::{FiberLists, Fibers, Layout, Links, OWNERS};
 use toile_assets::garment::link_laws::LawTable;
 
-use super::links::{Passes, gain};
+use super::link_gain::{NO_LEAST, Passes, gain};
 use super::state::ParticleColumns;
 use crate::lanes::{Kernel, Lanes, MOST, Mask, Numbers, ReadColumn, Readable, Store, V3, WriteColumn, reciprocal_root};
 
@@ -241,9 +241,6 @@ pub struct LawGain {
     /// How often they are solved.
     pub passes: Passes,
 }
-
-/// A tension that nothing comes to (N s2).
-pub const NO_LEAST: f32 = -1e20;
 
 /// One owner's links of one kind.
 pub struct FollowLaws<'a> {

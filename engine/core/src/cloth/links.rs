@@ -7,20 +7,10 @@
 
 use toile_assets::garment::layout::{ConstraintRun, ConstraintSet, Links, Zigzag};
 
-use super::link_laws::{LawColumns, NO_LEAST};
+use super::link_gain::{NO_LEAST, Passes, Slack, gain};
+use super::link_laws::LawColumns;
 use super::state::{self, ParticleColumns};
 use crate::lanes::{Kernel, Lanes, MOST, Numbers, ReadColumn, Readable, Two, V3, WriteColumn, reciprocal_root};
-
-/// How often a substep solves links.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Passes {
-    /// Once. A link that starts from no tension then carries C / ((w_a + w_b) + alpha / dt^2) at rest, too little by what
-    /// its own ends give; the denominator's greater part alone gives what its stiffness says, as long as that is within
-    /// what one substep carries, and never draws its ends past each other.
-    Once,
-    /// More often, or from the tension that it has.
-    Many,
-}
 
 /// What the settings make of links.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -56,16 +46,6 @@ impl LinkGains {
     pub fn bytes(&self) -> usize {
         4 * (self.gain.len() + self.per_rest2.len())
     }
-}
-
-/// The gain of links whose ends weigh `ends` with damping, and their own compliance `own` over the square of the substep.
-#[inline(always)]
-pub fn gain<L: Numbers>(ends: L, own: L, passes: Passes) -> L {
-    use crate::lanes::Mask;
-    let zero = L::splat(0.0);
-    let weight = if passes == Passes::Once { ends.max(own) } else { ends + own };
-    let moves = zero.lt(ends).and(zero.lt(weight));
-    L::splat(1.0).div(weight).select(moves, zero)
 }
 
 /// What lengths, gain and compliance of links are read from: as baked and prepared, or as their laws have them now.
@@ -410,23 +390,6 @@ impl SolveLinks<'_> {
         (pa + by_a).store(c.x, a, n);
         (pb - by_b).store(c.x, b, n);
         by
-    }
-}
-
-/// What links do under the tension that they have.
-#[derive(Clone, Copy)]
-pub struct Slack<L> {
-    /// What they give by their compliance (m).
-    pub gives: L,
-    /// Least growth of the tension (N s2): it may not fall below what they bear when pushed together.
-    pub least: L,
-}
-
-impl<L: Numbers> Slack<L> {
-    /// Of links that start from no tension and push as they pull.
-    #[inline(always)]
-    pub fn none() -> Self {
-        Self { gives: L::splat(0.0), least: L::splat(NO_LEAST) }
     }
 }
 

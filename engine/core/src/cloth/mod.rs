@@ -13,6 +13,7 @@ pub mod fibers;
 pub mod friction_rows;
 pub mod guard;
 pub mod layers;
+pub mod link_gain;
 pub mod link_laws;
 pub mod links;
 pub mod lists;

@@ -8,8 +8,9 @@ use toile_assets::limits::STEP_SECONDS;
 
 use super::bending_matrix::BendingMatrix;
 use super::friction_rows::{FrictionRows, STICKING};
+use super::link_gain::Passes;
 use super::link_laws::{self, LawRows};
-use super::links::{LinkGains, Passes};
+use super::links::LinkGains;
 use super::program::{Bending, Program};
 use super::record_links::RecordLinks;
 use super::stiff_bending::{self, ChebyshevStage};

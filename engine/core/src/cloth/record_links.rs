@@ -6,7 +6,8 @@ use std::ops::Range;
 
 use toile_assets::garment::layout::{ConstraintRun, Links, OWNERS};
 
-use super::links::{LinkGains, LinkParameters, Slack, push};
+use super::link_gain::Slack;
+use super::links::{LinkGains, LinkParameters, push};
 use crate::lanes::{Kernel, Lanes, MOST, ReadColumn, RecordList, V3, WriteColumn};
 
 /// What a sweep over links costs in either form (ns), as an AVX-512 core has it: only their ratios count.

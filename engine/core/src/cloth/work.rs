@@ -10,8 +10,9 @@ use glam::Vec3A;
 use toile_assets::garment::Garment;
 use toile_assets::garment::layout::{FiberLists, Layout, Links, OWNERS};
 
+use super::link_gain::Passes;
 use super::link_laws::{self, FollowLaws, LawColumns, LawGain};
-use super::links::{LinkColumns, LinkGains, Passes};
+use super::links::{LinkColumns, LinkGains};
 use super::pins::Pins;
 use super::prepared::Prepared;
 use super::program::Stage;
