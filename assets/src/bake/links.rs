@@ -48,7 +48,7 @@ impl BakeInput<'_> {
     /// Laws of some edges, each as part of a fiber of a direction; nothing where one slope is all.
     fn laws<'e>(&self, bias: bool, edges: impl Iterator<Item = (Option<&'e Edge>, Direction)> + Clone) -> LawTable {
         let Some(maker) = self.laws.filter(|maker| maker.acts(bias)) else { return LawTable::default() };
-        LawTable::new(edges.map(|(edge, role)| edge.map_or(ONE_SLOPE, |e| maker.law(e, role))))
+        LawTable::new(&edges.map(|(edge, role)| edge.map_or(ONE_SLOPE, |e| maker.law(e, role))))
     }
 }
 

@@ -27,7 +27,7 @@ pub const ONE_SLOPE: Law = [-FAR, 1.0, FAR, 1.0, 0.0];
 
 impl LawTable {
     /// Of some links.
-    pub fn new(laws: impl Iterator<Item = Law> + Clone) -> Self {
+    pub fn new(laws: &(impl Iterator<Item = Law> + Clone)) -> Self {
         let column = |k: usize| laws.clone().map(|law| law[k]).collect();
         Self { lower: column(0), lower_slope: column(1), upper: column(2), upper_slope: column(3), friction: column(4) }
     }

@@ -25,7 +25,7 @@ fn law() -> LinkLaw {
 fn table(law: &LinkLaw) -> LawTable {
     let ([lower, upper], [below, above]) = (law.knees, law.behind);
     let one = [lower, below, upper, above, law.half_width / law.slope].map(|v| v as f32);
-    LawTable::new((0..LINKS).map(|_| one))
+    LawTable::new(&(0..LINKS).map(|_| one))
 }
 
 /// Each link at a strain of its own, in the round `k` of a motion back and forth.
