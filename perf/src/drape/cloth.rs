@@ -28,7 +28,7 @@ pub enum DrapeError {
 }
 
 /// A piece of cloth, cut level: its points are (x, z), some of them held where they are.
-pub struct Piece {
+pub struct SpecimenPiece {
     /// Where each point is as cut (m).
     pub points: Vec<DVec2>,
     /// Whether it is held.
@@ -52,7 +52,12 @@ pub struct DrapedCloth {
 
 impl DrapedCloth {
     /// Level and at rest, the warp along z.
-    pub fn new(piece: &Piece, fabric: &Fabric, mut colliders: Colliders, quality: Quality) -> Result<Self, DrapeError> {
+    pub fn new(
+        piece: &SpecimenPiece,
+        fabric: &Fabric,
+        mut colliders: Colliders,
+        quality: Quality,
+    ) -> Result<Self, DrapeError> {
         let mut shape = Shape { faces: piece.faces.clone(), ..Shape::default() };
         for (p, held) in piece.points.iter().zip(&piece.held) {
             let (x, z) = (p.x as f32, p.y as f32);

@@ -17,7 +17,7 @@ use toile_engine::colliders::Colliders;
 use toile_view::image::{Image, Size};
 use toile_view::scene::Camera;
 
-use super::cloth::{DrapeError, DrapedCloth, Piece};
+use super::cloth::{DrapeError, DrapedCloth, SpecimenPiece};
 use super::shadow;
 
 /// Radii of the disc and of the specimen (m).
@@ -98,7 +98,7 @@ pub fn cusick(fabric: &Fabric, spacing_mm: f64, quality: Quality, drawn: bool) -
 }
 
 /// DC (%).
-fn coefficient(piece: &Piece, cloth: &DrapedCloth) -> f64 {
+fn coefficient(piece: &SpecimenPiece, cloth: &DrapedCloth) -> f64 {
     let area = |places: &[glam::DVec3]| {
         let all = piece.faces.iter().flat_map(|f| {
             let [a, b, c, d] = f.map(|i| i as usize);
@@ -115,7 +115,7 @@ fn coefficient(piece: &Piece, cloth: &DrapedCloth) -> f64 {
 }
 
 /// The specimen at a spacing (m).
-fn specimen(spacing: f64) -> Piece {
+fn specimen(spacing: f64) -> SpecimenPiece {
     let (mut points, mut cells) = (Vec::new(), HashMap::new());
     let reach = (SPECIMEN_M / spacing).ceil() as i32;
     // So far from a ring that no triangle there is a sliver.
@@ -134,7 +134,7 @@ fn specimen(spacing: f64) -> Piece {
     }
     let held = points.iter().map(|p| p.length() < DISC_M + 1e-6).collect();
     let faces = faces(&points, &cells);
-    Piece { points, held, faces }
+    SpecimenPiece { points, held, faces }
 }
 
 /// Quads where a cell has all its corners and no ring passes through it, Delaunay triangles elsewhere.

@@ -13,7 +13,7 @@ use toile_engine::colliders::{Colliders, RestSphere};
 use toile_view::image::{Image, Size};
 use toile_view::scene::Camera;
 
-use super::cloth::{DrapeError, DrapedCloth, Piece};
+use super::cloth::{DrapeError, DrapedCloth, SpecimenPiece};
 
 /// Distances of particles (cm) with the published distance to a real cloth (cm); the last is what the others are held against.
 const SAMPLINGS: [(f64, f64); 5] = [(5.0, 3.01), (2.0, 1.42), (1.0, 0.90), (0.5, 0.82), (0.4, 0.79)];
@@ -148,7 +148,7 @@ fn run(fabric: &Fabric, variant: &'static str, spacing_cm: f64, published_cm: f6
 }
 
 /// The cloth as cut, row after row.
-fn piece([columns, rows]: [usize; 2], spacing: f64) -> Piece {
+fn piece([columns, rows]: [usize; 2], spacing: f64) -> SpecimenPiece {
     let (mut points, mut held) = (Vec::new(), Vec::new());
     for (r, c) in (0..=rows).flat_map(|r| (0..=columns).map(move |c| (r, c))) {
         let p = CLOTH_M[0] + DVec2::new(c as f64, r as f64) * spacing;
@@ -159,7 +159,7 @@ fn piece([columns, rows]: [usize; 2], spacing: f64) -> Piece {
     let at = |r: usize, c: usize| (r * (columns + 1) + c) as u32;
     let cell = |(r, c): (usize, usize)| [at(r + 1, c), at(r + 1, c + 1), at(r, c + 1), at(r, c)];
     let faces = (0..rows).flat_map(|r| (0..columns).map(move |c| (r, c))).map(cell).collect();
-    Piece { points, held, faces }
+    SpecimenPiece { points, held, faces }
 }
 
 /// The table's edge.

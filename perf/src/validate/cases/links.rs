@@ -31,7 +31,7 @@ const STRETCHED: StretchCurve =
 
 /// The cases of this room.
 pub fn cases() -> Vec<ValidationCase> {
-    let mut all = vec![hung(Way::Warp), hung(Way::Weft)];
+    let mut all = vec![hung(ThreadWay::Warp), hung(ThreadWay::Weft)];
     for (name, g, width) in SHEARED {
         for style in [MeshStyle::Grid, MeshStyle::Alternating] {
             all.extend([Read::Slope, Read::Width].map(|read| sheared(name, [g, width], style, read)));
@@ -43,21 +43,21 @@ pub fn cases() -> Vec<ValidationCase> {
 
 /// Which threads the strip hangs by: the warp is solved directly, the weft by Gauss-Seidel.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Way {
+enum ThreadWay {
     Warp,
     Weft,
 }
 
 /// The strip's shape with its threads turned, so that it hangs by the weft.
-fn turned(mut shape: Shape, way: Way) -> Shape {
-    if way == Way::Weft {
+fn turned(mut shape: Shape, way: ThreadWay) -> Shape {
+    if way == ThreadWay::Weft {
         shape.cut.iter_mut().for_each(|p| (p.x, p.y) = (-p.y, p.x));
     }
     shape
 }
 
 /// Tip of a strip of own weight with a knee: the integral of e(T(s)), T(s) = w (L - s).
-fn hung(way: Way) -> ValidationCase {
+fn hung(way: ThreadWay) -> ValidationCase {
     let strip = Strip::narrow(1.0, ROWS, [EndSupport::Pinned, EndSupport::Free]);
     let cloth = CaseFabric { curve: Some(KNEE), shear: 1.0, damping: DAMPING, ..CaseFabric::PLAIN };
     let run = move |setup: CaseSetup<'_>| {
@@ -74,7 +74,7 @@ fn hung(way: Way) -> ValidationCase {
     let expected = (0..STEPS).map(|k| law.deformation(weight * at(k))).sum::<f64>() / f64::from(STEPS);
     ValidationCase {
         name: "stretch-curve",
-        parameter: format!("{}, 100 to 1,000 N/m", if way == Way::Warp { "warp" } else { "weft" }),
+        parameter: format!("{}, 100 to 1,000 N/m", if way == ThreadWay::Warp { "warp" } else { "weft" }),
         mesh: MeshStyle::Grid.name(),
         resolution: ROWS,
         unit: "m",
