@@ -4,9 +4,11 @@
 //! Budget: 10 ms a fabric with a print, at load only. Thread: the loading thread.
 
 pub mod friction_element;
+pub mod link_law;
 pub mod loop_widths;
 pub mod print;
 pub mod sheet;
+pub mod stretch_curve;
 
 use std::sync::Arc;
 
@@ -18,6 +20,7 @@ use crate::texture::Texture;
 use crate::toml_keys::nearest;
 use loop_widths::LoopWidths;
 use print::Print;
+use stretch_curve::{ShearLock, StretchCurve, StretchCurves};
 
 /// One fabric, as its file states it. Stiffnesses are per unit width of cloth, so that they do not depend on any mesh.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -76,6 +79,14 @@ pub struct Fabric {
     /// Widths of its measured loops; none where it was not measured, and then nothing of it costs anything.
     #[serde(default)]
     pub hysteresis: LoopWidths,
+    /// Its stretch as curves of two slopes; a way without one has the one slope above.
+    #[serde(default)]
+    pub stretch: StretchCurves,
+    /// Where its shear locks; none where it was not measured.
+    pub shear_lock: Option<ShearLock>,
+    /// Whether threads that are pushed together give way as arcs between particles, in place of bearing as much as they pull.
+    #[serde(default)]
+    pub buckling: bool,
     /// What is printed on it or woven into it.
     pub print: Option<Print>,
     /// One repeat of the print, drawn or read.
@@ -324,6 +335,35 @@ impl Fabric {
         }
     }
 
+    /// Whether its links have more than one slope, or rub.
+    pub fn has_link_laws(&self) -> bool {
+        let StretchCurves { warp, weft } = self.stretch;
+        warp.is_some()
+            || weft.is_some()
+            || self.shear_lock.is_some()
+            || self.hysteresis.shear_n_m > 0.0
+            || self.buckling
+    }
+
+    /// Whether its shear or its stretch rubs.
+    pub fn rubs_in_links(&self) -> bool {
+        let curves = [self.stretch.warp, self.stretch.weft];
+        self.hysteresis.shear_n_m > 0.0 || curves.iter().flatten().any(|c| c.hysteresis_n_m > 0.0)
+    }
+
+    /// The same with its stretch below the knees (0) or behind them (1).
+    pub fn with_slopes(&self, which: usize) -> Self {
+        let of = |curve: Option<StretchCurve>, plain: f32| {
+            curve.map_or(plain, |c| if which == 0 { c.below_n_m() } else { c.beyond_n_m })
+        };
+        let StretchCurves { warp, weft } = self.stretch;
+        Self {
+            stretch_warp_n_m: of(warp, self.stretch_warp_n_m),
+            stretch_weft_n_m: of(weft, self.stretch_weft_n_m),
+            ..self.clone()
+        }
+    }
+
     fn check(&self) -> Result<(), FabricError> {
         let checked = |key, value: f32, low: f32, high: f32| match (low..=high).contains(&value) {
             true => Ok(()),
@@ -334,6 +374,16 @@ impl Fabric {
         }
         for ((key, low, high), width) in LoopWidths::RANGES.into_iter().zip(self.hysteresis.figures()) {
             checked(key, width, low, high)?;
+        }
+        for curve in [self.stretch.warp, self.stretch.weft].into_iter().flatten() {
+            for ((key, low, high), figure) in StretchCurve::RANGES.into_iter().zip(curve.figures()) {
+                checked(key, figure, low, high)?;
+            }
+        }
+        if let Some(lock) = self.shear_lock {
+            for ((key, low, high), figure) in ShearLock::RANGES.into_iter().zip([lock.degrees, lock.beyond_n_m]) {
+                checked(key, figure, low, high)?;
+            }
         }
         checked("drape_percent", self.drape_percent.unwrap_or(50.0), 0.0, 100.0)?;
         checked("comfortable_stretch", self.comfortable_stretch, 0.001, 1.0)?;

@@ -33,5 +33,6 @@ pub mod own_picture;
 
 pub mod contact;
 pub mod crossover;
+pub mod drape;
 pub mod measuring;
 pub mod pareto;

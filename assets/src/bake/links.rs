@@ -6,6 +6,7 @@ use super::bend_friction;
 use super::bending::{self, Stencil};
 use super::diagonals::{self, BiasFiber};
 use super::fibers::{Direction, Edge, Fiber};
+use super::link_laws::LawMaker;
 use super::order::ParticleOrder;
 use super::solver::SolverChoice;
 use super::{hubs, runs, stiffness, tethers};
@@ -14,6 +15,7 @@ use crate::garment::layout::{
     Bends, BundleRow, Diagonals, ENDED, FiberBundle, FiberList, FiberLists, Fibers, Layout, Links, MAX_LISTED, OWNERS,
     Tethers,
 };
+use crate::garment::link_laws::{LawTable, LinkLaws, ONE_SLOPE};
 use crate::garment::{Shape, Solver};
 
 /// What baking has found out about a shape so far.
@@ -28,12 +30,25 @@ pub struct BakeInput<'a> {
     pub order: &'a ParticleOrder,
     /// Inverse mass of each vertex (1/kg).
     pub weights: &'a [f32],
+    /// What links do beyond one slope, where the fabric says so.
+    pub laws: Option<&'a LawMaker>,
 }
 
 impl BakeInput<'_> {
     /// Inverse mass of a particle (1/kg).
     fn weight(&self, particle: u32) -> f32 {
         self.weights[self.order.source[particle as usize] as usize]
+    }
+
+    /// Whether links along the bias, or along threads, have laws: then none is like another, because each has a state.
+    fn lawful(&self, bias: bool) -> bool {
+        self.laws.is_some_and(|maker| maker.acts(bias))
+    }
+
+    /// Laws of some edges, each as part of a fiber of a direction; nothing where one slope is all.
+    fn laws<'e>(&self, bias: bool, edges: impl Iterator<Item = (Option<&'e Edge>, Direction)> + Clone) -> LawTable {
+        let Some(maker) = self.laws.filter(|maker| maker.acts(bias)) else { return LawTable::default() };
+        LawTable::new(&edges.map(|(edge, role)| edge.map_or(ONE_SLOPE, |e| maker.law(e, role))))
     }
 }
 
@@ -68,15 +83,27 @@ pub fn lay_out(baking: &BakeInput<'_>) -> Layout {
     let chosen = across().filter(|f| chooser.choose(f) != Solver::GaussSeidel && !leans(f));
     let lists_of: Vec<(&Fiber, Solver)> = crossing.chain(chosen).map(|f| (f, chooser.choose(f))).collect();
     let shear = of(true);
-    let (diagonals, whole) = diagonals(baking, &shear, baking.chains.iter().filter(|f| leans(f)));
+    let (diagonals, leaning_laws, whole) = diagonals(baking, &shear, baking.chains.iter().filter(|f| leans(f)));
     let shear: Vec<_> = shear.into_iter().filter(|(i, _)| !whole[*i]).collect();
     let stencils = bending::stencils(baking.shape, baking.edges, baking.fabric);
+    let (shear, shear_laws) = links(baking, true, &shear);
+    let (weft, weft_laws) = links(baking, false, &of(false));
+    let (fibers, fiber_laws) = fibers(baking, &chooser);
+    let (crossing, crossing_laws) = lists(baking, lists_of);
+    let laws = LinkLaws {
+        diagonals: leaning_laws,
+        shear: shear_laws,
+        weft: weft_laws,
+        fibers: fiber_laws,
+        crossing: crossing_laws,
+    };
     Layout {
         diagonals,
-        shear: links(baking, &shear),
-        weft: links(baking, &of(false)),
-        fibers: fibers(baking, &chooser),
-        crossing: lists(baking, lists_of),
+        shear,
+        weft,
+        fibers,
+        crossing,
+        laws,
         bends: bends(baking, &stencils),
         skewed: bends(baking, &stencils),
         hubs: hubs::hubs(baking.order, &stencils),
@@ -101,7 +128,7 @@ fn same(a: f32, b: f32) -> bool {
 }
 
 /// Links of single edges, each with the direction of the fiber that it belongs to.
-fn links(baking: &BakeInput<'_>, edges: &[(usize, Direction)]) -> Links {
+fn links(baking: &BakeInput<'_>, bias: bool, edges: &[(usize, Direction)]) -> (Links, LawTable) {
     let edge = |i: usize| &baking.edges[edges[i].0];
     let soft = |i: usize| compliance(baking.fabric, edge(i), edges[i].1);
     let particle = |v: u32| baking.order.particle[v as usize];
@@ -113,14 +140,19 @@ fn links(baking: &BakeInput<'_>, edges: &[(usize, Direction)]) -> Links {
         .collect();
     let weight = |i: usize, k: usize| baking.weight(constraints[i].1[k]);
     let alike = |i: usize, j: usize| {
-        same(edge(i).rest, edge(j).rest) && same(soft(i), soft(j)) && (0..2).all(|k| same(weight(i, k), weight(j, k)))
+        !baking.lawful(bias)
+            && same(edge(i).rest, edge(j).rest)
+            && same(soft(i), soft(j))
+            && (0..2).all(|k| same(weight(i, k), weight(j, k)))
     };
     let (tuples, laid) = runs::lay_out(&constraints, &baking.order.owner, true, &alike);
-    Links {
+    let laws = baking.laws(bias, laid.places.iter().map(|&i| (Some(edge(i)), edges[i].1)));
+    let links = Links {
         tuples,
         rest: laid.places.iter().map(|&i| edge(i).rest).collect(),
         compliance: laid.places.iter().map(|&i| soft(i)).collect(),
-    }
+    };
+    (links, laws)
 }
 
 /// The fibers along the bias, of the edges given, that can be solved directly; and which edges those are.
@@ -128,7 +160,7 @@ fn diagonals<'a>(
     baking: &BakeInput<'_>,
     shear: &[(usize, Direction)],
     leaning: impl Iterator<Item = &'a Fiber>,
-) -> (Diagonals, Vec<bool>) {
+) -> (Diagonals, LawTable, Vec<bool>) {
     let mut open = vec![false; baking.edges.len()];
     shear.iter().for_each(|&(i, _)| open[i] = true);
     let particle = |v: u32| baking.order.particle[v as usize];
@@ -147,17 +179,20 @@ fn diagonals<'a>(
     let weights = |i: usize| [edge(i).a, edge(i).b].map(|v| baking.weights[v as usize]);
     let alike = |i: usize, j: usize| {
         let ([a, b], [c, d]) = (weights(i), weights(j));
-        same(edge(i).rest, edge(j).rest) && same(soft(i), soft(j)) && same(a, b) && same(a, c) && same(a, d)
+        let same_masses = same(a, b) && same(a, c) && same(a, d);
+        !baking.lawful(true) && same(edge(i).rest, edge(j).rest) && same(soft(i), soft(j)) && same_masses
     };
     let (mut laid, places, numbers) = diagonals::lay_out(&fibers, &baking.order.owner, &alike);
     laid.rest = places.iter().map(|&i| edge(i).rest).collect();
     laid.compliance = places.iter().map(|&i| soft(i)).collect();
     let mut taken = vec![false; baking.edges.len()];
     numbers.iter().for_each(|&i| taken[i] = true);
-    (laid, taken)
+    let laws = baking.laws(true, places.iter().map(|&i| (Some(edge(i)), Direction::Bias)));
+    (laid, laws, taken)
 }
 
-fn fibers(baking: &BakeInput<'_>, chooser: &SolverChoice) -> Fibers {
+fn fibers(baking: &BakeInput<'_>, chooser: &SolverChoice) -> (Fibers, LawTable) {
+    let mut laid: Vec<Option<&Edge>> = Vec::new();
     let (mut bundles, mut rows, mut rest, mut soft) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let mut links = 0;
     for side in &baking.order.sides {
@@ -169,16 +204,18 @@ fn fibers(baking: &BakeInput<'_>, chooser: &SolverChoice) -> Fibers {
             let first = baking.order.particle[pieces[0].vertices[row] as usize];
             rows.push(BundleRow { first, lanes: reach(row) });
         }
-        let alike = pieces.iter().all(|p| fibers_alike(baking, pieces[0], p));
+        let alike = !baking.lawful(false) && pieces.iter().all(|p| fibers_alike(baking, pieces[0], p));
+        let solver = chooser.choose(pieces[0]);
         for link in 0..pieces[0].edges.len() {
             for piece in if alike { &pieces[..1] } else { &pieces[..] } {
                 let edge = piece.edges.get(link).map(|&e| &baking.edges[e as usize]);
                 rest.push(edge.map_or(0.0, |e| e.rest));
                 soft.push(edge.map_or(ENDED, |e| compliance(baking.fabric, e, Direction::Warp)));
+                laid.push(edge.filter(|_| solver != Solver::ZeroStretch));
             }
         }
         bundles.push(FiberBundle {
-            solver: chooser.choose(pieces[0]),
+            solver,
             owner: side.owner,
             lanes: pieces.len() as u32,
             rows: first_row..rows.len() as u32,
@@ -187,7 +224,8 @@ fn fibers(baking: &BakeInput<'_>, chooser: &SolverChoice) -> Fibers {
             alike,
         });
     }
-    Fibers { bundles: bundles.into(), rows: rows.into(), links, rest: rest.into(), compliance: soft.into() }
+    let laws = baking.laws(false, laid.into_iter().map(|edge| (edge, Direction::Warp)));
+    (Fibers { bundles: bundles.into(), rows: rows.into(), links, rest: rest.into(), compliance: soft.into() }, laws)
 }
 
 /// Whether two fibers are the same, link by link and mass by mass.
@@ -207,7 +245,7 @@ fn fibers_alike(baking: &BakeInput<'_>, a: &Fiber, b: &Fiber) -> bool {
 }
 
 /// Fibers as index lists: sets without a common particle, in each of them lists of equal length and like solver.
-fn lists(baking: &BakeInput<'_>, mut left: Vec<(&Fiber, Solver)>) -> FiberLists {
+fn lists(baking: &BakeInput<'_>, mut left: Vec<(&Fiber, Solver)>) -> (FiberLists, LawTable) {
     let mut out = FiberListsBuilder::default();
     left.sort_by_key(|(f, solver)| (std::cmp::Reverse(f.edges.len()), f.direction, *solver, !f.is_hoop()));
     while !left.is_empty() {
@@ -223,13 +261,16 @@ fn lists(baking: &BakeInput<'_>, mut left: Vec<(&Fiber, Solver)>) -> FiberLists 
         });
         out.set(baking, &set);
     }
-    FiberLists {
+    let bias = out.laid.iter().all(|(_, role)| *role == Direction::Bias);
+    let laws = baking.laws(bias, out.laid.iter().map(|(i, role)| (i.map(|i| &baking.edges[i as usize]), *role)));
+    let lists = FiberLists {
         lists: out.lists.into(),
         sets: out.sets.into(),
         index: out.index.into(),
         rest: out.rest.into(),
         compliance: out.compliance.into(),
-    }
+    };
+    (lists, laws)
 }
 
 #[derive(Default)]
@@ -239,6 +280,8 @@ struct FiberListsBuilder {
     index: Vec<u32>,
     rest: Vec<f32>,
     compliance: Vec<f32>,
+    /// The edge of each place, and its direction; none where threads must not stretch at all.
+    laid: Vec<(Option<u32>, Direction)>,
 }
 
 impl FiberListsBuilder {
@@ -274,6 +317,9 @@ impl FiberListsBuilder {
             let edges = || fibers.iter().map(|f| &baking.edges[f.edges[link] as usize]);
             self.rest.extend(edges().map(|e| e.rest));
             self.compliance.extend(edges().map(|e| compliance(baking.fabric, e, fibers[0].direction)));
+            let gives = chosen[0].1 != Solver::ZeroStretch;
+            let laid = fibers.iter().map(|f| (gives.then_some(f.edges[link]), f.direction));
+            self.laid.extend(laid);
         }
     }
 }

@@ -10,6 +10,7 @@ pub mod bending;
 mod diagonals;
 pub mod fibers;
 mod hubs;
+mod link_laws;
 mod links;
 pub mod order;
 pub mod runs;
@@ -59,7 +60,12 @@ pub fn bake(name: &str, size: &str, shape: &Shape, fabric: &Fabric) -> Result<Ga
     let hung = pieces.iter().filter(|p| shape.fixed[p.vertices[0] as usize]).map(|p| p.edges.len()).sum::<usize>();
     let hanging = hung as f32 / (n - fixed.len()).max(1) as f32;
     let area = (0..shape.faces.len()).map(|i| f64::from(shape.face_area(i))).sum();
-    let threads = stiffness::threads(&edges, &chains, area, fabric);
+    let threads = stiffness::threads(&edges, &chains, area, &fabric.with_slopes(0));
+    let laws = fabric.has_link_laws().then(|| link_laws::LawMaker {
+        fabric: fabric.clone(),
+        threads: threads.clone(),
+        beyond: stiffness::threads(&edges, &chains, area, &fabric.with_slopes(1)),
+    });
     let layout = links::lay_out(&links::BakeInput {
         shape,
         fabric: &threads,
@@ -68,6 +74,7 @@ pub fn bake(name: &str, size: &str, shape: &Shape, fabric: &Fabric) -> Result<Ga
         pieces: &pieces,
         order: &order,
         weights: &masses,
+        laws: laws.as_ref(),
     });
     Ok(Garment {
         name: name.into(),

@@ -8,6 +8,8 @@ use std::collections::BTreeMap;
 
 use thiserror::Error;
 
+use super::stretch_curve::StretchCurve;
+
 /// uN m of a gf cm2/cm.
 const RIGIDITY: f64 = 98.066_5;
 
@@ -210,13 +212,60 @@ impl MeasuredSheet {
             quoted(source)
         );
         let figures = self.figures();
+        let curves: String = [("warp", 0), ("weft", 1)]
+            .into_iter()
+            .filter_map(|(name, way)| {
+                let c = self.curve(way)?;
+                let [knee, load, beyond, width] = c.figures();
+                Some(format!(
+                    "\n[stretch.{name}]\n# {}\nknee_percent = {knee:.4}\nknee_n_m = {load:.3}\nbeyond_n_m = {beyond:.1}\n\
+                     hysteresis_n_m = {width:.3}\n",
+                    self.curve_words()
+                ))
+            })
+            .collect();
         let (loops, plain): (Vec<_>, Vec<_>) = figures.iter().partition(|f| f.key.starts_with("hysteresis."));
         plain.iter().for_each(|f| text += &line(f, f.key));
         if !loops.is_empty() {
             text += "\n[hysteresis]\n";
         }
         loops.iter().for_each(|f| text += &line(f, f.key.trim_start_matches("hysteresis.")));
-        text
+        text + &curves
+    }
+
+    /// Stretch along a way (warp 0, weft 1) as a curve of two slopes, where the sheet says enough: KES's LT, RT and WT or EMT; FAST's
+    /// three extensions, as long as they rise.
+    fn curve(&self, way: usize) -> Option<StretchCurve> {
+        let at = |name: &str| self.values.get(name).map(|v| v[way]);
+        let curve = match self.kind {
+            SheetKind::Kawabata => {
+                let (linearity, resilience) = (at("LT")?, at("RT").unwrap_or(100.0) / 100.0);
+                StretchCurve::of_kes(linearity, resilience, self.extension(way)?, KES_MOST * FORCE)
+            }
+            SheetKind::Fast => {
+                let loads = [5.0, 20.0, 100.0].map(|gf| gf * FORCE);
+                let [a, b, c] = [at("E5")?, at("E20")?, at("E100")?];
+                // Three points say of two slopes only that the knee lies at the second of them.
+                let knee = StretchCurve {
+                    knee_percent: b as f32,
+                    knee_n_m: loads[1] as f32,
+                    beyond_n_m: (100.0 * (loads[2] - loads[1]) / (c - b)) as f32,
+                    hysteresis_n_m: 0.0,
+                };
+                Some(knee).filter(|_| 0.0 < a && a < b && b < c)?
+            }
+            SheetKind::Cusick => return None,
+        };
+        // A curve that is straight, or bends down, is the one slope that the file has besides.
+        let stiffens = curve.beyond_n_m > 1.05 * curve.below_n_m();
+        (stiffens && curve.figures().iter().all(|f| f.is_finite())).then_some(curve)
+    }
+
+    fn curve_words(&self) -> &'static str {
+        match self.kind {
+            SheetKind::Kawabata => "LT, WT or EMT, RT: the knee on the line between (EMT, 0) and (0, 500 gf/cm)",
+            _ => "E20 and E100",
+        }
     }
 }
 

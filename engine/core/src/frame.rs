@@ -358,7 +358,7 @@ impl Frame {
         for cloth in &self.cloths {
             cloth.positions.iter().flat_map(|p| p.to_array()).for_each(&mut add);
             (0..cloth.positions.len()).flat_map(|i| cloth.velocity(i).to_array()).for_each(&mut add);
-            cloth.sticks().iter().copied().for_each(&mut add);
+            cloth.sticks().iter().chain(cloth.link_sticks().flatten()).copied().for_each(&mut add);
         }
         hash.finish()
     }
@@ -373,6 +373,7 @@ impl Frame {
             if !cloth.sticks().is_empty() {
                 print.add(cloth.sticks());
             }
+            cloth.link_sticks().for_each(|sticks| print.add(sticks));
         }
         print.end()
     }

@@ -53,9 +53,9 @@ const CLOTH_ON_CLOTH: &str = "no device keeps cloth out of cloth; switch layers 
 const CLOTH_ON_SKIN: &str =
     "a device has the body as capsules and not as skin; switch skin off (`--no-skin`) to step on those";
 
-/// Why the processor steps garments of fabrics that rub.
-const FRICTION: &str =
-    "no device has friction in bending; take the `hysteresis` out of the fabric's file to step it on one";
+/// Why the processor steps garments of fabrics that rub, or whose links have more than one slope.
+const FRICTION: &str = "no device has friction, second slopes or buckling; take `hysteresis`, `stretch`, `shear_lock` and `buckling` out of the \
+     fabric's file to step it on one";
 
 /// The same where the surroundings have a skin that the settings ask for.
 fn on_skin(colliders: &Colliders, settings: &Settings) -> Option<&'static str> {
@@ -214,7 +214,9 @@ impl ClothStepper {
         {
             self.fall_back(reason.to_owned());
         }
-        if self.graphics.is_some() && batch.garments.iter().any(|g| !g.layout().friction.slots.is_empty()) {
+        if self.graphics.is_some()
+            && batch.garments.iter().any(|g| !g.layout().friction.slots.is_empty() || g.layout().laws.acts())
+        {
             self.fall_back(FRICTION.to_owned());
         }
         if std::mem::take(&mut self.undecided) {

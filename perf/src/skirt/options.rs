@@ -32,6 +32,10 @@ pub struct SkirtOptions {
     pub stretch: Stretch,
     /// Whether its bending rubs.
     pub hysteresis: bool,
+    /// Whether its stretch and its shear have curves and rub.
+    pub curves: bool,
+    /// Whether its threads buckle.
+    pub buckling: bool,
     /// Wind of the scene.
     pub wind: bool,
     /// Whether each skirt keeps from passing through itself.
@@ -74,6 +78,8 @@ impl Default for SkirtOptions {
             mesh: SkirtMesh::Grid,
             stretch: Stretch::Inextensible,
             hysteresis: false,
+            curves: false,
+            buckling: false,
             wind: false,
             folds: false,
             threads: 1,

@@ -71,6 +71,10 @@ pub struct SkirtReport {
     pub stretch: &'static str,
     /// Whether its bending rubs.
     pub hysteresis: bool,
+    /// Whether its stretch and its shear have curves and rub.
+    pub curves: bool,
+    /// Whether its threads buckle.
+    pub buckling: bool,
     /// Whether there is wind.
     pub wind: bool,
     /// Whether each keeps from passing through itself.
@@ -148,6 +152,8 @@ impl SkirtReport {
             mesh: options.mesh.name(),
             stretch: options.stretch.name(),
             hysteresis: options.hysteresis,
+            curves: options.curves,
+            buckling: options.buckling,
             wind: options.wind,
             folds: options.folds,
             garments: options.garments,

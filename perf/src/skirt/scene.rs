@@ -100,6 +100,10 @@ impl SkirtScene {
         if options.hysteresis {
             fabric.hysteresis = skirt::LOOPS;
         }
+        if options.curves {
+            skirt::curves(&mut fabric);
+        }
+        fabric.buckling = options.buckling;
         change(&mut shape);
         let before = heap.read();
         let garment = bake("skirt", "one", &shape, &fabric)?;

@@ -7,6 +7,7 @@
 use delaunator::{Point, triangulate};
 use glam::{DVec2, DVec3};
 use toile_assets::fabric::loop_widths::LoopWidths;
+use toile_assets::fabric::stretch_curve::{ShearLock, StretchCurve, StretchCurves};
 use toile_assets::fabric::{Fabric, USUAL_SHEEN, USUAL_THREADS, Weave};
 use toile_assets::garment::shape::{NO_VERTEX, Part};
 use toile_assets::garment::{Face, Shape};
@@ -243,6 +244,14 @@ pub struct CaseFabric {
     pub bias: Option<f64>,
     /// Width of the loop of its bending, 2HB (N).
     pub hysteresis: f64,
+    /// Its stretch along both ways as a curve, in place of `stretch`.
+    pub curve: Option<StretchCurve>,
+    /// Width of the loop of its shear, 2HG (N/m).
+    pub shear_loop: f64,
+    /// Where its shear locks.
+    pub lock: Option<ShearLock>,
+    /// Whether its threads give way where they are pushed together.
+    pub buckling: bool,
     /// Rate at which motion is damped (1/s).
     pub damping: f64,
     /// Friction coefficient (1).
@@ -258,6 +267,10 @@ impl CaseFabric {
         bend: 0.0,
         bias: None,
         hysteresis: 0.0,
+        curve: None,
+        shear_loop: 0.0,
+        lock: None,
+        buckling: false,
         damping: 0.0,
         friction: 0.3,
     };
@@ -290,8 +303,11 @@ impl CaseFabric {
             hysteresis: LoopWidths {
                 bend_warp_mn: (self.hysteresis * 1e3) as f32,
                 bend_weft_mn: (self.hysteresis * 1e3) as f32,
-                shear_n_m: 0.0,
+                shear_n_m: self.shear_loop as f32,
             },
+            stretch: self.curve.map_or_else(Default::default, |c| StretchCurves { warp: Some(c), weft: Some(c) }),
+            shear_lock: self.lock,
+            buckling: self.buckling,
             print: None,
             tile: None,
         }

@@ -63,7 +63,7 @@ impl ValidationReport {
 const STACK_BYTES: usize = 32 << 20;
 
 /// The names of all cases, in the order of the table: known without working out what is exact, which takes seconds.
-pub const NAMES: [&str; 25] = [
+pub const NAMES: [&str; 27] = [
     "cantilever",
     "peirce",
     "elastica",
@@ -74,6 +74,8 @@ pub const NAMES: [&str; 25] = [
     "lateral",
     "strip",
     "top-force",
+    "stretch-curve",
+    "loop",
     "catenary",
     "shear-sag",
     "chain-mode",

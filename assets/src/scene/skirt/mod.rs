@@ -16,6 +16,7 @@ use std::f64::consts::TAU;
 use glam::Vec3;
 
 use crate::fabric::loop_widths::LoopWidths;
+use crate::fabric::stretch_curve::{ShearLock, StretchCurve, StretchCurves};
 use crate::fabric::{Fabric, USUAL_SHEEN, USUAL_THREADS, Weave};
 use crate::garment::Shape;
 
@@ -79,6 +80,15 @@ pub fn shape(n: usize) -> Shape {
 /// 1/m.
 pub const LOOPS: LoopWidths = LoopWidths { bend_warp_mn: 0.670, bend_weft_mn: 0.428, shear_n_m: 0.0 };
 
+/// Curves of a skirt whose links have them: both ways a knee at 1 % under 20 N/m and the slope of `physical` behind it, shear that
+/// rubs as a suiting's and locks at 12 degrees.
+pub fn curves(fabric: &mut Fabric) {
+    let curve = StretchCurve { knee_percent: 1.0, knee_n_m: 20.0, beyond_n_m: 4_000.0, hysteresis_n_m: 4.0 };
+    fabric.stretch = StretchCurves { warp: Some(curve), weft: Some(curve) };
+    fabric.shear_lock = Some(ShearLock { degrees: 12.0, beyond_n_m: 1_000.0 });
+    fabric.hysteresis.shear_n_m = 1.5;
+}
+
 /// The fabric of a skirt: of a density that gives it [`MASS_KG`], shear 100 N/m, and the bending of the median of 618
 /// measured fabrics. Cloth is kept 1 mm off the body, which is less than half the thickness of the lightest of them and
 /// more than what f32 and a substep's motion leave open.
@@ -108,6 +118,9 @@ pub fn fabric(shape: &Shape, stretch: Stretch) -> Fabric {
         sheen: USUAL_SHEEN,
         opacity: 1.0,
         drape_percent: None,
+        stretch: Default::default(),
+        shear_lock: None,
+        buckling: false,
         hysteresis: LoopWidths::default(),
         print: None,
         tile: None,

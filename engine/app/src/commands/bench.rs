@@ -12,6 +12,7 @@ pub(super) mod backend;
 mod body;
 mod contact;
 mod depth;
+mod drape;
 mod filters;
 mod gestures;
 mod gestures_report;
@@ -21,6 +22,7 @@ mod skinning;
 mod skinning_report;
 mod skirt;
 mod skirt_summary;
+mod tablecloth;
 mod webcam;
 mod worn_summary;
 
@@ -38,6 +40,8 @@ pub(crate) enum BenchCommand {
     Contact(contact::ContactArgs),
     Webcam(webcam::WebcamBenchArgs),
     OwnPicture(own_picture::OwnPictureArgs),
+    Drape(drape::DrapeArgs),
+    Tablecloth(tablecloth::TableclothArgs),
 }
 
 /// Runs `toile bench`.
@@ -56,5 +60,7 @@ pub(crate) fn run(command: &BenchCommand) -> Result<(), AppError> {
         BenchCommand::Contact(args) => contact::run(args),
         BenchCommand::Webcam(args) => webcam::run(args),
         BenchCommand::OwnPicture(args) => own_picture::run(args),
+        BenchCommand::Drape(args) => drape::run(args),
+        BenchCommand::Tablecloth(args) => tablecloth::run(args),
     }
 }

@@ -9,7 +9,6 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use toile_assets::fabric::Fabric;
-use toile_assets::fabric::loop_widths::LoopWidths;
 use toile_assets::fabric::sheet::MeasuredSheet;
 use toile_assets::file::{self, FileKind};
 use toile_assets::put_line;
@@ -50,7 +49,7 @@ pub(crate) struct ShowArgs {
     /// Name of a built-in fabric, or a fabric's file (.toml)
     #[arg(value_name = "FABRIC")]
     pub fabric: String,
-    /// Picture of its loops to write, ending in .png: moment against curvature, shear force against angle
+    /// Picture of its loops to write, ending in .png: moment against curvature, force against shear angle and strain
     #[arg(long, value_name = "FILE")]
     pub picture: Option<PathBuf>,
     /// What is printed.
@@ -104,6 +103,12 @@ struct FabricReport {
     hysteresis: [f32; 3],
     /// Curvature that warp and weft keep (1/m).
     residual_curvature_per_m: [f32; 2],
+    /// Curves of stretch of warp and weft: strain (%) and load (N/m) at the knee, slope behind it, width of the loop (N/m).
+    stretch_curves: [Option<[f32; 4]>; 2],
+    /// Angle at which shear locks (degrees), and the slope behind it (N/m).
+    shear_lock: Option<[f32; 2]>,
+    /// Whether threads that are pushed together give way.
+    buckling: bool,
     drape_percent: Option<f32>,
 }
 
@@ -121,6 +126,9 @@ impl From<&Fabric> for FabricReport {
             bend_bias_un_m: fabric.bend_bias_un_m,
             hysteresis: fabric.hysteresis.figures(),
             residual_curvature_per_m: fabric.hysteresis.residual_curvatures(bend_un_m),
+            stretch_curves: [fabric.stretch.warp, fabric.stretch.weft].map(|c| c.map(|c| c.figures())),
+            shear_lock: fabric.shear_lock.map(|lock| [lock.degrees, lock.beyond_n_m]),
+            buckling: fabric.buckling,
             drape_percent: fabric.drape_percent,
         }
     }
@@ -147,6 +155,20 @@ impl FabricReport {
                 let [warp, weft] = self.residual_curvature_per_m;
                 put_line!(out, "stays bent at    warp {warp:.1}, weft {weft:.1} 1/m");
             }
+        }
+        for (way, curve) in ["warp", "weft"].iter().zip(self.stretch_curves) {
+            if let Some([knee, load, beyond, width]) = curve {
+                put_line!(
+                    out,
+                    "stretch curve    {way}: {load:.1} N/m at {knee:.2} %, {beyond:.0} N/m behind it; loop {width:.1} N/m"
+                );
+            }
+        }
+        if let Some([degrees, slope]) = self.shear_lock {
+            put_line!(out, "shear locks      at {degrees:.1} degrees, {slope:.0} N/m a radian behind it");
+        }
+        if self.buckling {
+            put_line!(out, "buckling         threads that are pushed together give way as arcs");
         }
         if let Some(drape) = self.drape_percent {
             put_line!(out, "drape            {drape:.1} % measured; reported, not fitted to");
@@ -222,9 +244,9 @@ fn text_of(path: &Path) -> Result<String, AppError> {
 fn show(args: &ShowArgs) -> Result<(), AppError> {
     let fabric = fabric(&args.fabric)?;
     let files = match &args.picture {
-        Some(_) if fabric.hysteresis == LoopWidths::default() => {
+        Some(_) if !loops::any(&fabric) => {
             return Err(AppError::Input(format!(
-                "{} has no measured loops to draw; leave `--picture` out",
+                "{} has no measured loops and curves to draw; leave `--picture` out",
                 fabric.name
             )));
         }

@@ -47,6 +47,8 @@ pub struct SolveDiagonals<'a> {
     pub columns: ParticleColumns<'a>,
     /// All families of fibers along the bias.
     pub diagonals: &'a Diagonals,
+    /// Rest length (m) and compliance (m/N) of their links, as baked or as their laws have them now.
+    pub links: [ReadColumn<'a>; 2],
     /// The owner's share of the family.
     pub strand: &'a DiagonalShare,
     /// Intermediate results of the solve; see [`DiagonalScratch`].
@@ -87,7 +89,7 @@ impl SolveDiagonals<'_> {
     /// Rest length, compliance over the square of time, and the weights of both ends of `n` links of a run.
     #[inline(always)]
     fn parameters<L: Lanes>(&self, run: &ConstraintRun<2>, t: usize, n: usize) -> [L; 4] {
-        let (rest, soft) = (ReadColumn::new(&self.diagonals.rest), ReadColumn::new(&self.diagonals.compliance));
+        let [rest, soft] = self.links;
         let ([a, b], at, w) = (run.first.map(|f| f as usize), run.at as usize, self.columns.w);
         let [rest, soft, wa, wb] = if run.alike {
             [L::splat(rest.get(at)), L::splat(soft.get(at)), L::splat(w.get(a)), L::splat(w.get(b))]
@@ -214,7 +216,8 @@ mod tests {
         room.0.iter_mut().for_each(|c| c.as_mut().fill(f32::NAN));
         let strand = &diagonals.families[0][0];
         let (columns, room) = (state.columns(), room.columns());
-        width.run(SolveDiagonals { columns, diagonals, strand, room, per_dt2: 2.0, gamma });
+        let links = [&diagonals.rest, &diagonals.compliance].map(|c| ReadColumn::new(c));
+        width.run(SolveDiagonals { columns, diagonals, links, strand, room, per_dt2: 2.0, gamma });
         (0..weights.len()).map(|i| Vec3::from_array(state.positions().map(|a| a[i]))).collect()
     }
 
@@ -287,7 +290,9 @@ mod tests {
         let mut room = DiagonalScratch::new(&diagonals, (COLUMNS * ROWS) as usize);
         let strand = &diagonals.families[0][0];
         let (columns, room) = (state.columns(), room.columns());
-        Width::widest().run(SolveDiagonals { columns, diagonals: &diagonals, strand, room, per_dt2: 2.0, gamma: 0.0 });
+        let diagonals = &diagonals;
+        let links = [&diagonals.rest, &diagonals.compliance].map(|c| ReadColumn::new(c));
+        Width::widest().run(SolveDiagonals { columns, diagonals, links, strand, room, per_dt2: 2.0, gamma: 0.0 });
         assert!(state.positions().iter().all(|axis| axis.iter().all(|p| *p == 1.0)));
     }
 }

@@ -42,6 +42,10 @@ pub struct SolveFibers<'a> {
     pub columns: ParticleColumns<'a>,
     /// All warp fibers of the garment.
     pub fibers: &'a Fibers,
+    /// Rest length (m) and compliance (m/N) of their links, as baked or as their laws have them now.
+    pub links: [ReadColumn<'a>; 2],
+    /// Least tension that each link may come to (N s2); nothing where they push as they pull.
+    pub least: Option<ReadColumn<'a>>,
     /// Owner whose bundles are solved.
     pub owner: usize,
     /// This worker's scratch.
@@ -150,22 +154,24 @@ impl Chain<'_> {
         if n == L::N { L::load(tension, at) } else { L::load_part(tension, at, n) }
     }
 
+    /// A parameter of a link of fibers that are not alike.
+    #[inline(always)]
+    fn parameter<L: Numbers, const FULL: bool>(&self, from: ReadColumn<'_>, link: usize) -> L {
+        let lanes = self.bundle.lanes as usize;
+        let at = self.bundle.at as usize + link * lanes + self.lane;
+        let n = if FULL { L::N } else { (lanes - self.lane).min(L::N) };
+        if n == L::N { L::load(from, at) } else { L::load_part(from, at, n) }
+    }
+
     /// Rest length and compliance of a link.
     #[inline(always)]
     fn link<L: Numbers, const FULL: bool>(&self, link: usize) -> (L, L) {
-        let (rest, soft) = (ReadColumn::new(&self.solve.fibers.rest), ReadColumn::new(&self.solve.fibers.compliance));
+        let [rest, soft] = self.solve.links;
         let first = self.bundle.at as usize;
         if self.bundle.alike {
             return (L::splat(rest.get(first + link)), L::splat(soft.get(first + link)));
         }
-        let lanes = self.bundle.lanes as usize;
-        let at = first + link * lanes + self.lane;
-        let n = if FULL { L::N } else { (lanes - self.lane).min(L::N) };
-        if n == L::N {
-            (L::load(rest, at), L::load(soft, at))
-        } else {
-            (L::load_part(rest, at, n), L::load_part(soft, at, n))
-        }
+        (self.parameter::<L, FULL>(rest, link), self.parameter::<L, FULL>(soft, link))
     }
 
     #[inline(always)]
@@ -243,6 +249,9 @@ impl Chain<'_> {
             };
             lambda = L::load(scratch, kept + 4 * L::N) + factor * lambda;
             factor = L::load(scratch, kept + 3 * L::N);
+            if let Some(least) = self.solve.least {
+                lambda = lambda.max(self.parameter::<L, FULL>(least, link) - self.tension::<L>(link));
+            }
             if let Some(tension) = self.solve.tension {
                 let (at, n) = self.number::<L>(link);
                 let sum = self.tension::<L>(link) + lambda;
@@ -292,7 +301,10 @@ impl Chain<'_> {
             let inverse = reciprocal_root(d.dot(d));
             let weight = (w + w_q + soft * L::splat(self.solve.per_dt2)).max(L::splat(NO_PIVOT));
             let slack = self.tension::<L>(link) * soft * L::splat(self.solve.per_dt2);
-            let by = (d.dot(d) * inverse - rest - slack).div(weight);
+            let mut by = (d.dot(d) * inverse - rest - slack).div(weight);
+            if let Some(least) = self.solve.least {
+                by = by.max(self.parameter::<L, false>(least, link) - self.tension::<L>(link));
+            }
             if let Some(tension) = self.solve.tension {
                 let (at, n) = self.number::<L>(link);
                 let sum = self.tension::<L>(link) + by;

@@ -7,19 +7,10 @@
 
 use toile_assets::garment::layout::{ConstraintRun, ConstraintSet, Links, Zigzag};
 
+use super::link_gain::{NO_LEAST, Passes, Slack, gain};
+use super::link_laws::LawColumns;
 use super::state::{self, ParticleColumns};
 use crate::lanes::{Kernel, Lanes, MOST, Numbers, ReadColumn, Readable, Two, V3, WriteColumn, reciprocal_root};
-
-/// How often a substep solves links.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Passes {
-    /// Once. A link that starts from no tension then carries C / ((w_a + w_b) + alpha / dt^2) at rest, too little by what
-    /// its own ends give; the denominator's greater part alone gives what its stiffness says, as long as that is within
-    /// what one substep carries, and never draws its ends past each other.
-    Once,
-    /// More often, or from the tension that it has.
-    Many,
-}
 
 /// What the settings make of links.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -47,8 +38,7 @@ impl LinkGains {
         links.tuples.for_each(|place, [a, b]| {
             let w = weights[a as usize] + weights[b as usize];
             let (ends, own) = ((1.0 + gamma) * w, links.compliance[place] * per_dt2);
-            let weight = if passes == Passes::Once { ends.max(own) } else { ends + own };
-            self.gain[place] = if w > 0.0 && weight > 0.0 { weight.recip() } else { 0.0 };
+            self.gain[place] = gain(ends, own, passes);
         });
     }
 
@@ -58,14 +48,48 @@ impl LinkGains {
     }
 }
 
+/// What lengths, gain and compliance of links are read from: as baked and prepared, or as their laws have them now.
+#[derive(Clone, Copy)]
+pub struct LinkColumns<'a> {
+    /// Rest length (m) where there is compliance or damping, else 1 over its square (1/m2) `[places]`.
+    pub rest: ReadColumn<'a>,
+    /// Gain ([`LinkGains::gain`]) `[places]`.
+    pub gain: ReadColumn<'a>,
+    /// Inverse stiffness (m/N) `[places]`.
+    pub compliance: ReadColumn<'a>,
+    /// Least tension that each may come to (N s2) `[places]`; nothing where they push as they pull.
+    pub least: Option<ReadColumn<'a>>,
+    /// Whether `rest` is a length.
+    pub lengths: bool,
+}
+
+impl<'a> LinkColumns<'a> {
+    /// Of links with one slope, as baked; `soft` says that they have compliance or damping.
+    pub fn baked(links: &'a Links, gains: &'a LinkGains, soft: bool) -> Self {
+        Self {
+            rest: ReadColumn::new(if soft { &links.rest } else { &gains.per_rest2 }),
+            gain: ReadColumn::new(&gains.gain),
+            compliance: ReadColumn::new(&links.compliance),
+            least: None,
+            lengths: soft,
+        }
+    }
+
+    /// As their laws have them.
+    pub fn lawful(law: LawColumns<'a>) -> Self {
+        let [rest, gain, compliance, least] = [law.rest, law.gain, law.compliance, law.least].map(WriteColumn::to_read);
+        Self { rest, gain, compliance, least: Some(least), lengths: true }
+    }
+}
+
 /// One owner's share of one set.
 pub struct SolveLinks<'a> {
     /// The garment's particles.
     pub columns: ParticleColumns<'a>,
     /// All links of the garment.
     pub links: &'a Links,
-    /// What the settings made of them.
-    pub gains: &'a LinkGains,
+    /// Their parameters.
+    pub parameters: LinkColumns<'a>,
     /// The set that is solved now.
     pub set: &'a ConstraintSet,
     /// Owner whose share is solved.
@@ -83,7 +107,7 @@ impl Kernel for SolveLinks<'_> {
     #[inline(always)]
     fn run<L: Lanes>(mut self) {
         self.columns = self.columns.level();
-        if self.gamma > 0.0 || self.tension.is_some() { self.all::<L, true>() } else { self.all::<L, false>() }
+        if self.parameters.lengths { self.all::<L, true>() } else { self.all::<L, false>() }
     }
 }
 
@@ -110,8 +134,7 @@ impl SolveLinks<'_> {
         for run in &tuples.runs[share.runs.start as usize..share.runs.end as usize] {
             self.row::<L, SOFT>(run, 0, run.len);
         }
-        let (rest, gain) = (self.rest::<SOFT>(), ReadColumn::new(&self.gains.gain));
-        let soft = ReadColumn::new(&self.links.compliance);
+        let LinkColumns { rest, gain, compliance: soft, .. } = self.parameters;
         let loose = &self.links.tuples.loose;
         let mut k = 0;
         while k < share.loose.len() {
@@ -119,19 +142,19 @@ impl SolveLinks<'_> {
             let first = share.loose.start as usize + k;
             let (at, number) = (share.loose_at as usize + k, share.loose_serial as usize + k);
             let slack = match self.tension.filter(|_| SOFT) {
-                Some((t, per_dt2)) => part::<L>(t, number, n) * part(soft, at, n) * L::splat(per_dt2),
-                None => L::splat(0.0),
+                Some((t, per_dt2)) => {
+                    let tension = part::<L>(t, number, n);
+                    Slack {
+                        gives: tension * part(soft, at, n) * L::splat(per_dt2),
+                        least: self.least::<L>(at, n) - tension,
+                    }
+                }
+                None => Slack::none(),
             };
             let pull = self.listed::<L, SOFT>(&loose[first..first + n], [rest, gain], at, slack);
             self.count::<L, SOFT>(pull, number, n);
             k += n;
         }
-    }
-
-    /// What lengths are measured by: the rest length where there is compliance or damping, else 1 over its square.
-    #[inline(always)]
-    fn rest<const SOFT: bool>(&self) -> ReadColumn<'_> {
-        ReadColumn::new(if SOFT { &self.links.rest } else { &self.gains.per_rest2 })
     }
 
     /// The links `from..to` of a run.
@@ -159,7 +182,8 @@ impl SolveLinks<'_> {
             let (place, [b, a]) = (slants.place(t), zigzag.slant(t).map(|p| p as usize));
             let w = self.columns.w;
             // What is alike counts with the masses of the first, here as within a vector: alike is not the same to the bit.
-            let own = [self.rest::<SOFT>().get(place), self.gains.gain[place], w.get(b), w.get(a)];
+            let LinkColumns { rest, gain, .. } = self.parameters;
+            let own = [rest.get(place), gain.get(place), w.get(b), w.get(a)];
             let p = if slants.alike { self.alike::<f32, SOFT>(slants) } else { own };
             let slack = self.slack::<f32, SOFT>(slants, t as usize, 1);
             let by = self.side_by_side::<f32, SOFT>([b, a], p, slack, 1);
@@ -170,7 +194,7 @@ impl SolveLinks<'_> {
     /// Rest length, gain and the weights of both ends of `n` links of a run.
     #[inline(always)]
     fn parameters<L: Numbers, const SOFT: bool>(&self, run: &ConstraintRun<2>, t: usize, n: usize) -> [L; 4] {
-        let (rest, gain) = (self.rest::<SOFT>(), ReadColumn::new(&self.gains.gain));
+        let LinkColumns { rest, gain, .. } = self.parameters;
         let ([a, b], at, w) = (run.first.map(|f| f as usize), run.at as usize, self.columns.w);
         if run.alike {
             return self.alike::<L, SOFT>(run);
@@ -182,7 +206,7 @@ impl SolveLinks<'_> {
     #[inline(always)]
     fn alike<L: Numbers, const SOFT: bool>(&self, run: &ConstraintRun<2>) -> [L; 4] {
         let ([a, b], at, w) = (run.first.map(|f| f as usize), run.at as usize, self.columns.w);
-        let [rest, gain] = [self.rest::<SOFT>().get(at), self.gains.gain[at]];
+        let [rest, gain] = [self.parameters.rest.get(at), self.parameters.gain.get(at)];
         [L::splat(rest), L::splat(gain), L::splat(w.get(a)), L::splat(w.get(b))]
     }
 
@@ -283,17 +307,27 @@ impl SolveLinks<'_> {
             return like;
         }
         let [a, b] = one.weights;
-        let (rest, gain, at) = (self.rest::<SOFT>(), ReadColumn::new(&self.gains.gain), slants.at as usize + t);
+        let (LinkColumns { rest, gain, .. }, at) = (self.parameters, slants.at as usize + t);
         [L::load(rest, at), L::load(gain, at), b, a.with_first(next.weights[0]).rotate_down()]
     }
 
     /// What `n` links of a run give by their compliance under the tension that they have (m).
     #[inline(always)]
-    fn slack<L: Numbers, const SOFT: bool>(&self, run: &ConstraintRun<2>, t: usize, n: usize) -> L {
-        let Some((tension, per_dt2)) = self.tension.filter(|_| SOFT) else { return L::splat(0.0) };
-        let (soft, at) = (ReadColumn::new(&self.links.compliance), run.place(t as u32));
+    fn slack<L: Numbers, const SOFT: bool>(&self, run: &ConstraintRun<2>, t: usize, n: usize) -> Slack<L> {
+        let Some((tension, per_dt2)) = self.tension.filter(|_| SOFT) else { return Slack::none() };
+        let (soft, at) = (self.parameters.compliance, run.place(t as u32));
         let soft = if run.alike { L::splat(soft.get(at)) } else { part(soft, at, n) };
-        part::<L>(tension, run.serial as usize + t, n) * soft * L::splat(per_dt2)
+        let tension = part::<L>(tension, run.serial as usize + t, n);
+        Slack { gives: tension * soft * L::splat(per_dt2), least: self.least::<L>(at, n) - tension }
+    }
+
+    /// Least tension of `n` links from a place on; links that have one are not alike.
+    #[inline(always)]
+    fn least<L: Numbers>(&self, at: usize, n: usize) -> L {
+        match self.parameters.least {
+            Some(least) => part(least, at, n),
+            None => L::splat(NO_LEAST),
+        }
     }
 
     /// Adds to the tension of links.
@@ -311,7 +345,7 @@ impl SolveLinks<'_> {
         links: &[[u32; 2]],
         [rest, gain]: [ReadColumn<'_>; 2],
         at: usize,
-        slack: L,
+        slack: Slack<L>,
     ) -> L {
         let c = &self.columns;
         let n = links.len();
@@ -340,7 +374,7 @@ impl SolveLinks<'_> {
         &self,
         [a, b]: [usize; 2],
         parameters: [L; 4],
-        slack: L,
+        slack: Slack<L>,
         n: usize,
     ) -> L {
         let [rest, gain, wa, wb] = parameters;
@@ -366,8 +400,8 @@ pub struct LinkParameters<L> {
     pub rest: L,
     /// Gain ([`LinkGains::gain`]).
     pub gain: L,
-    /// What they give by their compliance under the tension that they have (m).
-    pub slack: L,
+    /// What they give under the tension that they have, and by how much it may fall.
+    pub slack: Slack<L>,
     /// Inverse masses of both ends (1/kg).
     pub weights: [L; 2],
 }
@@ -385,11 +419,11 @@ pub fn push<L: Numbers, const SOFT: bool>(
     }
     let length2 = d.dot(d);
     let inverse = reciprocal_root(length2);
-    let mut stretch = length2 * inverse - rest - slack;
+    let mut stretch = length2 * inverse - rest - slack.gives;
     if let Some((moved, gamma)) = moved {
         stretch = stretch + d.dot(moved) * inverse * L::splat(gamma);
     }
-    let by = stretch * gain;
+    let by = (stretch * gain).max(slack.least);
     let pull = by * inverse;
     ([d * (pull * weights[0]), d * (pull * weights[1])], by)
 }

@@ -33,6 +33,8 @@ pub struct SolveCrossing<'a> {
     pub columns: ParticleColumns<'a>,
     /// All fibers by index list.
     pub lists: &'a FiberLists,
+    /// Rest length (m) and compliance (m/N) of their links, as baked or as their laws have them now.
+    pub links: [ReadColumn<'a>; 2],
     /// Index of the set that is solved now.
     pub set: usize,
     /// Owner whose share of it is solved.
@@ -101,8 +103,8 @@ impl Ring<'_> {
     }
 
     #[inline(always)]
-    fn parameter<L: Lanes>(&self, from: &[f32], link: usize) -> L {
-        self.numbers(ReadColumn::new(from), link)
+    fn parameter<L: Lanes>(&self, from: ReadColumn<'_>, link: usize) -> L {
+        self.numbers(from, link)
     }
 
     #[inline(always)]
@@ -165,10 +167,10 @@ impl Ring<'_> {
             let d = q - p;
             let length2 = d.dot(d);
             let inverse = reciprocal_root(length2);
-            let stretch = length2 * inverse - self.parameter::<L>(&self.solve.lists.rest, link);
+            let stretch = length2 * inverse - self.parameter::<L>(self.solve.links[0], link);
             let stretch = match self.solve.tension.filter(|_| !ZERO) {
                 Some(tension) => {
-                    let soft = self.parameter::<L>(&self.solve.lists.compliance, link) * L::splat(self.solve.per_dt2);
+                    let soft = self.parameter::<L>(self.solve.links[1], link) * L::splat(self.solve.per_dt2);
                     stretch - self.numbers::<L>(tension, link) * soft
                 }
                 None => stretch,
@@ -182,7 +184,7 @@ impl Ring<'_> {
     /// The entry of a link on the matrix's diagonal.
     #[inline(always)]
     fn diagonal<L: Lanes, const ZERO: bool>(&self, link: usize) -> L {
-        let soft = self.parameter::<L>(&self.solve.lists.compliance, link);
+        let soft = self.parameter::<L>(self.solve.links[1], link);
         let soft = if ZERO {
             soft.select(L::splat(0.1 * ENDED).lt(soft), L::splat(0.0))
         } else {
@@ -256,7 +258,7 @@ impl Ring<'_> {
     /// Writes a row, moved by `pull` times its weight.
     #[inline(always)]
     fn shift<L: Lanes>(&self, row: usize, pull: V3<L>, link: usize) {
-        let reach = self.parameter::<L>(&self.solve.lists.rest, link) * L::splat(FARTHEST);
+        let reach = self.parameter::<L>(self.solve.links[0], link) * L::splat(FARTHEST);
         let by = limited(pull * self.kept::<L>(row, WEIGHT), reach);
         (self.kept3::<L>(row, 0) + by).scatter(self.solve.columns.x, self.index(row), self.n);
     }

@@ -13,6 +13,8 @@ pub mod fibers;
 pub mod friction_rows;
 pub mod guard;
 pub mod layers;
+pub mod link_gain;
+pub mod link_laws;
 pub mod links;
 pub mod lists;
 pub mod measure;
@@ -81,6 +83,8 @@ pub struct Cloth {
     room: stiff_bending::StiffBendingScratch,
     /// What bending remembers by friction; empty where nothing rubs.
     friction: bend_friction::FrictionState,
+    /// What links are by their laws; empty where one slope is all.
+    laws: link_laws::LawState,
     /// Room for what is solved along the bias.
     leaning: diagonals::DiagonalScratch,
     /// Tensions of weft links, of fibers, of crossing fibers within a substep; empty where they have no compliance.
@@ -124,6 +128,7 @@ impl Cloth {
             records: Store::zeros(if prepared.reads_records() { RECORD * (start.len() + OWNERS) } else { 0 }),
             room: stiff_bending::StiffBendingScratch::new(if prepared.stiff() { start.len() } else { 0 }),
             friction: bend_friction::FrictionState::new(&prepared.friction, start.len()),
+            laws: link_laws::LawState::new(layout),
             leaning: diagonals::DiagonalScratch::new(&garment.layout().diagonals, garment.start.len()),
             strains: vec![0.0; garment.strain_edges.len()].into(),
             prepared,
@@ -196,6 +201,12 @@ impl Cloth {
         if self.sticks().len() == other.sticks().len() {
             self.friction.sticks_mut().copy_from_slice(other.sticks());
         }
+        self.laws.remember(&other.laws);
+    }
+
+    /// Where links stick by friction, kind after kind (1); empty where one slope is all.
+    pub fn link_sticks(&self) -> impl Iterator<Item = &[f32]> {
+        self.laws.sticks().filter(|s| !s.is_empty())
     }
 
     /// Where bending sticks by friction, in the order of its slots (sqrt(N/m) m); empty where nothing rubs.
@@ -255,6 +266,7 @@ impl Cloth {
             + self.records.bytes()
             + self.room.bytes()
             + self.friction.bytes()
+            + self.laws.bytes()
             + self.leaning.bytes()
             + self.scratch.iter().map(Store::bytes).sum::<usize>()
             + self.tension.iter().map(Store::bytes).sum::<usize>()

@@ -8,7 +8,9 @@ use toile_assets::limits::STEP_SECONDS;
 
 use super::bending_matrix::BendingMatrix;
 use super::friction_rows::{FrictionRows, STICKING};
-use super::links::{LinkGains, Passes};
+use super::link_gain::Passes;
+use super::link_laws::{self, LawRows};
+use super::links::LinkGains;
 use super::program::{Bending, Program};
 use super::record_links::RecordLinks;
 use super::stiff_bending::{self, ChebyshevStage};
@@ -50,6 +52,8 @@ pub struct Prepared {
     pub matrix: BendingMatrix,
     /// Friction in bending of the garment.
     pub friction: FrictionRows,
+    /// Where the links are that have laws.
+    pub laws: [LawRows; link_laws::KINDS],
     /// How bending goes on.
     pub bend: bending::BendingPace,
     /// Bending's phases of a substep, and its stages where it is stiff.
@@ -86,15 +90,23 @@ impl Prepared {
             shear_every: 1,
             shear: LinkGains::new(&layout.shear),
             weft: LinkGains::new(&layout.weft),
-            records: [&layout.shear, &layout.weft].map(|l| RecordLinks::of(l, &garment.inverse_mass)),
+            // Records hold what was baked, which laws change in each substep.
+            records: [(&layout.shear, &layout.laws.shear), (&layout.weft, &layout.laws.weft)]
+                .map(|(l, laws)| RecordLinks::of(l, &garment.inverse_mass).filter(|_| laws.is_empty())),
             matrix,
             friction,
+            laws: LawRows::of(garment),
             bend: bending::BendingPace { every: 1, stages: 1, least: 1.0, friction_every: 1, sticking: STICKING },
             bending,
             stages: [ChebyshevStage::default(); stiff_bending::MAX_BENDING_STAGES as usize],
             stiff,
             load,
-            soft: [&layout.weft.compliance, &layout.fibers.compliance, &layout.crossing.compliance].map(|c| soft(c)),
+            soft: [
+                (&layout.weft.compliance, &layout.laws.weft),
+                (&layout.fibers.compliance, &layout.laws.fibers),
+                (&layout.crossing.compliance, &layout.laws.crossing),
+            ]
+            .map(|(compliance, laws)| !laws.is_empty() || soft(compliance)),
         }
     }
 
@@ -189,6 +201,7 @@ impl Prepared {
             + self.weft.bytes()
             + self.matrix.bytes()
             + self.friction.bytes()
+            + self.laws.iter().map(LawRows::bytes).sum::<usize>()
             + self.records.iter().flatten().map(RecordLinks::bytes).sum::<usize>()
     }
 }

@@ -39,6 +39,8 @@ pub enum Stage {
     StiffBending(u32),
     /// Gravity, air, wind; skinned particles move on.
     Predict,
+    /// What links are in this substep, by the strain that they had and are about to have.
+    LinkLaws,
     /// A family of fibers along the bias.
     Diagonals(u16),
     /// The particles' records, for the links that follow.
@@ -82,7 +84,7 @@ impl Stage {
             | Self::StiffBendingRecords(_)
             | Self::StiffBending(_) => 1,
             Self::Diagonals(_) | Self::Shear(_) => 2,
-            Self::Weft(_) | Self::EnterRecords | Self::LeaveRecords => 3,
+            Self::Weft(_) | Self::LinkLaws | Self::EnterRecords | Self::LeaveRecords => 3,
             Self::Fibers | Self::Crossing(_) => 4,
             Self::ContactAndVelocities | Self::BroadPhase => 5,
             Self::Wind | Self::WindAcross => 6,
@@ -153,6 +155,7 @@ pub fn constraints(layout: &Layout, quality: Quality) -> Box<[Stage]> {
     let wefts = || numbered(layout.weft.tuples.sets.len(), Stage::Weft);
     let fibers = || numbered(layout.crossing.sets.len(), Stage::Crossing).chain([Stage::Fibers]);
     let mut stages = vec![Stage::Predict];
+    stages.extend(layout.laws.acts().then_some(Stage::LinkLaws));
     stages.extend(numbered(layout.diagonals.families.len(), Stage::Diagonals));
     stages.extend(shear());
     stages.extend(wefts().chain(fibers()));

@@ -6,6 +6,7 @@ use std::ops::Range;
 
 use toile_assets::garment::layout::{ConstraintRun, Links, OWNERS};
 
+use super::link_gain::Slack;
 use super::links::{LinkGains, LinkParameters, push};
 use crate::lanes::{Kernel, Lanes, MOST, ReadColumn, RecordList, V3, WriteColumn};
 
@@ -243,7 +244,7 @@ impl SolveRecordLinks<'_> {
         let mut k = range.start;
         while k < range.end {
             let [rest, gain, wa, wb] = self.numbers::<L, 4>(k);
-            let parameters = LinkParameters { rest, gain, slack: L::splat(0.0), weights: [wa, wb] };
+            let parameters = LinkParameters { rest, gain, slack: Slack::none(), weights: [wa, wb] };
             self.solve::<L, false>(k, parameters);
             k += L::N;
         }
@@ -255,7 +256,7 @@ impl SolveRecordLinks<'_> {
         while k < range.end {
             let [rest, gain, wa, wb, soft] = self.numbers::<L, 5>(k);
             let so_far = L::load(tension, k);
-            let slack = so_far * soft * per_dt2;
+            let slack = Slack { gives: so_far * soft * per_dt2, ..Slack::none() };
             let by = self.solve::<L, true>(k, LinkParameters { rest, gain, slack, weights: [wa, wb] });
             (so_far + by).store(tension, k);
             k += L::N;

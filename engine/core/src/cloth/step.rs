@@ -143,6 +143,7 @@ impl Cloth {
             records: self.records.column(),
             room: self.room.columns(),
             friction: self.friction.columns(),
+            laws: self.laws.columns(),
             leaning: self.leaning.columns(),
         };
         StepWork {

@@ -10,7 +10,9 @@ use glam::Vec3A;
 use toile_assets::garment::Garment;
 use toile_assets::garment::layout::{FiberLists, Layout, Links, OWNERS};
 
-use super::links::LinkGains;
+use super::link_gain::Passes;
+use super::link_laws::{self, FollowLaws, LawColumns, LawGain};
+use super::links::{LinkColumns, LinkGains};
 use super::pins::Pins;
 use super::prepared::Prepared;
 use super::program::Stage;
@@ -21,7 +23,7 @@ use super::{
     Quality, Step, Wind, bend_friction, bending, contact, diagonals, fibers, links, lists, predict, record_links,
     records, settle, stiff_bending, tethers, wind,
 };
-use crate::lanes::{Shared, Width, WriteColumn};
+use crate::lanes::{ReadColumn, Shared, Width, WriteColumn};
 use crate::workers::PerShare;
 
 /// Everything that the shares of one step have in common.
@@ -69,6 +71,8 @@ pub struct WorkColumns<'a> {
     pub room: [[WriteColumn<'a>; 3]; 3],
     /// What bending remembers by friction; empty where nothing rubs.
     pub friction: bend_friction::FrictionColumns<'a>,
+    /// What links are by their laws; empty where one slope is all.
+    pub laws: [LawColumns<'a>; link_laws::KINDS],
     /// Scratch of what is solved along the bias.
     pub leaning: [WriteColumn<'a>; diagonals::KEPT],
 }
@@ -91,6 +95,7 @@ impl StepWork<'_> {
         //   which are fixed and not written);
         // - a row of the bending matrix is its particle's owner's, and what bends is not what is pushed; a slot of friction is the
         //   owner's of the particle in its middle, a row that it pushes its own particle's;
+        // - the laws of links write to columns of their places, of which each is one owner's, and only read particles;
         // - constraints of one set and different owners share no particle (`garment::layout`), and each has its own tension;
         //   links by records fill up with one spare record an owner;
         // - each owner has a scratch of its own, and half of the tensions to clear.
@@ -128,6 +133,7 @@ impl OwnerShare<'_, '_> {
             Stage::StiffBendingTurn(stage) => self.stiff_bending_turn(stage),
             Stage::StiffBendingRecords(stage) => self.fill_records(self.stiffly_bent(stage)[0]),
             Stage::StiffBending(stage) => self.stiff_bending(stage),
+            Stage::LinkLaws => self.link_laws(),
             Stage::Predict => self.predict(),
             Stage::Diagonals(family) => self.diagonals(family),
             Stage::EnterRecords => self.fill_records(self.columns.particles.x),
@@ -274,6 +280,43 @@ impl OwnerShare<'_, '_> {
         });
     }
 
+    /// What links are in this substep.
+    fn link_laws(&self) {
+        let (work, p) = (self.work, self.work.prepared);
+        let layout = work.layout();
+        let gain = |passes| Some(LawGain { damped: 1.0 + p.gamma, passes });
+        let baked = [
+            [&layout.diagonals.rest, &layout.diagonals.compliance],
+            [&layout.shear.rest, &layout.shear.compliance],
+            [&layout.weft.rest, &layout.weft.compliance],
+            [&layout.fibers.rest, &layout.fibers.compliance],
+            [&layout.crossing.rest, &layout.crossing.compliance],
+        ];
+        let gains = [None, gain(Passes::Once), gain(Passes::Many), None, None];
+        for (kind, table) in layout.laws.tables().into_iter().enumerate().filter(|(_, t)| !t.is_empty()) {
+            work.width.run(FollowLaws {
+                columns: self.columns.particles,
+                rows: &p.laws[kind],
+                owner: self.owner,
+                table,
+                baked: baked[kind].map(|c| &**c),
+                to: self.columns.laws[kind],
+                per_dt2: (p.dt * p.dt).recip(),
+                gain: gains[kind],
+            });
+        }
+    }
+
+    /// Rest length and compliance of links of a kind, as baked or as their laws have them.
+    fn parameters<'b>(&'b self, kind: usize, baked: [&'b [f32]; 2]) -> [ReadColumn<'b>; 2] {
+        let law = self.columns.laws[kind];
+        if self.work.layout().laws.tables()[kind].is_empty() {
+            baked.map(ReadColumn::new)
+        } else {
+            [law.rest, law.compliance].map(WriteColumn::to_read)
+        }
+    }
+
     /// Gravity, air, wind; skinned particles move on.
     fn predict(&self) {
         let (work, p, columns) = (self.work, self.work.prepared, self.columns.particles);
@@ -306,7 +349,8 @@ impl OwnerShare<'_, '_> {
         let strand = &diagonals.families[usize::from(family)][self.owner];
         let per_dt2 = (p.dt * p.dt).recip() / p.shear_every as f32;
         let (columns, room, gamma) = (self.columns.particles, self.columns.leaning, p.gamma);
-        work.width.run(diagonals::SolveDiagonals { columns, diagonals, strand, room, per_dt2, gamma });
+        let links = self.parameters(0, [&diagonals.rest, &diagonals.compliance]);
+        work.width.run(diagonals::SolveDiagonals { columns, diagonals, links, strand, room, per_dt2, gamma });
     }
 
     /// A set of shear links.
@@ -314,7 +358,7 @@ impl OwnerShare<'_, '_> {
         let p = self.work.prepared;
         match p.records(0) {
             Some(links) => self.record_links(links, set, None),
-            None => self.links(&self.work.layout().shear, &p.shear, set, None),
+            None => self.links(&self.work.layout().shear, &p.shear, link_laws::SHEAR, set, None),
         }
     }
 
@@ -324,16 +368,20 @@ impl OwnerShare<'_, '_> {
         let tension = self.tension(0).map(|t| (t, (p.dt * p.dt).recip()));
         match p.records(1) {
             Some(links) => self.record_links(links, set, tension),
-            None => self.links(&self.work.layout().weft, &p.weft, set, tension),
+            None => self.links(&self.work.layout().weft, &p.weft, link_laws::WEFT, set, tension),
         }
     }
 
     /// Warp fibers, each solved directly.
     fn fibers(&self) {
         let (work, p) = (self.work, self.work.prepared);
+        let fibers = &work.layout().fibers;
         work.width.run(fibers::SolveFibers {
             columns: self.columns.particles,
-            fibers: &work.layout().fibers,
+            fibers,
+            links: self.parameters(link_laws::FIBERS, [&fibers.rest, &fibers.compliance]),
+            least: (!work.layout().laws.fibers.is_empty())
+                .then(|| self.columns.laws[link_laws::FIBERS].least.to_read()),
             owner: self.owner,
             scratch: self.columns.scratch[self.owner],
             per_dt2: (p.dt * p.dt).recip(),
@@ -350,6 +398,7 @@ impl OwnerShare<'_, '_> {
         work.width.run(lists::SolveCrossing {
             columns: self.columns.particles,
             lists,
+            links: self.parameters(link_laws::CROSSING, [&lists.rest, &lists.compliance]),
             set: usize::from(set),
             owner: self.owner,
             scratch: self.columns.scratch[self.owner],
@@ -385,10 +434,15 @@ impl OwnerShare<'_, '_> {
     }
 
     /// A set of links of one kind.
-    fn links(&self, links: &Links, gains: &LinkGains, set: u16, tension: Option<(WriteColumn<'_>, f32)>) {
+    fn links(&self, links: &Links, gains: &LinkGains, kind: usize, set: u16, tension: Option<(WriteColumn<'_>, f32)>) {
         let (columns, owner, gamma) = (self.columns.particles, self.owner, self.work.prepared.gamma);
         let set = &links.tuples.sets[usize::from(set)];
-        self.work.width.run(links::SolveLinks { columns, links, gains, set, owner, gamma, tension });
+        let parameters = if self.work.layout().laws.tables()[kind].is_empty() {
+            LinkColumns::baked(links, gains, gamma > 0.0 || tension.is_some())
+        } else {
+            LinkColumns::lawful(self.columns.laws[kind])
+        };
+        self.work.width.run(links::SolveLinks { columns, links, parameters, set, owner, gamma, tension });
     }
 
     /// A set of links by records.

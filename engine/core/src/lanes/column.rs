@@ -258,6 +258,12 @@ impl<'a> WriteColumn<'a> {
         Self { data: self.place(start, len), len, owner: PhantomData }
     }
 
+    /// The same numbers, to read, for as long as the column is there.
+    #[inline(always)]
+    pub fn to_read(self) -> ReadColumn<'a> {
+        ReadColumn { data: self.data, len: self.len, lender: PhantomData }
+    }
+
     /// One number.
     ///
     /// # Panics

@@ -7,6 +7,7 @@ use std::time::Instant;
 
 use glam::Vec3A;
 use serde::Serialize;
+use toile_assets::fabric::Fabric;
 use toile_assets::garment::Garment;
 use toile_assets::numeric::statistics::{quantile, quantile_of};
 use toile_engine::cloth::{Cloth, Quality, Settings, Step, Wind};
@@ -119,6 +120,16 @@ fn variants(scene: &Scene) -> Vec<Variant> {
     add("bending", true, &Garment::leave_out_bending, &alike);
     if scene.garments.iter().any(|g| !g.layout().friction.slots.is_empty()) {
         add("friction in bending", true, &Garment::leave_out_bend_friction, &alike);
+    }
+    let fabrics = || scene.garments.iter().map(|g| &g.fabric);
+    if fabrics().any(|f| f.stretch.warp.is_some() || f.stretch.weft.is_some() || f.shear_lock.is_some()) {
+        add("second slopes of stretch and shear", true, &Garment::leave_out_second_slopes, &alike);
+    }
+    if fabrics().any(Fabric::rubs_in_links) {
+        add("friction in shear and stretch", true, &Garment::leave_out_link_friction, &alike);
+    }
+    if fabrics().any(|f| f.buckling) {
+        add("threads that buckle", true, &Garment::leave_out_buckling, &alike);
     }
     add("shear", true, &Garment::leave_out_shear, &alike);
     add("friction", true, &|g| g.fabric.friction = 0.0, &alike);

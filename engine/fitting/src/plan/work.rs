@@ -178,7 +178,7 @@ impl Count<'_> {
     /// Lanes of runs, and of what is in none; all of them where they are solved by records.
     fn links(&self, links: &Links) -> [f64; 2] {
         let tuples = &links.tuples;
-        if record_links::preferred(links, self.garment.particles()) {
+        if record_links::preferred(links, self.garment.particles()) && !self.garment.layout().laws.acts() {
             return [0.0, tuples.count as f64 / self.lanes as f64];
         }
         let zigzags = tuples.zigzags.iter().flat_map(|z| [z.straights.len, z.slants.len]);
@@ -221,7 +221,9 @@ impl Count<'_> {
         let weft = &self.garment.layout().weft;
         let [runs, loose] = self.links(weft);
         let passes = self.times(Stage::Weft(0));
-        [runs * passes, loose * passes, weft.tuples.sets.len() as f64 * passes, 0.0]
+        // Laws look at every link once; each takes about as long as a link.
+        let laws: usize = self.garment.layout().laws.tables().iter().map(|t| t.len()).sum();
+        [runs * passes + self.vectors(laws), loose * passes, weft.tuples.sets.len() as f64 * passes, 0.0]
     }
 
     fn fibers(&self) -> [f64; KINDS] {
@@ -244,7 +246,7 @@ impl Count<'_> {
             (&layout.fibers.compliance, layout.fibers.links),
             (&layout.crossing.compliance, layout.crossing.rest.len()),
         ];
-        let gives = |c: &[f32]| c.iter().any(|c| (1e-6..ENDED).contains(c));
+        let gives = |c: &[f32]| layout.laws.acts() || c.iter().any(|c| (1e-6..ENDED).contains(c));
         all.into_iter().filter(|(c, _)| gives(c)).map(|(_, count)| count as f64).sum()
     }
 }

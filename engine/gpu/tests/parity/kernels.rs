@@ -14,7 +14,7 @@ use toile_engine::cloth::wind::{Accelerations, Faces, WindPart};
 use toile_engine::cloth::{
     RootSettings, Settings, Wind, centre, diagonals, fibers, links, lists, predict, records, settle, tethers,
 };
-use toile_engine::lanes::{RECORD, Store, Width, WriteColumn};
+use toile_engine::lanes::{RECORD, ReadColumn, Store, Width, WriteColumn};
 use toile_gpu::cloth::Kernel;
 
 use crate::scene::{apart, around, disturbed, nobody, offload, skirt, swaying, worn};
@@ -76,7 +76,8 @@ impl<'a> Twin<'a> {
                 let (diagonals, gamma, per_dt2) = (&layout.diagonals, p.gamma, per_dt2 / p.shear_every as f32);
                 for strand in diagonals.families.iter().flatten() {
                     let room = room.columns();
-                    width.run(diagonals::SolveDiagonals { columns, diagonals, strand, room, per_dt2, gamma });
+                    let links = [&diagonals.rest, &diagonals.compliance].map(|c| ReadColumn::new(c));
+                    width.run(diagonals::SolveDiagonals { columns, diagonals, links, strand, room, per_dt2, gamma });
                 }
             }
             Kernel::Shear | Kernel::Weft => {
@@ -85,7 +86,9 @@ impl<'a> Twin<'a> {
                 for set in &links.tuples.sets {
                     for owner in 0..OWNERS {
                         let tension = (weft && p.soft[0]).then(|| (tension.column(), per_dt2));
-                        width.run(links::SolveLinks { columns, links, gains, set, owner, gamma: p.gamma, tension });
+                        let gamma = p.gamma;
+                        let parameters = links::LinkColumns::baked(links, gains, gamma > 0.0 || tension.is_some());
+                        width.run(links::SolveLinks { columns, links, parameters, set, owner, gamma, tension });
                     }
                 }
             }
@@ -94,6 +97,8 @@ impl<'a> Twin<'a> {
                     width.run(fibers::SolveFibers {
                         columns,
                         fibers: &layout.fibers,
+                        links: [&layout.fibers.rest, &layout.fibers.compliance].map(|c| ReadColumn::new(c)),
+                        least: None,
                         owner,
                         scratch: scratch.column(),
                         per_dt2,
@@ -107,7 +112,8 @@ impl<'a> Twin<'a> {
                 for (set, owner) in (0..layout.crossing.sets.len()).flat_map(|s| [(s, 0), (s, 1)]) {
                     let (lists, scratch) = (&layout.crossing, scratch.column());
                     let tension = p.soft[2].then(|| tension.column());
-                    width.run(lists::SolveCrossing { columns, lists, set, owner, scratch, per_dt2, tension });
+                    let links = [&lists.rest, &lists.compliance].map(|c| ReadColumn::new(c));
+                    width.run(lists::SolveCrossing { columns, lists, links, set, owner, scratch, per_dt2, tension });
                 }
             }
             Kernel::Tethers => {

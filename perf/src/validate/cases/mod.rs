@@ -10,6 +10,7 @@ mod contact;
 mod hysteresis;
 mod invariance;
 pub mod layered;
+mod links;
 mod motion;
 mod rope;
 mod search;
@@ -24,6 +25,7 @@ pub fn all() -> Vec<ValidationCase> {
         hysteresis::cases,
         buckling::cases,
         strings::cases,
+        links::cases,
         motion::cases,
         contact::cases,
         layered::cases,

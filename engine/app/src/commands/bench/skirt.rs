@@ -67,6 +67,13 @@ pub struct SkirtArgs {
     /// With friction in bending: the loops of a wool tropical
     #[arg(long)]
     hysteresis: bool,
+    /// With stretch of two slopes and shear that rubs and locks
+    #[arg(long)]
+    curves: bool,
+    /// With threads that give way where they are pushed together; of `--stretch physical` or `--curves`, for what does not stretch
+    /// cannot
+    #[arg(long)]
+    buckling: bool,
     /// Wind of (1, 0, 0.5) m/s with drag 0.1 and lift 0.05
     #[arg(long)]
     wind: bool,
@@ -78,7 +85,7 @@ pub struct SkirtArgs {
     threads: usize,
     /// Step this garment of the wardrobe on a performing mannequin in place of the skirt; again for an outfit
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(wardrobe::names()),
-          conflicts_with_all = ["verts", "motion", "mesh", "stretch", "hysteresis", "wind", "garments",
+          conflicts_with_all = ["verts", "motion", "mesh", "stretch", "hysteresis", "curves", "buckling", "wind", "garments",
                                  "table"])]
     garment: Vec<String>,
     /// With several garments: let them pass through each other
@@ -147,6 +154,8 @@ impl SkirtArgs {
             mesh: self.mesh,
             stretch: self.stretch,
             hysteresis: self.hysteresis,
+            curves: self.curves,
+            buckling: self.buckling,
             wind: self.wind,
             folds: self.folds,
             threads: self.threads,
@@ -179,6 +188,8 @@ impl SkirtArgs {
         self.quality.into_iter().for_each(|q| give("quality", q.name().to_owned()));
         self.substeps.into_iter().for_each(|s| give("substeps", s.to_string()));
         options.extend(self.hysteresis.then(|| "--hysteresis".to_owned()));
+        options.extend(self.curves.then(|| "--curves".to_owned()));
+        options.extend(self.buckling.then(|| "--buckling".to_owned()));
         options.extend(self.wind.then(|| "--wind".to_owned()));
         options.extend(self.folds.then(|| "--self".to_owned()));
         TurnCase { name, options }

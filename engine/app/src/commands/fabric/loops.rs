@@ -2,7 +2,9 @@
 
 use serde::Serialize;
 use toile_assets::fabric::Fabric;
-use toile_assets::fabric::friction_element::{FrictionElement, read_loop};
+use toile_assets::fabric::friction_element::read_loop;
+use toile_assets::fabric::link_law::LinkLaw;
+use toile_assets::fabric::stretch_curve::StretchCurve;
 use toile_perf::plot::axis::Axis;
 use toile_perf::plot::chart::{Chart, Series, SeriesStyle};
 use toile_perf::plot::raster;
@@ -11,10 +13,11 @@ use toile_perf::plot::{BLACK, Drawing, SERIES_COLOURS};
 use crate::exit::AppError;
 
 /// A loop: how far it is made, between which deformations it is read, its words.
+#[derive(Clone, Copy)]
 struct LoopKind {
     name: &'static str,
-    /// Deformation to which the Kawabata system goes (1/m, rad).
-    most: f64,
+    /// Deformations between which it goes to and fro (1/m, rad, 1): the Kawabata system's.
+    most: [f64; 2],
     read: [f64; 2],
     /// What the Kawabata system calls stiffness and width.
     symbols: [&'static str; 2],
@@ -26,15 +29,10 @@ struct LoopKind {
 }
 
 /// KES-FB2: to 2.5 1/cm, read at .5 and 1.5.
-const BENDING: [LoopKind; 2] = [bending("bending, warp"), bending("bending, weft")];
-
-/// Both ways where they are alike.
-const BOTH: LoopKind = bending("warp and weft");
-
 const fn bending(name: &'static str) -> LoopKind {
     LoopKind {
         name,
-        most: 250.0,
+        most: [-250.0, 250.0],
         read: [50.0, 150.0],
         symbols: ["B", "2HB"],
         unit: ["uN m", "mN"],
@@ -46,7 +44,7 @@ const fn bending(name: &'static str) -> LoopKind {
 /// KES-FB1: to 8 degrees, read at .5 and 2.5.
 const SHEAR: LoopKind = LoopKind {
     name: "shear",
-    most: 8.0 * DEGREE,
+    most: [-8.0 * DEGREE, 8.0 * DEGREE],
     read: [0.5 * DEGREE, 2.5 * DEGREE],
     symbols: ["G", "2HG"],
     unit: ["N/m", "N/m"],
@@ -55,6 +53,20 @@ const SHEAR: LoopKind = LoopKind {
 };
 
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
+
+/// Behind the knee by a half, as drawn; read below it.
+fn stretch(name: &'static str, curve: &StretchCurve) -> LoopKind {
+    let knee = 0.01 * f64::from(curve.knee_percent);
+    LoopKind {
+        name,
+        most: [0.0, 1.5 * knee],
+        read: [0.4 * knee, 0.8 * knee],
+        symbols: ["E", "width"],
+        unit: ["N/m", "N/m"],
+        of_si: [1.0, 1.0],
+        scale: [100.0, 1.0],
+    }
+}
 
 /// One loop as measured and as the law gives it back.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -78,51 +90,76 @@ impl LoopReport {
     }
 }
 
-/// A loop with its element in SI units, its stiffness as measured and its width.
-type MeasuredLoop = (&'static LoopKind, FrictionElement, [f64; 2]);
+/// A loop with its law in SI units, its stiffness as measured and its width.
+type MeasuredLoop = (LoopKind, LinkLaw, [f64; 2]);
 
-/// The loops that a fabric has, of bending and of shear.
-fn elements(fabric: &Fabric) -> [Vec<MeasuredLoop>; 2] {
+/// The loops that a fabric has, of bending, of shear and of stretch.
+fn laws(fabric: &Fabric) -> [Vec<MeasuredLoop>; 3] {
     let widths = fabric.hysteresis;
-    let of = |kind: &'static LoopKind, stiffness: f32, width: f32| {
+    let of = |kind: LoopKind, stiffness: f32, width: f32| {
         let measured = [f64::from(stiffness), f64::from(width)];
         let [stiffness, width] = [0, 1].map(|k| measured[k] / kind.of_si[k]);
-        (measured[0] > 0.0 && measured[1] > 0.0).then(|| (kind, FrictionElement::new(stiffness, width), measured))
+        (kind, LinkLaw { half_width: 0.5 * width, ..LinkLaw::plain(stiffness) }, measured)
     };
-    let [warp, weft] = &BENDING;
-    let bending =
-        [of(warp, fabric.bend_warp_un_m, widths.bend_warp_mn), of(weft, fabric.bend_weft_un_m, widths.bend_weft_mn)];
-    let shear = of(&SHEAR, fabric.shear_n_m, widths.shear_n_m);
-    [bending.into_iter().flatten().collect(), shear.into_iter().collect()]
+    let warp = of(bending("bending, warp"), fabric.bend_warp_un_m, widths.bend_warp_mn);
+    let weft = of(bending("bending, weft"), fabric.bend_weft_un_m, widths.bend_weft_mn);
+    let rubs = |(_, _, [stiffness, width]): &MeasuredLoop| *stiffness > 0.0 && *width > 0.0;
+    let mut shear = of(SHEAR, fabric.shear_n_m, widths.shear_n_m);
+    if let Some(lock) = fabric.shear_lock {
+        let knee = f64::from(lock.degrees) * DEGREE;
+        (shear.1.knees, shear.1.behind) = ([-knee, knee], [f64::from(lock.beyond_n_m) / shear.1.slope; 2]);
+    }
+    let curves = [("stretch, warp", fabric.stretch.warp), ("stretch, weft", fabric.stretch.weft)];
+    let curves = curves.into_iter().filter_map(|(name, curve)| {
+        let curve = curve?;
+        Some((stretch(name, &curve), curve.law(), [curve.below_n_m(), curve.hysteresis_n_m].map(f64::from)))
+    });
+    [
+        [warp, weft].into_iter().filter(rubs).collect(),
+        Some(shear).filter(|s| rubs(s) || fabric.shear_lock.is_some()).into_iter().collect(),
+        curves.collect(),
+    ]
+}
+
+/// Whether there is anything to draw.
+pub fn any(fabric: &Fabric) -> bool {
+    laws(fabric).iter().any(|laws| !laws.is_empty())
 }
 
 /// The loops of a fabric's law, read.
 pub fn readings(fabric: &Fabric) -> Vec<LoopReport> {
-    let of = |(kind, mut element, measured): MeasuredLoop| {
-        let read = read_loop(kind.most, kind.read, |d| element.force(d));
+    let of = |(kind, mut law, measured): MeasuredLoop| {
+        let read = read_loop(kind.most[1], kind.read, |d| law.force(d));
         let [slope, width] = kind.of_si;
         LoopReport { name: kind.name, measured, read: [read.slope * slope, read.width * width], unit: kind.unit }
     };
-    elements(fabric).into_iter().flatten().map(of).collect()
+    laws(fabric).into_iter().flatten().map(of).collect()
 }
 
 /// Points of a branch.
 const POINTS: i32 = 250;
 
-/// A loop from the virgin state to both ends and back, in the units of the axes.
-fn curve(kind: &LoopKind, element: &mut FrictionElement) -> Vec<[f64; 2]> {
-    let up = 0..=POINTS;
-    let down = (-POINTS..POINTS).rev();
-    let again = -POINTS + 1..=POINTS;
-    let at = |k: i32| kind.most * f64::from(k) / f64::from(POINTS);
-    up.chain(down).chain(again).map(|k| [at(k) * kind.scale[0], element.force(at(k)) * kind.scale[1]]).collect()
+/// A loop from the virgin state to its far end, to the other and back, in the units of the axes. Stretch ends where nothing pulls any
+/// more.
+fn curve(kind: &LoopKind, law: &mut LinkLaw) -> Vec<[f64; 2]> {
+    let [low, high] = kind.most.map(|end| (end / kind.most[1] * f64::from(POINTS)) as i32);
+    let at = |k: i32| kind.most[1] * f64::from(k) / f64::from(POINTS);
+    let mut points = Vec::new();
+    for k in (0..=high).chain((low..high).rev()).chain(if low < 0 { low + 1..=high } else { 0..=-1 }) {
+        let force = law.force(at(k));
+        if low == 0 && force < 0.0 {
+            break;
+        }
+        points.push([at(k) * kind.scale[0], force * kind.scale[1]]);
+    }
+    points
 }
 
 /// Where the measured lines pass: stiffness and half of the width on both sides, at the two deformations at which they are read.
-fn measured(kind: &LoopKind, element: &FrictionElement) -> Vec<[f64; 2]> {
-    let at =
-        |d: f64, side: f64| [d * kind.scale[0], (element.stiffness * d + side * element.half_width) * kind.scale[1]];
-    kind.read.into_iter().flat_map(|d| [at(d, 1.0), at(d, -1.0), at(-d, 1.0), at(-d, -1.0)]).collect()
+fn measured(kind: &LoopKind, law: &LinkLaw) -> Vec<[f64; 2]> {
+    let at = |d: f64, side: f64| [d * kind.scale[0], (law.slope * d + side * law.half_width) * kind.scale[1]];
+    let both = |d: f64| if kind.most[0] < 0.0 { vec![d, -d] } else { vec![d] };
+    kind.read.into_iter().flat_map(both).flat_map(|d| [at(d, 1.0), at(d, -1.0)]).collect()
 }
 
 /// The loops as a picture, PNG.
@@ -135,35 +172,31 @@ pub fn png(fabric: &Fabric) -> Result<Vec<u8>, AppError> {
     Ok(png)
 }
 
-/// The loops as a drawing: bending above, shear below where it was measured.
+/// The loops as a drawing: bending above, shear and stretch below where they were measured.
 fn drawing(fabric: &Fabric) -> Drawing {
-    let [mut bending, shear] = elements(fabric);
-    if let [(_, _, warp), (_, _, weft)] = &bending[..]
-        && warp == weft
-    {
-        let (_, element, measured) = bending[0];
-        bending = vec![(&BOTH, element, measured)];
-    }
-    let mut charts = Vec::new();
+    let [bent, shear, stretched] = laws(fabric);
+    let [bent, stretched] = [bent, stretched].map(|loops| match &loops[..] {
+        [(kind, warp, measured), (_, weft, _)] if warp == weft => {
+            vec![(LoopKind { name: "warp and weft", ..*kind }, *warp, *measured)]
+        }
+        _ => loops,
+    });
     let title = |what: &str| format!("{}: {what}", fabric.title);
-    if !bending.is_empty() {
-        charts.push(chart(title("bending"), ["curvature (1/m)", "moment for a width (mN)"], bending));
-    }
-    if !shear.is_empty() {
-        charts.push(chart(
-            title("shear, as measured; the cloth steps without it"),
-            ["angle (degrees)", "force for a width (N/m)"],
-            shear,
-        ));
-    }
+    let axes = [
+        ("bending", ["curvature (1/m)", "moment for a width (mN)"]),
+        ("shear", ["angle (degrees)", "force for a width (N/m)"]),
+        ("stretch", ["strain (%)", "force for a width (N/m)"]),
+    ];
+    let loops = [bent, shear, stretched].into_iter().zip(axes).filter(|(loops, _)| !loops.is_empty());
+    let charts: Vec<Chart> = loops.map(|(loops, (what, labels))| chart(title(what), labels, loops)).collect();
     Drawing::stacked(charts.iter().map(Chart::draw))
 }
 
 fn chart(title: String, labels: [&'static str; 2], loops: Vec<MeasuredLoop>) -> Chart {
     let mut series = Vec::new();
-    for ((kind, mut element, figures), colour) in loops.into_iter().zip(SERIES_COLOURS) {
-        let rings = measured(kind, &element);
-        let points = curve(kind, &mut element);
+    for ((kind, mut law, figures), colour) in loops.into_iter().zip(SERIES_COLOURS) {
+        let rings = measured(&kind, &law);
+        let points = curve(&kind, &mut law);
         series.push(Series { name: kind.name.into(), points, style: SeriesStyle::line(colour, 2.0) });
         let [stiffness, width] = kind.symbols;
         let name =

@@ -36,7 +36,8 @@ fn solved(width: Width, positions: &[Vec3], weights: &[f32], links: &Links, gamm
     let mut state = State::new(positions, weights);
     let gains = prepared(links, weights, gamma);
     let set = &links.tuples.sets[0];
-    width.run(SolveLinks { columns: state.columns(), links, gains: &gains, set, owner: 0, gamma, tension: None });
+    let parameters = LinkColumns::baked(links, &gains, gamma > 0.0);
+    width.run(SolveLinks { columns: state.columns(), links, parameters, set, owner: 0, gamma, tension: None });
     (0..positions.len()).map(|i| Vec3::from_array(state.positions().map(|a| a[i]))).collect()
 }
 
@@ -238,7 +239,8 @@ fn by_records_links_have_the_bits_that_they_have_in_columns() {
                     .take(6 * links.tuples.sets.len())
                 {
                     let (columns, gamma) = (one.columns(), 0.0);
-                    width.run(SolveLinks { columns, links, gains: &gains, set, owner, gamma, tension: in_columns });
+                    let parameters = LinkColumns::baked(links, &gains, soft);
+                    width.run(SolveLinks { columns, links, parameters, set, owner, gamma, tension: in_columns });
                     width.run(SolveRecordLinks {
                         links: &records,
                         set: number,

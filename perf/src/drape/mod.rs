@@ -1,0 +1,14 @@
+//! Drape: a round specimen on Cusick's disc in each fabric, and a tablecloth over a rectangular table at several samplings.
+//!
+//! Reads: fabrics. Writes: drape coefficients, distances between samplings, pictures.
+//! Budget: a second a fabric and spacing; minutes for the tablecloth's finest.
+//! Thread: one, with nothing else running.
+
+mod cloth;
+mod cusick;
+mod shadow;
+mod tablecloth;
+
+pub use cloth::DrapeError;
+pub use cusick::{CusickRow, SPACINGS_MM, cusick, published_band};
+pub use tablecloth::{TableclothRow, TableclothStudy, VARIANTS, tablecloth};
