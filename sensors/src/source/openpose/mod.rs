@@ -9,7 +9,6 @@
 //! the cameras see are [matched](people), the shopper is followed, and their keypoints become points in space by a
 //! weighted linear [triangulation](triangulate).
 
-mod calibration;
 mod keypoints;
 mod people;
 mod triangulate;
@@ -22,12 +21,12 @@ use toile_assets::file;
 use super::files::{count_bytes, shown};
 use super::joint_map::JointMap;
 use super::tidy;
+use crate::calibration::Rig;
 use crate::clock::SECOND_NS;
 use crate::error::{Fault, Place, SourceError};
 use crate::frame::Joints;
 use crate::limits::{CAMERA, KEYPOINTS, MAX_CAMERAS, MAX_JOINT_FRAMES};
 use crate::session::{Session, too_many};
-use calibration::Rig;
 use keypoints::{ViewFrames, ViewPeople};
 
 /// Frames a second where the calibration's metadata has no `frame_rate`: OpenPose writes no time.
@@ -45,7 +44,7 @@ pub(super) fn open(folder: &Path) -> Result<Session, SourceError> {
     let whole = |problem: String| Fault::new(Place::Whole, problem, CURE).at(&shown(folder));
     let toml = list(folder)?.into_iter().find(|p| has_extension(p, "toml"));
     let toml = toml.ok_or_else(|| whole("the folder holds no calibration (.toml)".to_owned()))?;
-    let rig = calibration::read(&file::read(&toml, &CAMERA)?).map_err(|fault| fault.at(&shown(&toml)))?;
+    let rig = crate::calibration::read_toml(&file::read(&toml, &CAMERA)?).map_err(|fault| fault.at(&shown(&toml)))?;
     let folders = camera_folders(folder)?;
     if folders.len() != rig.cameras.len() {
         return Err(whole(format!("{} folders of JSON files for {} cameras", folders.len(), rig.cameras.len())));
@@ -174,7 +173,7 @@ mod tests {
     #[test]
     fn the_points_are_those_that_others_triangulated() {
         let Some(folder) = shared() else { return };
-        let rig = calibration::read(&std::fs::read(folder.join("Calib_qualisys.toml")).unwrap()).unwrap();
+        let rig = crate::calibration::read_toml(&std::fs::read(folder.join("Calib_qualisys.toml")).unwrap()).unwrap();
         let views: Vec<ViewFrames> =
             camera_folders(&folder).unwrap().iter().map(|f| view(f, &mut 0).unwrap()).collect();
         assert_eq!(keypoints::format(&views, &mut Vec::new()), Format::OpenPose25B);
