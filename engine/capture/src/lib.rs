@@ -6,6 +6,8 @@
 
 // Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
 pub mod error;
+
+pub mod compare;
 pub mod sparse;
 pub mod surface;
 
@@ -15,6 +17,8 @@ pub mod depth_buffer;
 
 pub mod flow;
 pub mod render;
+
+pub mod recording;
 
 #[cfg(test)]
 #[path = "../../../tests/src/recordings.rs"]

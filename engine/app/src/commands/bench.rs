@@ -10,6 +10,7 @@ use crate::exit::AppError;
 
 pub(super) mod backend;
 mod body;
+mod capture;
 mod contact;
 mod depth;
 mod filters;
@@ -36,6 +37,7 @@ pub(crate) enum BenchCommand {
     Depth(depth::DepthArgs),
     Contact(contact::ContactArgs),
     Webcam(webcam::WebcamBenchArgs),
+    Capture(capture::CaptureBenchArgs),
 }
 
 /// Runs `toile bench`.
@@ -53,5 +55,6 @@ pub(crate) fn run(command: &BenchCommand) -> Result<(), AppError> {
         BenchCommand::Depth(args) => depth::run(args),
         BenchCommand::Contact(args) => contact::run(args),
         BenchCommand::Webcam(args) => webcam::run(args),
+        BenchCommand::Capture(args) => capture::run(args),
     }
 }

@@ -26,4 +26,4 @@ pub use settings::{FlowSettings, Reference, Springs};
 pub use tracker::{FlowTracker, FrameOutcome};
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -1,6 +1,6 @@
 //! What each triangle looked like to each camera, taken in the first frame in which it was seen, and how well two cameras agree.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::residual::{PatchSums, Tone};
 use super::settings::Reference;
@@ -11,7 +11,7 @@ use crate::plane::Pyramid;
 pub(super) const PRINTED: f32 = 6.0;
 
 /// How the mesh fits the pictures of the first frame.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FirstFrame {
     /// Mean correlation of a triangle's pictures in two cameras, -1 to 1.
     pub agreement: f32,

@@ -78,8 +78,8 @@ impl FlowState {
             taken: vec![vec![None; t]; n],
             sides: vec![vec![0.0; t]; n],
             scatter: vec![8.0; settings.levels],
-            positions: surface.rest.clone(),
-            before: surface.rest.clone(),
+            positions: written(&surface.rest),
+            before: written(&surface.rest),
             frame: 0,
             surface,
             cameras,
@@ -158,6 +158,11 @@ impl FlowState {
             centre: camera.centre() * scale + offset,
         }
     }
+}
+
+/// Positions as files hold them, in f32: going on from what was written gives the same bits.
+pub(super) fn written(positions: &[DVec3]) -> Vec<DVec3> {
+    positions.iter().map(|p| p.as_vec3().as_dvec3()).collect()
 }
 
 /// Whether a camera sees any of the surface.

@@ -14,15 +14,15 @@ const SIDE: f64 = 0.12;
 const PICTURE: [u32; 2] = [360, 360];
 
 /// A cloth that waves and swings, written down.
-struct Waving {
+pub struct Waving {
     print: Print,
-    uvs: Vec<Vec2>,
-    triangles: Vec<[u32; 3]>,
-    cameras: Vec<CalibratedCamera>,
+    pub uvs: Vec<Vec2>,
+    pub triangles: Vec<[u32; 3]>,
+    pub cameras: Vec<CalibratedCamera>,
 }
 
 impl Waving {
-    fn new(cameras: usize) -> Self {
+    pub fn new(cameras: usize) -> Self {
         let at = |i: usize| ((i % ALONG) as f32 / (ALONG - 1) as f32, (i / ALONG) as f32 / (ALONG - 1) as f32);
         let mut triangles = Vec::new();
         for i in 0..(ALONG - 1) * (ALONG - 1) {
@@ -39,7 +39,7 @@ impl Waving {
         Self { print: Print::new(7), uvs, triangles, cameras: (0..cameras).map(camera).collect() }
     }
 
-    fn positions(&self, frame: usize) -> Vec<DVec3> {
+    pub fn positions(&self, frame: usize) -> Vec<DVec3> {
         let t = frame as f64 * 0.06;
         let place = |uv: &Vec2| {
             let (x, y) = ((f64::from(uv.x) * 4.0 - 0.5) * SIDE, (f64::from(uv.y) * 4.0 - 0.5) * SIDE);
@@ -50,7 +50,7 @@ impl Waving {
         self.uvs.iter().map(place).collect()
     }
 
-    fn pictures(&self, frame: usize, light: &Lighting, bars: &[Bar]) -> Vec<RgbImage> {
+    pub fn pictures(&self, frame: usize, light: &Lighting, bars: &[Bar]) -> Vec<RgbImage> {
         let positions = self.positions(frame);
         let surface =
             PrintedSurface { positions: &positions, uvs: &self.uvs, triangles: &self.triangles, print: &self.print };

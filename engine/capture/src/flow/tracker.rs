@@ -10,7 +10,7 @@ use toile_sensors::calibration::CalibratedCamera;
 use super::pass::Pass;
 use super::references::FirstFrame;
 use super::settings::FlowSettings;
-use super::state::FlowState;
+use super::state::{FlowState, written};
 use crate::error::CaptureError;
 use crate::plane::Pyramid;
 use crate::surface::Surface;
@@ -118,8 +118,7 @@ impl FlowTracker {
             last = pass;
         }
         let seconds = begun.elapsed().as_secs_f64();
-        // Meshes are written in f32: going on from what was written gives the same bits.
-        state.positions.iter_mut().for_each(|p| *p = p.as_vec3().as_dvec3());
+        state.positions = written(&state.positions);
         state.look();
         let frame = state.frame;
         state.take_references(&pyramids, frame);

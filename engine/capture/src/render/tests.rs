@@ -24,7 +24,7 @@ fn a_point_of_the_print_is_seen_where_the_camera_projects_it() {
     let sensor = Sensor { samples: 1, blur: 0.0, noise: 0.0, ..Sensor::default() };
     let camera = camera([160, 160], 0.4);
     let picture = take(&surface, &light, &[], &camera, &sensor);
-    for (x, y) in [(40u32, 60u32), (80, 80), (100, 70)] {
+    for (x, y) in [(60u32, 70u32), (80, 80), (100, 70)] {
         // The pixel's ray meets z = 0 at a point of the print.
         let ray = camera.ray(DVec2::new(f64::from(x), f64::from(y))).extend(1.0);
         let (from, along) = (camera.position(), camera.rotation().transpose() * ray);
