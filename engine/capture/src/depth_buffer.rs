@@ -78,6 +78,20 @@ impl DepthBuffer {
         }
     }
 
+    /// Whether a surface goes on around a point: whether something that is at most so much deeper (m) is seen in eight directions at a
+    /// distance (px of the buffer).
+    pub fn goes_on(&self, at: DVec2, reach: f64, depth: f64) -> bool {
+        const DIAGONAL: f64 = std::f64::consts::FRAC_1_SQRT_2;
+        let around = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)];
+        let across = [(DIAGONAL, DIAGONAL), (-DIAGONAL, DIAGONAL), (DIAGONAL, -DIAGONAL), (-DIAGONAL, -DIAGONAL)];
+        around.into_iter().chain(across).all(|(x, y)| {
+            let p = at + DVec2::new(x, y) * reach;
+            let (x, y) = (p.x.round(), p.y.round());
+            let inside = x >= 0.0 && y >= 0.0 && x < self.width as f64 && y < self.height as f64;
+            inside && f64::from(self.depth[y as usize * self.width + x as usize]) < depth
+        })
+    }
+
     /// The nearest depth in the pixel of a point and those around it (m).
     pub fn nearest_around(&self, at: DVec2) -> f32 {
         let mut nearest = f32::INFINITY;

@@ -8,6 +8,7 @@
 pub mod error;
 
 pub mod compare;
+pub mod recover;
 pub mod sparse;
 pub mod surface;
 
@@ -16,6 +17,7 @@ pub mod plane;
 pub mod depth_buffer;
 
 pub mod flow;
+pub mod pose;
 pub mod render;
 
 pub mod recording;

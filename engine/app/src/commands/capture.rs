@@ -9,7 +9,9 @@ use clap::Subcommand;
 use crate::exit::AppError;
 
 pub(crate) mod compare;
+mod fabric_scene;
 pub(crate) mod flow;
+pub(crate) mod pose;
 
 /// Turn the pictures of several calibrated cameras into motion.
 #[derive(Debug, Clone, PartialEq, Subcommand)]
@@ -19,6 +21,7 @@ pub(crate) mod flow;
 )]
 pub(crate) enum CaptureCommand {
     Flow(flow::FlowArgs),
+    Pose(pose::PoseArgs),
     Compare(compare::CompareArgs),
 }
 
@@ -29,6 +32,7 @@ pub(crate) enum CaptureCommand {
 pub(crate) fn run(command: &CaptureCommand) -> Result<(), AppError> {
     match command {
         CaptureCommand::Flow(args) => flow::run(args),
+        CaptureCommand::Pose(args) => pose::run(args),
         CaptureCommand::Compare(args) => compare::run(args),
     }
 }

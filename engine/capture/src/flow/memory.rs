@@ -18,8 +18,6 @@ pub struct FlowMemory {
     tones: Vec<[u32; 2]>,
     /// Frame in which each camera first saw each triangle, or none `[cameras x triangles]`.
     taken: Vec<Option<u32>>,
-    /// Scatter of the residuals at each level, as bits.
-    scatter: Vec<u32>,
 }
 
 impl FlowTracker {
@@ -29,7 +27,6 @@ impl FlowTracker {
         FlowMemory {
             tones: self.state.tones.iter().flatten().map(bits).collect(),
             taken: self.state.taken.iter().flatten().copied().collect(),
-            scatter: self.state.scatter.iter().map(|s| s.to_bits()).collect(),
         }
     }
 
@@ -51,7 +48,7 @@ impl FlowTracker {
         mut earlier: impl FnMut(u32) -> Result<(Vec<DVec3>, Vec<RgbImage>), CaptureError>,
     ) -> Result<(), CaptureError> {
         let t = self.state.surface.triangles.len();
-        if memory.taken.len() != t * self.state.cameras.len() || memory.scatter.len() != self.state.scatter.len() {
+        if memory.taken.len() != t * self.state.cameras.len() {
             let cure = "give another output folder, or the mesh, cameras and settings that it was begun with";
             return Err(CaptureError::unfit(
                 "the run that is resumed",
@@ -73,7 +70,6 @@ impl FlowTracker {
         for (k, [gain, offset]) in memory.tones.iter().enumerate() {
             self.state.tones[k / t][k % t] = Tone { gain: f32::from_bits(*gain), offset: f32::from_bits(*offset) };
         }
-        self.state.scatter = memory.scatter.iter().map(|s| f32::from_bits(*s)).collect();
         let [before, now] = last;
         (self.state.before, self.state.positions, self.state.frame) = (before, now, frame);
         Ok(())

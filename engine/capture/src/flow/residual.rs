@@ -16,6 +16,9 @@ use glam::{DMat3, DVec2, DVec3, Vec2, Vec3};
 use super::patches::LevelSamples;
 use crate::plane::Plane;
 
+/// Size of a residual beyond which it only says that something else is seen (of 255).
+pub(super) const CLIPPED: f32 = 40.0;
+
 /// A camera with the pictures of one level.
 pub(super) struct LevelView<'a> {
     pub plane: &'a Plane,
@@ -44,11 +47,10 @@ pub(super) struct PatchSums {
     pub normal: [[f32; 6]; 6],
     /// `sum w r b_i h` of each corner.
     pub right: [[f32; 3]; 3],
-    /// `sum w r^2` and `sum w`, of all channels.
-    pub squares: f32,
-    pub weight: f32,
     /// The robust cost, `sum r^2 c^2 / (c^2 + r^2)`, of which the right hand side is the derivative.
     pub cost: f32,
+    /// Sum of the residuals' sizes, none counted as more than [`CLIPPED`].
+    pub absolute: f32,
     /// Samples that were seen.
     pub count: f32,
     /// Sums of I, T, I I, I T, T T, unweighted.
@@ -56,15 +58,8 @@ pub(super) struct PatchSums {
 }
 
 impl PatchSums {
-    pub const NONE: Self = Self {
-        normal: [[0.0; 6]; 6],
-        right: [[0.0; 3]; 3],
-        squares: 0.0,
-        weight: 0.0,
-        cost: 0.0,
-        count: 0.0,
-        moments: [0.0; 5],
-    };
+    pub const NONE: Self =
+        Self { normal: [[0.0; 6]; 6], right: [[0.0; 3]; 3], cost: 0.0, absolute: 0.0, count: 0.0, moments: [0.0; 5] };
 
     /// Correlation of what is seen with what was, and the standard deviation of what was.
     pub fn agreement(&self, channels: usize) -> (f32, f32) {
@@ -146,9 +141,8 @@ impl LevelView<'_> {
                 let w = part * part;
                 let (gu, gv) = (tone.gain * du * focal.x * inverse, tone.gain * dv * focal.y * inverse);
                 let h = [gu, gv, -(gu * x + gv * y)];
+                sums.absolute += r.abs().min(CLIPPED);
                 sums.cost += part * r * r;
-                sums.squares += w * r * r;
-                sums.weight += w;
                 add(&mut sums, b, h, w, r);
             }
         }
@@ -182,16 +176,14 @@ pub(super) struct TriangleTerm {
     pub right: [DVec3; 3],
     /// Cameras that place it.
     pub cameras: u32,
-    /// Sum of weighted squares, and of weights, of the cameras that place it.
-    pub squares: f64,
-    pub weight: f64,
-    /// Sum of their robust costs.
-    pub cost: f64,
+    /// Sum of the residuals' sizes in the cameras that place it, and their number.
+    pub absolute: f64,
+    pub count: f64,
 }
 
 impl TriangleTerm {
     pub const NONE: Self =
-        Self { normal: [DMat3::ZERO; 6], right: [DVec3::ZERO; 3], cameras: 0, squares: 0.0, weight: 0.0, cost: 0.0 };
+        Self { normal: [DMat3::ZERO; 6], right: [DVec3::ZERO; 3], cameras: 0, absolute: 0.0, count: 0.0 };
 
     /// Adds a camera's sums, turned into the world, with a weight.
     pub fn add(&mut self, sums: &PatchSums, rotation: &DMat3, weight: f64) {
@@ -204,9 +196,8 @@ impl TriangleTerm {
         for (right, s) in self.right.iter_mut().zip(&sums.right) {
             *right -= back * DVec3::from_array(s.map(f64::from)) * weight;
         }
-        self.squares += f64::from(sums.squares) * weight;
-        self.weight += f64::from(sums.weight) * weight;
-        self.cost += f64::from(sums.cost) * weight;
+        self.absolute += f64::from(sums.absolute);
+        self.count += f64::from(sums.count);
     }
 }
 

@@ -17,6 +17,9 @@ use crate::surface::Surface;
 /// Pixels around the surface that are read besides it: a step of it, and what smoothing reaches.
 const MARGIN: f64 = 48.0;
 
+/// Part of a vertex' velocity that is expected to last: where no picture places it, it comes to rest.
+const KEPT: f64 = 0.85;
+
 /// A camera sees a triangle if it sees this part of it.
 pub(super) const SEEN: f32 = 0.35;
 
@@ -41,13 +44,13 @@ pub(super) struct FlowState {
     pub taken: Vec<Vec<Option<u32>>>,
     /// Cosine of the angle at which it did: its sign is the side that was seen.
     pub sides: Vec<Vec<f64>>,
-    /// Standard deviation of the residuals at each level.
-    pub scatter: Vec<f32>,
     /// Where the surface is, and where it was a frame before (m).
     pub positions: Vec<DVec3>,
     pub before: Vec<DVec3>,
     /// Frames that were followed.
     pub frame: u32,
+    /// Frames one after the other in which cameras placed next to nothing.
+    pub unseen: u32,
 }
 
 impl FlowState {
@@ -77,10 +80,10 @@ impl FlowState {
             tones: vec![vec![Tone::SAME; t]; n],
             taken: vec![vec![None; t]; n],
             sides: vec![vec![0.0; t]; n],
-            scatter: vec![8.0; settings.levels],
             positions: written(&surface.rest),
             before: written(&surface.rest),
             frame: 0,
+            unseen: 0,
             surface,
             cameras,
             straight,
@@ -91,7 +94,7 @@ impl FlowState {
 
     /// Where the motion would carry each vertex (m).
     pub fn carried(&self) -> Vec<DVec3> {
-        self.positions.iter().zip(&self.before).map(|(x, b)| *x * 2.0 - *b).collect()
+        self.positions.iter().zip(&self.before).map(|(x, b)| *x + (*x - *b) * KEPT).collect()
     }
 
     /// The pictures around the surface as it is now, and around where it goes.
@@ -126,7 +129,14 @@ impl FlowState {
         let samples = &self.levels[level];
         let mut mask = vec![0.0; samples.shares.len()];
         let view = &self.views[camera];
-        view.mask(&self.straight[camera], &self.surface, &self.positions, samples, &mut mask);
+        view.mask(
+            2.0_f64.powi(level as i32),
+            &self.straight[camera],
+            &self.surface,
+            &self.positions,
+            samples,
+            &mut mask,
+        );
         if known {
             for (t, side) in self.sides[camera].iter().enumerate() {
                 let same = side * view.facing[t] > 0.0;

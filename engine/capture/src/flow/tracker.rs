@@ -18,8 +18,14 @@ use crate::surface::Surface;
 /// Mean step below which a level is done (px of the level).
 const STILL: f64 = 0.01;
 
-/// The cost may grow by this part and the iterations go on: triangles come into view and leave it.
-const GROWTH: f64 = 0.02;
+/// Residuals may grow by this part and the iterations go on: triangles come into view and leave it.
+const GROWTH: f64 = 0.05;
+
+/// Standard deviation that residuals are taken to have at the coarsest level, and when another begins (of 255); it then follows them.
+const BEGIN: [f32; 2] = [20.0, 10.0];
+
+/// Longest step of a vertex (px of the level): farther, a picture is not what its derivatives say.
+const LONGEST: f64 = 3.0;
 
 /// Steps of the conjugate gradients, and the part of the residual that they leave.
 const MOST_STEPS: usize = 60;
@@ -27,6 +33,10 @@ const LEFT: f64 = 2e-2;
 
 /// Least mean correlation between cameras in the first frame: a mesh beside its place by two pixels of print has less.
 const LEAST_AGREEMENT: f32 = 0.5;
+
+/// A surface of which cameras place less than this part in so many frames one after the other is lost.
+const LEAST_PLACED: f64 = 0.1;
+const PATIENCE: u32 = 5;
 
 /// How one frame was followed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -112,8 +122,8 @@ impl FlowTracker {
             if level == 0 {
                 state.look();
             }
-            let (pass, taken) = state.descend(&pyramids, level, &carried);
-            state.scatter[level] = pass.scatter;
+            let begin = if level + 1 == coarsest { BEGIN[0] } else { BEGIN[1] };
+            let (pass, taken) = state.descend(&pyramids, level, &carried, begin);
             iterations += taken;
             last = pass;
         }
@@ -124,25 +134,28 @@ impl FlowTracker {
         state.take_references(&pyramids, frame);
         state.frame += 1;
         let triangles = state.surface.triangles.len() as f64;
-        Ok(FrameOutcome {
-            residual: f64::from(last.scatter),
-            placed: last.placed as f64 / triangles,
-            iterations,
-            seconds,
-            strain: state.strain(),
-        })
+        let placed = last.placed as f64 / triangles;
+        state.unseen = if placed < LEAST_PLACED { state.unseen + 1 } else { 0 };
+        if state.unseen >= PATIENCE {
+            let problem = format!("it was lost before frame {frame}: cameras place {:.0} % of it", 100.0 * placed);
+            let cure = "follow it from there with a mesh of that frame, with more --levels where it moves fast, or with more cameras";
+            return Err(CaptureError::unfit("the mesh", problem, cure));
+        }
+        Ok(FrameOutcome { residual: f64::from(last.scatter), placed, iterations, seconds, strain: state.strain() })
     }
 }
 
 impl FlowState {
     /// Iterations at one level, until the surface is still or its cost grows, as in the source's main loop.
-    fn descend(&mut self, pyramids: &[Pyramid], level: usize, carried: &[DVec3]) -> (Pass, usize) {
+    fn descend(&mut self, pyramids: &[Pyramid], level: usize, carried: &[DVec3], begin: f32) -> (Pass, usize) {
         let masks: Vec<Vec<f32>> = (0..self.cameras.len()).map(|c| self.mask(c, level, true)).collect();
         let pixel = self.pixel(level);
         let mut kept: Option<(Pass, Vec<DVec3>)> = None;
+        let mut scatter = begin;
         let mut step = Vec::new();
         for k in 0.. {
-            let pass = self.pass(pyramids, level, &masks, carried);
+            let pass = self.pass(pyramids, level, &masks, carried, scatter);
+            scatter = pass.scatter;
             if let Some((before, positions)) = kept.as_ref().filter(|(b, _)| pass.cost > b.cost * (1.0 + GROWTH)) {
                 self.positions.clone_from(positions);
                 return (*before, k);
@@ -153,7 +166,7 @@ impl FlowState {
                 return (pass, k + 1);
             }
             kept = Some((pass, self.positions.clone()));
-            self.positions.iter_mut().zip(&step).for_each(|(x, s)| *x += *s);
+            self.positions.iter_mut().zip(&step).for_each(|(x, s)| *x += s.clamp_length_max(LONGEST * pixel));
         }
         unreachable!("the iterations end")
     }

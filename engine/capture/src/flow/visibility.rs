@@ -13,6 +13,12 @@ const SCALE: f64 = 0.5;
 /// A sample is hidden where something lies this much nearer (m), besides what its slope over two pixels explains.
 const NEARER: f64 = 2.5e-3;
 
+/// Smoothing reaches so far (px of the level): what lies nearer to the surface's outline is mixed with what is behind it.
+const SMOOTHED: f64 = 1.8;
+
+/// Behind a sample, what is this much deeper (m) is not the surface around it, besides what its slope explains.
+const DEEPER: f64 = 20e-3;
+
 /// Least cosine of the angle between a triangle's normal and the view.
 pub(super) const LEAST_FACING: f64 = 0.2;
 
@@ -20,13 +26,14 @@ pub(super) const LEAST_FACING: f64 = 0.2;
 #[derive(Debug, Clone)]
 pub(super) struct Visibility {
     buffer: DepthBuffer,
+    occlusion: bool,
     /// Cosine of the angle between each triangle's normal and the view, negative from behind `[triangles]`.
     pub facing: Vec<f64>,
 }
 
 impl Visibility {
     pub fn new(size: [u32; 2], triangles: usize) -> Self {
-        Self { buffer: DepthBuffer::new(size, SCALE), facing: vec![0.0; triangles] }
+        Self { buffer: DepthBuffer::new(size, SCALE), occlusion: true, facing: vec![0.0; triangles] }
     }
 
     /// Looks at the surface at `x`; without `occlusion`, nothing is hidden.
@@ -37,6 +44,7 @@ impl Visibility {
             let normal = (b - a).cross(c - a).normalize_or_zero();
             *facing = normal.dot((from - (a + b + c) / 3.0).normalize_or_zero());
         }
+        self.occlusion = occlusion;
         if occlusion {
             self.buffer.draw(camera, x, &surface.triangles);
         } else {
@@ -44,9 +52,10 @@ impl Visibility {
         }
     }
 
-    /// Which samples of a level are seen: 1 or 0 `[samples]`.
+    /// Which samples of a level are seen: 1 or 0 `[samples]`; `size` is that of a pixel of the level (px of the picture).
     pub fn mask(
         &self,
+        size: f64,
         camera: &CalibratedCamera,
         surface: &Surface,
         x: &[DVec3],
@@ -70,7 +79,12 @@ impl Visibility {
                 let inside = p.z > 0.0 && pixel.x >= 0.0 && pixel.y >= 0.0 && pixel.x < w && pixel.y < h;
                 let reach = 2.0 * slope * p.z / (focal * SCALE);
                 let near = self.buffer.nearest_around((pixel + 0.5) * SCALE - 0.5);
-                *m = if inside && p.z - NEARER - reach < f64::from(near) { 1.0 } else { 0.0 };
+                let nothing_before = p.z - NEARER - reach < f64::from(near);
+                let around = (SMOOTHED * size * SCALE).max(1.0);
+                let deeper = p.z + DEEPER + 0.5 * around * reach;
+                let at = (pixel + 0.5) * SCALE - 0.5;
+                let whole = !self.occlusion || self.buffer.goes_on(at, around, deeper);
+                *m = if inside && nothing_before && whole { 1.0 } else { 0.0 };
             }
         }
     }

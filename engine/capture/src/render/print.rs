@@ -8,8 +8,10 @@ const SIDE: usize = 2_048;
 /// Spots of the finest size along a side; each coarser size has half as many.
 const FINEST: usize = 96;
 
-/// Sizes of spots.
+/// Sizes of spots, and the part of the places of each that have one, the finest first: larger ones show between smaller ones, so that
+/// the print has something to follow at every distance.
 const SIZES: usize = 4;
+const COVER: [f32; SIZES] = [0.35, 0.5, 0.7, 1.0];
 
 /// A picture that lies once on a surface, u and v from 0 to 1.
 #[derive(Debug, Clone)]
@@ -27,6 +29,9 @@ impl Print {
             let along = FINEST >> size;
             let cell = SIDE as f32 / along as f32;
             for i in 0..along * along {
+                if random.uniform() > COVER[size] {
+                    continue;
+                }
                 let middle = [(i % along) as f32, (i / along) as f32].map(|k| (k + random.uniform()) * cell);
                 let radius = cell * random.between(0.25, 0.6);
                 let colour: [f32; 3] = std::array::from_fn(|_| random.between(0.08, 0.95));

@@ -58,6 +58,15 @@ fn grown<'a>(rig: &Rig, seen: &[&'a ViewPeople], chosen: &mut [Option<&'a Person
     Some(in_space(rig, chosen))
 }
 
+/// Each camera's view of a person in space: the one whose keypoints lie nearest to where the points are seen, if near enough.
+pub fn views(rig: &Rig, seen: &[&ViewPeople], person: &InSpace) -> Vec<Option<PersonKeypoints>> {
+    let view = |(camera, people): (usize, &&ViewPeople)| {
+        let off = |p: &PersonKeypoints| distance(rig, camera, p, person).unwrap_or(f64::INFINITY);
+        people.iter().min_by(|a, b| off(a).total_cmp(&off(b))).filter(|p| off(p) < SAME_PERSON).copied()
+    };
+    seen.iter().enumerate().map(view).collect()
+}
+
 /// The points of the person whom each camera's choice shows.
 fn in_space(rig: &Rig, chosen: &[Option<&PersonKeypoints>]) -> InSpace {
     std::array::from_fn(|k| {
