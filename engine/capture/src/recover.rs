@@ -10,8 +10,12 @@ use toile_assets::numeric::linear::{Pivot, factor, solve};
 /// Values that are looked for: stretch, shear, bending, damping.
 pub const VALUES: usize = 4;
 
-/// Change of a logarithm by which derivatives are taken.
-const CHANGE: f64 = 0.04;
+/// Parts of the motion that are fitted, one after the other, and the fewest frames of one.
+const HORIZONS: [f64; 5] = [0.06, 0.12, 0.25, 0.5, 1.0];
+const FEWEST: usize = 6;
+
+/// Change of a logarithm by which derivatives are taken, to both sides.
+const CHANGE: f64 = 0.02;
 
 /// Longest step of a logarithm: a factor of two.
 const LONGEST: f64 = 0.7;
@@ -36,57 +40,90 @@ pub struct Recovered {
     pub simulations: usize,
 }
 
-/// Finds the values from a start; `simulate` gives the motion of some values, as long as the observed one (m).
+/// Finds the values from a start; `simulate` gives the motion of some values over so many frames (m).
+///
+/// A cloth that folds otherwise at one moment moves otherwise ever after, so that the whole motion has many hollows. The first frames
+/// are fitted first, and each time more of them.
 ///
 /// # Errors
 /// As `simulate`.
 pub fn recover<E>(
     start: [f64; VALUES],
     observed: &[Vec<Vec3>],
-    mut simulate: impl FnMut(&[f64; VALUES]) -> Result<Vec<Vec<Vec3>>, E>,
+    mut simulate: impl FnMut(&[f64; VALUES], usize) -> Result<Vec<Vec<Vec3>>, E>,
 ) -> Result<Recovered, E> {
-    let mut simulations = 0;
-    let mut at = |p: &[f64; VALUES]| {
-        simulations += 1;
-        simulate(&p.map(f64::exp)).map(|motion| difference(&motion, observed))
+    let mut search = Search {
+        p: start.map(f64::ln),
+        observed,
+        simulate: &mut simulate,
+        simulations: 0,
+        covariance: [[0.0; VALUES]; VALUES],
     };
-    let mut p = start.map(f64::ln);
-    let mut r = at(&p)?;
-    let first = mean(&r);
-    let mut damping = 1e-3;
-    let mut covariance = [[0.0; VALUES]; VALUES];
-    for _ in 0..STEPS {
-        let mut columns = Vec::with_capacity(VALUES);
-        for k in 0..VALUES {
-            let mut moved = p;
-            moved[k] += CHANGE;
-            let there = at(&moved)?;
-            columns.push(there.iter().zip(&r).map(|(a, b)| (*a - *b) / CHANGE as f32).collect::<Vec<Vec3>>());
-        }
-        let normal: [[f64; VALUES]; VALUES] =
-            std::array::from_fn(|i| std::array::from_fn(|j| dot(&columns[i], &columns[j])));
-        let right: [f64; VALUES] = std::array::from_fn(|i| -dot(&columns[i], &r));
-        covariance = spread(&normal, dot(&r, &r) / (3 * r.len()) as f64);
-        let mut moved = 0.0;
-        for _ in 0..SHORTENED {
-            let step = step(&normal, &right, damping);
-            let next: [f64; VALUES] = std::array::from_fn(|k| p[k] + step[k].clamp(-LONGEST, LONGEST));
-            let there = at(&next)?;
-            if dot(&there, &there) < dot(&r, &r) {
-                moved = (0..VALUES).map(|k| (next[k] - p[k]).abs()).fold(0.0, f64::max);
-                (p, r) = (next, there);
-                damping = (damping * 0.2).max(1e-9);
+    let first = mean(&search.at(&search.p.clone(), observed.len())?);
+    for share in HORIZONS {
+        let frames = ((observed.len() as f64 * share) as usize).clamp(FEWEST.min(observed.len()), observed.len());
+        search.descend(frames)?;
+    }
+    let last = mean(&search.at(&search.p.clone(), observed.len())?);
+    // The vertices of a frame err together: a frame counts as one.
+    let together = observed.first().map_or(1.0, |f| f.len() as f64);
+    let sigma = std::array::from_fn(|k| (search.covariance[k][k] * together).sqrt());
+    Ok(Recovered { values: search.p.map(f64::exp), sigma, error_mm: [first, last], simulations: search.simulations })
+}
+
+/// A search on its way.
+struct Search<'a, F> {
+    /// Logarithms of the values.
+    p: [f64; VALUES],
+    observed: &'a [Vec<Vec3>],
+    simulate: &'a mut F,
+    simulations: usize,
+    covariance: [[f64; VALUES]; VALUES],
+}
+
+impl<E, F: FnMut(&[f64; VALUES], usize) -> Result<Vec<Vec<Vec3>>, E>> Search<'_, F> {
+    fn at(&mut self, p: &[f64; VALUES], frames: usize) -> Result<Vec<Vec3>, E> {
+        self.simulations += 1;
+        (self.simulate)(&p.map(f64::exp), frames).map(|motion| difference(&motion, &self.observed[..frames]))
+    }
+
+    /// Steps over the first frames until they lead nowhere.
+    fn descend(&mut self, frames: usize) -> Result<(), E> {
+        let mut r = self.at(&self.p.clone(), frames)?;
+        let mut damping = 1e-3;
+        for _ in 0..STEPS {
+            let mut columns = Vec::with_capacity(VALUES);
+            for k in 0..VALUES {
+                let [mut up, mut down] = [self.p; 2];
+                up[k] += CHANGE;
+                down[k] -= CHANGE;
+                let (up, down) = (self.at(&up, frames)?, self.at(&down, frames)?);
+                columns
+                    .push(up.iter().zip(&down).map(|(a, b)| (*a - *b) / (2.0 * CHANGE) as f32).collect::<Vec<Vec3>>());
+            }
+            let normal: [[f64; VALUES]; VALUES] =
+                std::array::from_fn(|i| std::array::from_fn(|j| dot(&columns[i], &columns[j])));
+            let right: [f64; VALUES] = std::array::from_fn(|i| -dot(&columns[i], &r));
+            self.covariance = spread(&normal, dot(&r, &r) / (3 * r.len()) as f64);
+            let mut moved = 0.0;
+            for _ in 0..SHORTENED {
+                let step = step(&normal, &right, damping);
+                let next: [f64; VALUES] = std::array::from_fn(|k| self.p[k] + step[k].clamp(-LONGEST, LONGEST));
+                let there = self.at(&next, frames)?;
+                if dot(&there, &there) < dot(&r, &r) {
+                    moved = (0..VALUES).map(|k| (next[k] - self.p[k]).abs()).fold(0.0, f64::max);
+                    (self.p, r) = (next, there);
+                    damping = (damping * 0.2).max(1e-9);
+                    break;
+                }
+                damping *= 8.0;
+            }
+            if moved < DONE {
                 break;
             }
-            damping *= 8.0;
         }
-        if moved < DONE {
-            break;
-        }
+        Ok(())
     }
-    let sigma = std::array::from_fn(|k| covariance[k][k].sqrt());
-    let last = mean(&r);
-    Ok(Recovered { values: p.map(f64::exp), sigma, error_mm: [first, last], simulations })
 }
 
 fn difference(motion: &[Vec<Vec3>], observed: &[Vec<Vec3>]) -> Vec<Vec3> {
@@ -130,19 +167,19 @@ mod tests {
     use super::*;
 
     /// A motion that each value shapes in its own way.
-    fn motion(p: &[f64; VALUES]) -> Result<Vec<Vec<Vec3>>, ()> {
+    fn motion(p: &[f64; VALUES], frames: usize) -> Result<Vec<Vec<Vec3>>, ()> {
         let at = |f: usize, i: usize| {
             let (t, s) = (f as f64 * 0.1, i as f64 * 0.2);
             let swing = (t * p[0].sqrt()).sin() * (-p[3] * t).exp();
             Vec3::new((swing + s / p[1]) as f32, (s * s / p[2]) as f32, (swing * s) as f32) * 0.1
         };
-        Ok((0..40).map(|f| (0..9).map(|i| at(f, i)).collect()).collect())
+        Ok((0..frames).map(|f| (0..9).map(|i| at(f, i)).collect()).collect())
     }
 
     #[test]
     fn values_come_back_from_the_motion_that_they_made() {
         let truth = [4.0, 2.0, 0.7, 0.3];
-        let found = recover([5.0, 1.0, 1.4, 0.15], &motion(&truth).unwrap(), motion).unwrap();
+        let found = recover([5.0, 1.0, 1.4, 0.15], &motion(&truth, 40).unwrap(), motion).unwrap();
         for (v, t) in found.values.iter().zip(truth) {
             assert!((v / t - 1.0).abs() < 0.01, "{found:?}");
         }

@@ -16,7 +16,7 @@ pub const GOALS: [f64; 4] = [0.25, 1.0, 1.5, 0.030];
 
 /// Why a study could not be run.
 #[derive(Debug, Error)]
-pub enum StudyError {
+pub enum FlowStudyError {
     /// The capture was refused.
     #[error(transparent)]
     Capture(#[from] CaptureError),
@@ -103,7 +103,7 @@ pub fn cases() -> Vec<FlowCase> {
 }
 
 /// A moment of a row, for its contact sheet: the frame, a camera's picture, the mesh as it was found, its distances from the truth (m).
-pub struct Moment<'a> {
+pub struct FollowedMoment<'a> {
     /// The frame.
     pub frame: usize,
     /// The pictures of all cameras.
@@ -120,7 +120,7 @@ pub struct Moment<'a> {
 ///
 /// # Errors
 /// A cloth that cannot be stepped, a capture that was refused.
-pub fn run(case: &FlowCase, frames: usize, mut see: impl FnMut(Moment<'_>)) -> Result<FlowRow, StudyError> {
+pub fn run(case: &FlowCase, frames: usize, mut see: impl FnMut(FollowedMoment<'_>)) -> Result<FlowRow, FlowStudyError> {
     let cloth = HangingCloth::new(frames, case.cameras)?;
     let surface = Surface::new("the cloth", cloth.frames[0].clone(), Vec::new(), cloth.triangles.clone())?;
     let mut tracker = FlowTracker::new(surface, cloth.cameras.clone(), case.settings)?;
@@ -132,7 +132,7 @@ pub fn run(case: &FlowCase, frames: usize, mut see: impl FnMut(Moment<'_>)) -> R
         let outcome = tracker.step(&pictures)?;
         let off: Vec<f64> = cloth.frames[frame].iter().zip(tracker.positions()).map(|(a, b)| a.distance(*b)).collect();
         over_time.push(off.iter().sum::<f64>() / off.len() as f64 * 1e3);
-        see(Moment { frame, pictures: &pictures, found: tracker.positions(), off: &off, cloth: &cloth });
+        see(FollowedMoment { frame, pictures: &pictures, found: tracker.positions(), off: &off, cloth: &cloth });
         all.extend(off.iter().map(|d| d * 1e3));
         residual += outcome.residual / (frames - 1) as f64;
         placed = placed.min(outcome.placed);

@@ -6,7 +6,7 @@ use toile_sensors::calibration::CalibratedCamera;
 use toile_view::contact_sheet::contact_sheet;
 use toile_view::image::{Error, Image, Size};
 
-use super::flow::{FlowRow, Moment};
+use super::flow::{FlowRow, FollowedMoment};
 
 /// Moments on a sheet.
 const MOMENTS: usize = 5;
@@ -32,7 +32,7 @@ impl Sheet {
     }
 
     /// Looks at a moment, and keeps it if it is due.
-    pub fn see(&mut self, moment: &Moment<'_>) {
+    pub fn see(&mut self, moment: &FollowedMoment<'_>) {
         if moment.frame % self.every != 0 || self.seen.len() == MOMENTS {
             return;
         }
@@ -74,7 +74,7 @@ fn shrunk(picture: &RgbImage) -> Image {
 }
 
 /// The mesh as it was found, from white where it is right to red where it is [`FULL_MM`] off; edges of triangles in grey.
-fn drawn(moment: &Moment<'_>, camera: &CalibratedCamera) -> Image {
+fn drawn(moment: &FollowedMoment<'_>, camera: &CalibratedCamera) -> Image {
     let mut buffer = DepthBuffer::new(camera.size, 1.0 / SHRUNK as f64);
     buffer.draw(camera, moment.found, &moment.cloth.triangles);
     let mut image = Image::filled(Size::new(buffer.width as u32, buffer.height as u32), [236, 235, 232]);

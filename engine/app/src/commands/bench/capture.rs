@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use serde::Serialize;
-use toile_perf::capture::flow::{self, FlowRow, GOALS};
+use toile_perf::capture::flow::{self, FlowCase, FlowRow, GOALS};
 use toile_perf::capture::sheet::Sheet;
 
 use crate::arguments::{Printing, count};
@@ -29,6 +29,9 @@ pub struct CaptureBenchArgs {
     /// Rows whose name holds this word (default: all)
     #[arg(long, value_name = "WORD")]
     pub row: Option<String>,
+    /// Rows of so many cameras: 2, 4 or 8 (default: all)
+    #[arg(long, value_name = "N", value_parser = count(2..=8))]
+    pub cameras: Option<usize>,
     /// Folder for contact sheets
     #[arg(long, value_name = "DIR")]
     pub pictures: Option<PathBuf>,
@@ -50,8 +53,11 @@ pub fn run(args: &CaptureBenchArgs) -> Result<(), AppError> {
     let words = args.printing.words();
     let mut folder = args.pictures.as_deref().map(OutputFolder::prepare).transpose()?;
     let mut rows = Vec::new();
-    let wanted = |name: &str| args.row.as_deref().is_none_or(|word| name.contains(word));
-    for case in flow::cases().iter().filter(|c| wanted(c.name)) {
+    let wanted = |case: &FlowCase| {
+        args.row.as_deref().is_none_or(|word| case.name.contains(word))
+            && args.cameras.is_none_or(|n| n == case.cameras)
+    };
+    for case in flow::cases().iter().filter(|c| wanted(c)) {
         let mut sheet = Sheet::new(args.frames);
         let row = flow::run(case, args.frames, |moment| sheet.see(&moment)).map_err(AppError::internal)?;
         words.print_line(&line(&row));

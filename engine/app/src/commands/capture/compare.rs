@@ -114,7 +114,7 @@ fn recovered(args: &CompareArgs, path: &Path, captured: &[Vec<Vec3>]) -> Result<
     words.print_line(&format!("simulating {} frames of {vertices} vertices", captured.len()));
     let start = scene.start();
     let Recovered { values, sigma, error_mm, simulations } =
-        recover(start, captured, |values| scene.simulate(values, captured.len()))?;
+        recover(start, captured, |values, frames| scene.simulate(values, frames))?;
     let rows = FabricScene::NAMES.iter().enumerate();
     let values: Vec<ValueReport> =
         rows.map(|(k, name)| ValueReport { name, start: start[k], value: values[k], sigma: sigma[k] }).collect();
