@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::check;
+use super::parameters::CameraParameters;
 
 /// Rounds of undoing the distortion: each leaves a hundredth of the error before with lenses that are not fisheyes.
 const UNDISTORT_ROUNDS: usize = 10;
@@ -17,21 +17,6 @@ pub struct Rig {
     pub cameras: Vec<CalibratedCamera>,
     /// Frames a second, where given.
     pub frame_rate: Option<f64>,
-}
-
-/// What a calibration says of one camera.
-#[derive(Debug, Clone, PartialEq)]
-pub struct CameraParameters {
-    /// Width and height of its pictures (px).
-    pub size: [f64; 2],
-    /// The matrix K, by rows.
-    pub matrix: [[f64; 3]; 3],
-    /// k1, k2, p1, p2 and k3: Brown 1971.
-    pub distortion: Vec<f64>,
-    /// From world to camera.
-    pub rotation: DMat3,
-    /// From world to camera (m).
-    pub translation: DVec3,
 }
 
 /// One camera: lens and pose.
@@ -54,7 +39,7 @@ impl CalibratedCamera {
     /// # Errors
     /// What is wrong with them, to stand behind the camera's name.
     pub fn new(name: &str, given: &CameraParameters) -> Result<Self, String> {
-        check::parameters(given)?;
+        given.check()?;
         let [[fx, _, cx], [_, fy, cy], _] = given.matrix;
         let mut distortion = [0.0; 5];
         distortion[..given.distortion.len()].copy_from_slice(&given.distortion);

@@ -7,11 +7,12 @@
 //! Brown's lens (1971) and to the pixel `(fx x' + cx, fy y' + cy)`; the middle of the first pixel is (0, 0), as in OpenCV.
 
 mod camera;
-mod check;
 mod opencv;
+mod parameters;
 mod pose2sim;
 
-pub use camera::{CalibratedCamera, CameraParameters, Rig};
+pub use camera::{CalibratedCamera, Rig};
+pub use parameters::CameraParameters;
 
 use std::path::Path;
 

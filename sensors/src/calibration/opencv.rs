@@ -9,7 +9,8 @@ use std::collections::BTreeMap;
 
 use glam::{DMat3, DQuat, DVec3};
 
-use super::camera::{CalibratedCamera, CameraParameters};
+use super::camera::CalibratedCamera;
+use super::parameters::CameraParameters;
 use crate::error::{Fault, Place};
 
 const CURE: &str =

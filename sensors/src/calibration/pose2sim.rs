@@ -6,7 +6,8 @@
 use glam::{DMat3, DQuat, DVec3};
 use serde::Deserialize;
 
-use super::camera::{CalibratedCamera, CameraParameters, Rig};
+use super::camera::{CalibratedCamera, Rig};
+use super::parameters::CameraParameters;
 use crate::error::{Fault, Place};
 use crate::limits::MAX_CAMERAS;
 

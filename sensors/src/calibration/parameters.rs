@@ -1,8 +1,7 @@
-//! What cannot be the calibration of a camera, each in words that name the mistake behind it.
+//! What a calibration says of one camera, and what cannot be one, each in words that name the mistake behind it.
 
-use glam::DMat3;
+use glam::{DMat3, DVec3};
 
-use super::camera::CameraParameters;
 use crate::limits::{MAX_COORDINATE, MAX_SIDE};
 
 /// Largest distortion coefficient of a lens that is no fisheye.
@@ -20,31 +19,48 @@ const NEAR_MIDDLE: f64 = 0.2;
 /// Fewest metres that would be plausible as millimetres: a camera nearer than that shows nothing of a person.
 const LEAST_MILLIMETRES: f64 = 200.0;
 
-/// Checks the parameters of one camera.
-pub(super) fn parameters(given: &CameraParameters) -> Result<(), String> {
-    let side = f64::from(MAX_SIDE);
-    if !given.size.iter().all(|s| (1.0..=side).contains(s)) {
-        return Err("its image has no plausible size".to_owned());
+/// What a calibration says of one camera.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CameraParameters {
+    /// Width and height of its pictures (px).
+    pub size: [f64; 2],
+    /// The matrix K, by rows.
+    pub matrix: [[f64; 3]; 3],
+    /// k1, k2, p1, p2 and k3: Brown 1971.
+    pub distortion: Vec<f64>,
+    /// From world to camera.
+    pub rotation: DMat3,
+    /// From world to camera (m).
+    pub translation: DVec3,
+}
+
+impl CameraParameters {
+    /// Whether a camera can have them.
+    pub(super) fn check(&self) -> Result<(), String> {
+        let side = f64::from(MAX_SIDE);
+        if !self.size.iter().all(|s| (1.0..=side).contains(s)) {
+            return Err("its image has no plausible size".to_owned());
+        }
+        matrix(self)?;
+        if self.distortion.len() > MOST_DISTORTION {
+            let count = self.distortion.len();
+            return Err(format!("{count} distortion coefficients where at most {MOST_DISTORTION} are read"));
+        }
+        if !self.distortion.iter().all(|k| k.abs() < LARGEST_DISTORTION) {
+            return Err("its distortion is not that of a camera".to_owned());
+        }
+        rotation(&self.rotation)?;
+        let t = self.translation;
+        if !t.is_finite() || t.abs().max_element() > f64::from(MAX_COORDINATE) {
+            let far = t.length();
+            return Err(if (LEAST_MILLIMETRES..1e5).contains(&far) {
+                format!("its translation is {far:.0} long, which is {:.1} m in millimetres; give metres", far / 1e3)
+            } else {
+                "its pose is not that of a camera".to_owned()
+            });
+        }
+        Ok(())
     }
-    matrix(given)?;
-    if given.distortion.len() > MOST_DISTORTION {
-        let count = given.distortion.len();
-        return Err(format!("{count} distortion coefficients where at most {MOST_DISTORTION} are read"));
-    }
-    if !given.distortion.iter().all(|k| k.abs() < LARGEST_DISTORTION) {
-        return Err("its distortion is not that of a camera".to_owned());
-    }
-    rotation(&given.rotation)?;
-    let t = given.translation;
-    if !t.is_finite() || t.abs().max_element() > f64::from(MAX_COORDINATE) {
-        let far = t.length();
-        return Err(if (LEAST_MILLIMETRES..1e5).contains(&far) {
-            format!("its translation is {far:.0} long, which is {:.1} m in millimetres; give metres", far / 1e3)
-        } else {
-            "its pose is not that of a camera".to_owned()
-        });
-    }
-    Ok(())
 }
 
 fn matrix(given: &CameraParameters) -> Result<(), String> {
