@@ -140,8 +140,9 @@ impl FlowState {
         if known {
             for (t, side) in self.sides[camera].iter().enumerate() {
                 let same = side * view.facing[t] > 0.0;
-                for k in samples.starts[t]..samples.starts[t + 1] {
-                    mask[k] *= if same { samples.known[camera][k] } else { 0.0 };
+                let range = samples.starts[t]..samples.starts[t + 1];
+                for (m, known) in mask[range.clone()].iter_mut().zip(&samples.known[camera][range]) {
+                    *m *= if same { *known } else { 0.0 };
                 }
             }
         }

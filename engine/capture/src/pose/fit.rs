@@ -210,10 +210,7 @@ fn start(frame: &KeypointFrame) -> Option<[DVec3; POINTS]> {
         return None;
     }
     let middle = any.iter().sum::<DVec3>() / any.len() as f64;
-    let mut x = [middle; POINTS];
-    for k in 0..POINTS {
-        x[k] = seen(k).unwrap_or(middle);
-    }
+    let mut x: [DVec3; POINTS] = std::array::from_fn(|k| seen(k).unwrap_or(middle));
     for bone in TREE {
         if seen(bone.to).is_none() {
             x[bone.to] = x[bone.from] + DVec3::new(1e-3, 1e-3, 1e-3);

@@ -85,7 +85,7 @@ fn cameras_out_of_step_are_found_before_anything_is_written() {
     // It moves and rests by turns, as what is filmed does.
     let pace = |f: usize| (0..f).filter(|k| k / 4 * 5 % 7 < 3).count() * 4;
     record(&cloth, &folder.0.join("pictures"), 60, pace, 4);
-    let error = job(&cloth, &folder, "out", None).run(|_| {}).err().expect("cameras are out of step").to_string();
+    let error = job(&cloth, &folder, "out", None).run(|_| {}).expect_err("cameras are out of step").to_string();
     assert!(error.contains("camera cam1: its pictures come 4 frames late"), "{error}");
     assert!(!folder.0.join("out").exists());
 }

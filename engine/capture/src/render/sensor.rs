@@ -95,7 +95,8 @@ fn sample(
     let cloth = surface.triangles.get(triangle as usize).map(|t| shade(surface, light, *t, from, unit));
     let bar = bars.iter().filter_map(|b| b.hit(from, unit)).min_by(|a, b| a.0.total_cmp(&b.0));
     match (cloth, bar) {
-        (Some((depth, colour)), None) => (depth > 0.0).then_some(colour).unwrap_or(ROOM),
+        (Some((depth, colour)), None) if depth > 0.0 => colour,
+        (Some(_), None) => ROOM,
         (Some((depth, colour)), Some((t, _))) if depth < t => colour,
         (_, Some((t, n))) => BAR.map(|c| c * light.on(from + unit * t, n)),
         (None, None) => {
