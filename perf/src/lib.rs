@@ -7,6 +7,7 @@
 // Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
 pub mod agreement;
 pub mod backend;
+pub mod capture;
 pub mod crossings;
 pub mod depth;
 pub mod distance;

@@ -10,7 +10,9 @@ pub mod error;
 
 pub mod limits;
 
+pub mod calibration;
 pub mod frame;
+pub mod pictures;
 
 pub mod colour_camera;
 pub mod filter;

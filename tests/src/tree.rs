@@ -12,6 +12,7 @@ pub const FLOORS: &[(&str, &str)] = &[
     ("engine/core", "toile-engine"),
     ("sensors/pose", "toile-pose"),
     ("engine/track", "toile-track"),
+    ("engine/capture", "toile-capture"),
     ("engine/gpu", "toile-gpu"),
     ("engine/view", "toile-view"),
     ("engine/fitting", "toile-fitting"),

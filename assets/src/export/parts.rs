@@ -77,6 +77,21 @@ impl GlbBuffer {
         self.accessor(json!({ "bufferView": view, "componentType": UNSIGNED_INT, "count": count, "type": "SCALAR" }))
     }
 
+    /// Times of frames (s), with the bounds that the format asks for; returns the accessor.
+    pub fn times(&mut self, frames: usize, rate: f32) -> usize {
+        let view = self.view((0..frames).flat_map(|f| (f as f32 / rate).to_le_bytes()), None);
+        let last = frames.saturating_sub(1) as f32 / rate;
+        self.accessor(json!({
+            "bufferView": view, "componentType": FLOAT, "count": frames, "type": "SCALAR", "min": [0.0], "max": [last],
+        }))
+    }
+
+    /// Plain numbers that are bound to no vertex; returns the accessor.
+    pub fn scalars(&mut self, all: impl Iterator<Item = f32>, count: usize) -> usize {
+        let view = self.view(all.flat_map(f32::to_le_bytes), None);
+        self.accessor(json!({ "bufferView": view, "componentType": FLOAT, "count": count, "type": "SCALAR" }))
+    }
+
     fn floats(&mut self, all: impl Iterator<Item = f32>, count: usize, kind: &str, bounds: Option<Value>) -> usize {
         let view = self.view(all.flat_map(f32::to_le_bytes), Some(ARRAY_BUFFER));
         let mut accessor = json!({ "bufferView": view, "componentType": FLOAT, "count": count, "type": kind });

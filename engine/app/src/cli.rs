@@ -10,6 +10,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use crate::commands::bake::BakeArgs;
 use crate::commands::bench::BenchCommand;
 use crate::commands::body::BodyArgs;
+use crate::commands::capture::CaptureCommand;
 use crate::commands::catalogue::CatalogueCommand;
 use crate::commands::completions::CompletionsArgs;
 use crate::commands::convert::ConvertArgs;
@@ -64,6 +65,8 @@ pub(crate) enum Command {
     #[command(subcommand)]
     Fabric(FabricCommand),
     Body(BodyArgs),
+    #[command(subcommand)]
+    Capture(CaptureCommand),
     Run(RunArgs),
     Doctor(DoctorArgs),
     #[command(subcommand)]

@@ -7,6 +7,7 @@
 pub mod bake;
 pub(crate) mod bench;
 pub mod body;
+pub(crate) mod capture;
 pub(crate) mod catalogue;
 pub mod colliders;
 pub mod completions;

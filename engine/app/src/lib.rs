@@ -77,6 +77,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Bench(command) => commands::bench::run(command),
         Command::Validate(args) => commands::validate::run(args),
         Command::Pareto(args) => commands::pareto::run(args),
+        Command::Capture(command) => commands::capture::run(command),
         Command::Torture(args) => commands::torture::run(args),
         Command::Latency(args) => commands::latency::run(args),
         Command::Plan(args) => commands::plan::run(args),

@@ -43,7 +43,7 @@ mod mediapipe_landmarks;
 mod mediapipe_place;
 mod openni2;
 mod openni_library;
-mod openpose;
+pub mod openpose;
 mod placement;
 mod png_depth;
 mod raw_depth;

@@ -82,6 +82,8 @@ fn more(name: &str) -> More {
         "toile-soak" => More { codes: &[Code::Threshold, Code::Device], ..guide("soak") },
         "toile-validate" => judged("validate"),
         "toile-torture" => judged("torture"),
+        "toile-capture" | "toile-capture-flow" | "toile-capture-pose" | "toile-capture-compare" => guide("capture"),
+        "toile-bench-capture" => judged("capture"),
         "toile-plan" => judged("plan"),
         "toile-body" => judged("avatars"),
         "toile-bench-body" => judged("bodies"),

@@ -10,6 +10,7 @@ use crate::exit::AppError;
 
 pub(super) mod backend;
 mod body;
+mod capture;
 mod contact;
 mod depth;
 mod drape;
@@ -42,6 +43,7 @@ pub(crate) enum BenchCommand {
     OwnPicture(own_picture::OwnPictureArgs),
     Drape(drape::DrapeArgs),
     Tablecloth(tablecloth::TableclothArgs),
+    Capture(capture::CaptureBenchArgs),
 }
 
 /// Runs `toile bench`.
@@ -62,5 +64,6 @@ pub(crate) fn run(command: &BenchCommand) -> Result<(), AppError> {
         BenchCommand::OwnPicture(args) => own_picture::run(args),
         BenchCommand::Drape(args) => drape::run(args),
         BenchCommand::Tablecloth(args) => tablecloth::run(args),
+        BenchCommand::Capture(args) => capture::run(args),
     }
 }

@@ -9,11 +9,13 @@
 //! the cameras see are [matched](people), the shopper is followed, and their keypoints become points in space by a
 //! weighted linear [triangulation](triangulate).
 
-mod calibration;
 mod keypoints;
 mod people;
 mod triangulate;
 mod upright;
+
+pub use keypoints::{Keypoint, POINTS, PersonKeypoints};
+pub use triangulate::Point;
 
 use std::path::{Path, PathBuf};
 
@@ -22,12 +24,12 @@ use toile_assets::file;
 use super::files::{count_bytes, shown};
 use super::joint_map::JointMap;
 use super::tidy;
+use crate::calibration::Rig;
 use crate::clock::SECOND_NS;
 use crate::error::{Fault, Place, SourceError};
 use crate::frame::Joints;
 use crate::limits::{CAMERA, KEYPOINTS, MAX_CAMERAS, MAX_JOINT_FRAMES};
 use crate::session::{Session, too_many};
-use calibration::Rig;
 use keypoints::{ViewFrames, ViewPeople};
 
 /// Frames a second where the calibration's metadata has no `frame_rate`: OpenPose writes no time.
@@ -40,12 +42,62 @@ pub(super) fn recognises(folder: &Path) -> Result<bool, SourceError> {
     Ok(list(folder)?.iter().any(|p| has_extension(p, "toml")) || !camera_folders(folder)?.is_empty())
 }
 
+/// A recording of keypoints: the cameras, and what each saw of the shopper.
+#[derive(Debug, Clone, PartialEq)]
+pub struct KeypointRecording {
+    /// The cameras.
+    pub rig: Rig,
+    /// Frames a second: the calibration's, or what is assumed.
+    pub rate: f64,
+    /// Whether the keypoints are those of BODY_25B; else of BODY_25.
+    pub is_25b: bool,
+    /// The frames; none where two cameras show nobody.
+    pub frames: Vec<Option<KeypointFrame>>,
+}
+
+/// The shopper in one frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct KeypointFrame {
+    /// What each camera saw of them; none where it saw nobody who fits.
+    pub views: Vec<Option<PersonKeypoints>>,
+    /// The points that the views meet in.
+    pub points: [Point; POINTS],
+}
+
+/// Reads a folder of keypoints of several cameras in the cameras' own world.
+///
+/// # Errors
+/// One sentence with the path and the cure where there is no calibration, a camera's folder is missing, or a file is wrong.
+pub fn keypoints_of(folder: &Path) -> Result<KeypointRecording, SourceError> {
+    let (rig, views) = read_folder(folder)?;
+    let is_25b = keypoints::format(&views, &mut Vec::new()) == super::joint_map::Format::OpenPose25B;
+    let frames = views.iter().map(Vec::len).min().unwrap_or(0);
+    let (mut found, mut last) = (Vec::with_capacity(frames), None);
+    for i in 0..frames {
+        let seen: Vec<&ViewPeople> = views.iter().map(|view| &view[i]).collect();
+        let person = people::shopper(&rig, &seen, last.as_ref());
+        found.push(person.map(|points| KeypointFrame { views: people::views(&rig, &seen, &points), points }));
+        last = person.or(last);
+    }
+    let rate = rig.frame_rate.unwrap_or(ASSUMED_RATE);
+    Ok(KeypointRecording { rig, rate, is_25b, frames: found })
+}
+
 /// Opens a folder of keypoints.
 pub(super) fn open(folder: &Path) -> Result<Session, SourceError> {
+    let (rig, views) = read_folder(folder)?;
+    let mut session = session(&rig, &views).map_err(|fault| fault.at(&shown(folder)))?;
+    session.name = folder.file_name().map_or_else(|| "session".to_owned(), |s| s.to_string_lossy().into_owned());
+    session.check().map_err(|fault| fault.at(&shown(folder)))?;
+    Ok(session)
+}
+
+/// The cameras of a folder and what each saw.
+fn read_folder(folder: &Path) -> Result<(Rig, Vec<ViewFrames>), SourceError> {
     let whole = |problem: String| Fault::new(Place::Whole, problem, CURE).at(&shown(folder));
     let toml = list(folder)?.into_iter().find(|p| has_extension(p, "toml"));
     let toml = toml.ok_or_else(|| whole("the folder holds no calibration (.toml)".to_owned()))?;
-    let rig = calibration::read(&file::read(&toml, &CAMERA)?).map_err(|fault| fault.at(&shown(&toml)))?;
+    let rig = crate::calibration::read_toml(&file::read(&toml, &CAMERA)?).map_err(|fault| fault.at(&shown(&toml)))?;
     let folders = camera_folders(folder)?;
     if folders.len() != rig.cameras.len() {
         return Err(whole(format!("{} folders of JSON files for {} cameras", folders.len(), rig.cameras.len())));
@@ -55,10 +107,7 @@ pub(super) fn open(folder: &Path) -> Result<Session, SourceError> {
     for folder in &folders {
         views.push(view(folder, &mut total)?);
     }
-    let mut session = session(&rig, &views).map_err(|fault| fault.at(&shown(folder)))?;
-    session.name = folder.file_name().map_or_else(|| "session".to_owned(), |s| s.to_string_lossy().into_owned());
-    session.check().map_err(|fault| fault.at(&shown(folder)))?;
-    Ok(session)
+    Ok((rig, views))
 }
 
 /// One camera's frames; `total` counts the bytes of all cameras.
@@ -174,7 +223,7 @@ mod tests {
     #[test]
     fn the_points_are_those_that_others_triangulated() {
         let Some(folder) = shared() else { return };
-        let rig = calibration::read(&std::fs::read(folder.join("Calib_qualisys.toml")).unwrap()).unwrap();
+        let rig = crate::calibration::read_toml(&std::fs::read(folder.join("Calib_qualisys.toml")).unwrap()).unwrap();
         let views: Vec<ViewFrames> =
             camera_folders(&folder).unwrap().iter().map(|f| view(f, &mut 0).unwrap()).collect();
         assert_eq!(keypoints::format(&views, &mut Vec::new()), Format::OpenPose25B);

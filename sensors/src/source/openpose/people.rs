@@ -4,9 +4,9 @@
 //! keypoints lie nearest to where those points are seen, if near enough. The guess with the most keypoints that agree is
 //! the shopper; after the first frame the one who is nearest to where the shopper was, if that is a step away at most.
 
-use super::calibration::Rig;
 use super::keypoints::{POINTS, PersonKeypoints, ViewPeople};
 use super::triangulate::{Point, Ray, triangulate};
+use crate::calibration::Rig;
 
 /// Mean distance of a camera's keypoints from where a guess is seen, up to which they are the same person (px at a
 /// focal length of 1000): a hand's breadth at three metres.
@@ -58,6 +58,15 @@ fn grown<'a>(rig: &Rig, seen: &[&'a ViewPeople], chosen: &mut [Option<&'a Person
     Some(in_space(rig, chosen))
 }
 
+/// Each camera's view of a person in space: the one whose keypoints lie nearest to where the points are seen, if near enough.
+pub fn views(rig: &Rig, seen: &[&ViewPeople], person: &InSpace) -> Vec<Option<PersonKeypoints>> {
+    let view = |(camera, people): (usize, &&ViewPeople)| {
+        let off = |p: &PersonKeypoints| distance(rig, camera, p, person).unwrap_or(f64::INFINITY);
+        people.iter().min_by(|a, b| off(a).total_cmp(&off(b))).filter(|p| off(p) < SAME_PERSON).copied()
+    };
+    seen.iter().enumerate().map(view).collect()
+}
+
 /// The points of the person whom each camera's choice shows.
 fn in_space(rig: &Rig, chosen: &[Option<&PersonKeypoints>]) -> InSpace {
     std::array::from_fn(|k| {
@@ -106,10 +115,10 @@ fn moved(now: &InSpace, last: &InSpace) -> Option<f64> {
 mod tests {
     use glam::DVec3;
 
-    use super::super::calibration::read;
-    use super::super::calibration::tests::{TWO, pixel};
     use super::super::keypoints::Keypoint;
     use super::*;
+    use crate::calibration::tests::read;
+    use crate::calibration::tests::{TWO, pixel};
 
     fn body(at: DVec3) -> [DVec3; POINTS] {
         std::array::from_fn(|k| at + DVec3::new(0.1 * (k % 3) as f64, 0.05 * (k % 4) as f64, 0.06 * k as f64))

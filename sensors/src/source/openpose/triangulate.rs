@@ -6,7 +6,7 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::calibration::CalibratedCamera;
+use crate::calibration::CalibratedCamera;
 
 /// Farthest that a point may be seen from where it should (px), for an image of a thousand pixels' focal length.
 const LARGEST_ERROR: f64 = 15.0;
@@ -81,9 +81,9 @@ fn solve(rays: &[Ray]) -> Option<Point> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::calibration::tests::{TWO, pixel};
-    use super::super::calibration::{Rig, read};
     use super::*;
+    use crate::calibration::tests::{TWO, pixel};
+    use crate::calibration::{Rig, tests::read};
 
     fn rays(rig: &Rig, point: DVec3) -> Vec<Ray<'_>> {
         rig.cameras.iter().map(|c| (c, c.ray(pixel(c, point)), 0.8)).collect()

@@ -5,7 +5,6 @@
 //! with the user's faces. An index says the time of each file.
 
 use std::fmt::Write as _;
-use std::io::Write as _;
 
 use glam::Vec3;
 use toile_assets::garment::check::corners;
@@ -104,20 +103,7 @@ fn csv(positions: impl Iterator<Item = Vec3>) -> String {
 }
 
 fn ply(positions: impl Iterator<Item = Vec3>, mesh: &UserMesh) -> Vec<u8> {
-    let (vertices, faces) = (mesh.start.len(), mesh.faces.len());
-    let mut bytes = Vec::with_capacity(256 + vertices * 12 + faces * 17);
-    // Writing to memory cannot fail.
-    let _ = write!(
-        bytes,
-        "ply\nformat binary_little_endian 1.0\nelement vertex {vertices}\nproperty float x\nproperty float y\n\
-         property float z\nelement face {faces}\nproperty list uchar uint vertex_indices\nend_header\n"
-    );
-    positions.flat_map(|p| p.to_array()).for_each(|x| bytes.extend(x.to_le_bytes()));
-    for ring in mesh.faces.iter().map(corners) {
-        bytes.push(ring.len() as u8);
-        ring.iter().for_each(|v| bytes.extend(v.to_le_bytes()));
-    }
-    bytes
+    toile_assets::export::ply(&positions.collect::<Vec<_>>(), mesh.faces.iter().map(corners))
 }
 
 #[cfg(test)]

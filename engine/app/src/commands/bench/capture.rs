@@ -1,0 +1,123 @@
+//! `toile bench capture`: a moving cloth before virtual cameras, followed, against where it was.
+
+use std::path::PathBuf;
+
+use serde::Serialize;
+use toile_perf::capture::flow::{self, FlowCase, FlowRow, GOALS};
+use toile_perf::capture::sheet::Sheet;
+
+use crate::arguments::{Printing, count};
+use crate::exit::AppError;
+use crate::output::OutputFolder;
+use crate::report::Document;
+use crate::terminal;
+
+/// Follow a cloth whose motion is known before virtual cameras, and say how far off it is found.
+///
+/// A cloth of 900 vertices hangs in the wind, stepped by the engine, with a print on it; 2, 4 and 8 cameras see it at 2 px a
+/// millimetre, with blur and noise, some with a shadow that moves and an arm that passes before it. Each row is one way to follow it:
+/// the mean distance of a vertex, the drift (last ten frames over the first ten), the time of an iteration. A row that misses its
+/// goal makes the exit code 3.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(
+    after_help = "Example: the table and the contact sheets of docs/capture.md, a quarter of an hour\n  toile bench capture --pictures sheets"
+)]
+pub struct CaptureBenchArgs {
+    /// Frames of each row
+    #[arg(long, value_name = "N", value_parser = count(12..=600), default_value = "120")]
+    pub frames: usize,
+    /// Rows whose name holds this word (default: all)
+    #[arg(long, value_name = "WORD")]
+    pub row: Option<String>,
+    /// Rows of so many cameras: 2, 4 or 8 (default: all)
+    #[arg(long, value_name = "N", value_parser = count(2..=8))]
+    pub cameras: Option<usize>,
+    /// Folder for contact sheets
+    #[arg(long, value_name = "DIR")]
+    pub pictures: Option<PathBuf>,
+    #[command(flatten)]
+    printing: Printing,
+}
+
+/// The report as JSON has it.
+#[derive(Debug, Serialize)]
+struct CaptureDocument {
+    rows: Vec<FlowRow>,
+}
+
+/// Runs `toile bench capture`.
+///
+/// # Errors
+/// [`AppError::Threshold`] where a row misses its goal, after the report; a folder or a stdout that cannot be written.
+pub fn run(args: &CaptureBenchArgs) -> Result<(), AppError> {
+    let words = args.printing.words();
+    let mut folder = args.pictures.as_deref().map(OutputFolder::prepare).transpose()?;
+    let mut rows = Vec::new();
+    let wanted = |case: &FlowCase| {
+        args.row.as_deref().is_none_or(|word| case.name.contains(word))
+            && args.cameras.is_none_or(|n| n == case.cameras)
+    };
+    for case in flow::cases().iter().filter(|c| wanted(c)) {
+        let mut sheet = Sheet::new(args.frames);
+        let row = flow::run(case, args.frames, |moment| sheet.see(&moment)).map_err(AppError::internal)?;
+        words.print_line(&line(&row));
+        if let Some(folder) = &mut folder {
+            let name = format!("{}-{}.png", case.name.replace([' ', ','], "-"), case.cameras);
+            folder.write(&name, &sheet.png(&row).map_err(AppError::internal)?)?;
+        }
+        rows.push(row);
+    }
+    if let Some(folder) = folder {
+        folder.commit()?;
+    }
+    let missed: Vec<String> = rows
+        .iter()
+        .filter(|r| r.met == Some(false))
+        .map(|r| format!("{} with {} cameras", r.name, r.cameras))
+        .collect();
+    if args.printing.json {
+        terminal::print_json(&Document::new("bench-capture", CaptureDocument { rows }))?;
+    } else {
+        terminal::print(&table(&rows))?;
+    }
+    if missed.is_empty() {
+        return Ok(());
+    }
+    Err(AppError::Threshold(format!(
+        "{} rows missed their goal: {}; docs/capture.md says why",
+        missed.len(),
+        missed.join("; ")
+    )))
+}
+
+fn line(row: &FlowRow) -> String {
+    format!("{}, {} cameras: {:.3} mm", row.name, row.cameras, row.error_mm.mean)
+}
+
+fn table(rows: &[FlowRow]) -> String {
+    let [mean, arm, drift, seconds] = GOALS;
+    let mut text = String::from(
+        "| followed | cameras | mean, 95 %, largest (mm) | drift | placed, least | iterations a frame | ms an iteration | goal |\n\
+         |---|---|---|---|---|---|---|---|\n",
+    );
+    for r in rows {
+        let goal = r.met.map_or("", |met| if met { "met" } else { "**missed**" });
+        text += &format!(
+            "| {} | {} | {:.3}, {:.3}, {:.2} | {:.2} | {:.0} % | {:.0} | {:.1} | {goal} |\n",
+            r.name,
+            r.cameras,
+            r.error_mm.mean,
+            r.error_mm.p95,
+            r.error_mm.max,
+            r.drift,
+            100.0 * r.least_placed,
+            r.iterations,
+            1e3 * r.seconds_per_iteration
+        );
+    }
+    text += &format!(
+        "\nGoals: {mean} mm and a drift of {drift} without the arm, {arm} mm with it, {:.0} ms an iteration\n",
+        1e3 * seconds
+    );
+    text
+}

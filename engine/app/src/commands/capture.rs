@@ -1,0 +1,38 @@
+//! `toile capture`: what several calibrated cameras saw becomes a surface that moves.
+//!
+//! Reads: calibrations, pictures, meshes, keypoints. Writes: meshes, joints, reports into an output folder; figures on stdout.
+//! Budget: offline: about a second a frame.
+//! Thread: the main thread, and those that a capture starts.
+
+use clap::Subcommand;
+
+use crate::exit::AppError;
+
+pub(crate) mod compare;
+mod fabric_scene;
+pub(crate) mod flow;
+pub(crate) mod pose;
+
+/// Turn the pictures of several calibrated cameras into motion.
+#[derive(Debug, Clone, PartialEq, Subcommand)]
+#[command(
+    after_help = "Example: a cloth that was filmed by four cameras, followed from its mesh in the first frame\n  toile capture flow \
+                  pictures --calibration cameras.toml --mesh cloth.obj --out captured"
+)]
+pub(crate) enum CaptureCommand {
+    Flow(flow::FlowArgs),
+    Pose(pose::PoseArgs),
+    Compare(compare::CompareArgs),
+}
+
+/// Runs `toile capture`.
+///
+/// # Errors
+/// As each command says.
+pub(crate) fn run(command: &CaptureCommand) -> Result<(), AppError> {
+    match command {
+        CaptureCommand::Flow(args) => flow::run(args),
+        CaptureCommand::Pose(args) => pose::run(args),
+        CaptureCommand::Compare(args) => compare::run(args),
+    }
+}

@@ -1,0 +1,133 @@
+//! What a camera sees of a surface: for each pixel the depth of the nearest triangle, and which one it is.
+
+use glam::{DVec2, DVec3};
+use toile_sensors::calibration::CalibratedCamera;
+
+/// Nearest depth that is drawn (m).
+const NEAREST: f64 = 0.02;
+
+/// The nearest surface in each pixel of a camera, at `scale` pixels of it to one of the picture.
+#[derive(Debug, Clone)]
+pub struct DepthBuffer {
+    /// Columns.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Pixels of the buffer a pixel of the picture.
+    pub scale: f64,
+    /// Depth along the camera's axis (m); infinite where nothing is `[height x width]`.
+    pub depth: Vec<f32>,
+    /// The triangle that is seen `[height x width]`; [`u32::MAX`] where nothing is.
+    pub triangle: Vec<u32>,
+}
+
+impl DepthBuffer {
+    /// An empty buffer for pictures of a size.
+    pub fn new(size: [u32; 2], scale: f64) -> Self {
+        let [width, height] = size.map(|s| ((f64::from(s) * scale).ceil() as usize).max(1));
+        let pixels = width * height;
+        Self { width, height, scale, depth: vec![f32::INFINITY; pixels], triangle: vec![u32::MAX; pixels] }
+    }
+
+    /// Draws a surface as a camera whose lens bends nothing sees it.
+    pub fn draw(&mut self, camera: &CalibratedCamera, positions: &[DVec3], triangles: &[[u32; 3]]) {
+        self.depth.fill(f32::INFINITY);
+        self.triangle.fill(u32::MAX);
+        let seen: Vec<DVec3> = positions.iter().map(|p| self.project(camera, *p)).collect();
+        for (t, corners) in triangles.iter().enumerate() {
+            let [a, b, c] = corners.map(|v| seen[v as usize]);
+            if a.z.min(b.z).min(c.z) > NEAREST {
+                self.fill(t as u32, [a, b, c]);
+            }
+        }
+    }
+
+    /// Where a point is in the buffer (px), with its depth (m).
+    pub fn project(&self, camera: &CalibratedCamera, point: DVec3) -> DVec3 {
+        let p = camera.to_camera(point);
+        let pixel = (p.truncate() / p.z * camera.focal() + camera.centre() + 0.5) * self.scale - 0.5;
+        pixel.extend(p.z)
+    }
+
+    /// Depth 1/z is linear over the picture, so that it is interpolated and not z.
+    fn fill(&mut self, t: u32, [a, b, c]: [DVec3; 3]) {
+        let [pa, pb, pc] = [a, b, c].map(DVec3::truncate);
+        let area = (pb - pa).perp_dot(pc - pa);
+        if area.abs() < 1e-12 {
+            return;
+        }
+        let low = pa.min(pb).min(pc).max(DVec2::ZERO).ceil();
+        let high = pa.max(pb).max(pc).min(DVec2::new(self.width as f64 - 1.0, self.height as f64 - 1.0)).floor();
+        if !(low.x <= high.x && low.y <= high.y) {
+            return;
+        }
+        for y in low.y as usize..=high.y as usize {
+            for x in low.x as usize..=high.x as usize {
+                let p = DVec2::new(x as f64, y as f64);
+                let wb = (p - pa).perp_dot(pc - pa) / area;
+                let wc = (pb - pa).perp_dot(p - pa) / area;
+                let wa = 1.0 - wb - wc;
+                if wa >= 0.0 && wb >= 0.0 && wc >= 0.0 {
+                    let z = (1.0 / (wa / a.z + wb / b.z + wc / c.z)) as f32;
+                    let at = y * self.width + x;
+                    if z < self.depth[at] {
+                        (self.depth[at], self.triangle[at]) = (z, t);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Whether a surface goes on around a point: whether something that is at most so much deeper (m) is seen in eight directions at a
+    /// distance (px of the buffer).
+    pub fn goes_on(&self, at: DVec2, reach: f64, depth: f64) -> bool {
+        const DIAGONAL: f64 = std::f64::consts::FRAC_1_SQRT_2;
+        let around = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)];
+        let across = [(DIAGONAL, DIAGONAL), (-DIAGONAL, DIAGONAL), (DIAGONAL, -DIAGONAL), (-DIAGONAL, -DIAGONAL)];
+        around.into_iter().chain(across).all(|(x, y)| {
+            let p = at + DVec2::new(x, y) * reach;
+            let (x, y) = (p.x.round(), p.y.round());
+            let inside = x >= 0.0 && y >= 0.0 && x < self.width as f64 && y < self.height as f64;
+            inside && f64::from(self.depth[y as usize * self.width + x as usize]) < depth
+        })
+    }
+
+    /// The nearest depth in the pixel of a point and those around it (m).
+    pub fn nearest_around(&self, at: DVec2) -> f32 {
+        let mut nearest = f32::INFINITY;
+        let (x, y) = (at.x.round() as isize, at.y.round() as isize);
+        for dy in -1..=1 {
+            for dx in -1..=1 {
+                let (x, y) = (x + dx, y + dy);
+                if x >= 0 && y >= 0 && (x as usize) < self.width && (y as usize) < self.height {
+                    nearest = nearest.min(self.depth[y as usize * self.width + x as usize]);
+                }
+            }
+        }
+        nearest
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_lies_before_hides_what_lies_behind() {
+        let camera = crate::render::tests::camera([100, 100], 1.0);
+        let square = |z: f64, half: f64| {
+            [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| DVec3::new(x * half, y * half, z))
+        };
+        let positions: Vec<DVec3> = square(0.0, 0.5).into_iter().chain(square(0.3, 0.2)).collect();
+        let triangles = [[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]];
+        let mut buffer = DepthBuffer::new([100, 100], 1.0);
+        buffer.draw(&camera, &positions, &triangles);
+        let of = |p: DVec3| {
+            let at = buffer.project(&camera, p);
+            buffer.triangle[at.y.round() as usize * 100 + at.x.round() as usize]
+        };
+        assert!(of(DVec3::new(0.02, 0.05, 0.3)) >= 2, "the small square is nearer to the camera");
+        assert!(of(DVec3::new(0.4, 0.05, 0.0)) < 2);
+        assert_eq!(buffer.triangle[0], u32::MAX);
+    }
+}

@@ -1,0 +1,16 @@
+//! A pose from keypoints of several cameras: a skeleton whose bones keep their lengths, found without a start by hand and followed.
+//!
+//! Reads: keypoints of calibrated cameras. Writes: joints in each frame, lengths of bones, a TRC file.
+//! Budget: offline; a millisecond a frame.
+//! Thread: the caller's.
+
+mod bones;
+mod fit;
+mod trc;
+
+pub use bones::{BONES, Bone, marker_name};
+pub use fit::{PoseMotion, fit};
+pub use trc::{TrcMotion, distances, read_trc, write_trc};
+
+#[cfg(test)]
+mod tests;

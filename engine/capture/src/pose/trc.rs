@@ -1,0 +1,94 @@
+//! TRC files of markers, as motion analysis programs exchange them: X, Y, Z of each marker in each frame, separated by tabs.
+//!
+//! Their axes are those of OpenSim, y up: (X, Y, Z) of the file is (y, z, x) of a world whose z is up.
+
+use std::fmt::Write;
+
+use glam::DVec3;
+
+use super::bones::marker_name;
+use super::fit::PoseMotion;
+use crate::error::CaptureError;
+
+/// Markers over time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TrcMotion {
+    /// Their names.
+    pub names: Vec<String>,
+    /// Their positions (m, a world with z up); NaN where one is not seen `[frames][markers]`.
+    pub frames: Vec<Vec<DVec3>>,
+}
+
+/// Reads a TRC file in metres or millimetres.
+///
+/// # Errors
+/// One sentence where the text is no TRC file.
+pub fn read_trc(path: &str, text: &str) -> Result<TrcMotion, CaptureError> {
+    let wrong =
+        |problem: String| CaptureError::unfit(path, problem, "give a TRC file as Pose2Sim or OpenSim writes it");
+    let lines: Vec<&str> = text.lines().collect();
+    if lines.len() < 6 || !lines[0].starts_with("PathFileType") {
+        return Err(wrong("it is no TRC file".to_owned()));
+    }
+    let scale = if lines[2].split('\t').any(|word| word.trim() == "mm") { 1e-3 } else { 1.0 };
+    let names: Vec<String> =
+        lines[3].split('\t').skip(2).map(str::trim).filter(|n| !n.is_empty()).map(str::to_owned).collect();
+    let mut frames = Vec::new();
+    for line in lines[5..].iter().filter(|l| l.starts_with(|c: char| c.is_ascii_digit())) {
+        let numbers: Vec<f64> = line.split('\t').skip(2).map(|n| n.trim().parse().unwrap_or(f64::NAN)).collect();
+        let frame: Vec<DVec3> =
+            numbers.chunks_exact(3).take(names.len()).map(|p| DVec3::new(p[2], p[0], p[1]) * scale).collect();
+        if frame.len() < names.len() {
+            return Err(wrong(format!("frame {} has {} of {} markers", frames.len() + 1, frame.len(), names.len())));
+        }
+        frames.push(frame);
+    }
+    Ok(TrcMotion { names, frames })
+}
+
+/// The TRC file of a motion, in metres.
+pub fn write_trc(name: &str, motion: &PoseMotion) -> String {
+    let markers: Vec<usize> = (0..25).filter(|k| !marker_name(*k).is_empty()).collect();
+    let (rate, frames, count) = (motion.rate, motion.frames.len(), markers.len());
+    let mut text = format!(
+        "PathFileType\t4\t(X/Y/Z)\t{name}\nDataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\t\
+         OrigNumFrames\n{rate}\t{rate}\t{frames}\t{count}\tm\t{rate}\t0\t{frames}\nFrame#\tTime"
+    );
+    for k in &markers {
+        let _ = write!(text, "\t{}\t\t", marker_name(*k));
+    }
+    text.push_str("\n\t");
+    for i in 1..=count {
+        let _ = write!(text, "\tX{i}\tY{i}\tZ{i}");
+    }
+    text.push('\n');
+    for (f, frame) in motion.frames.iter().enumerate() {
+        let _ = write!(text, "{}\t{}", f + 1, (f + 1) as f64 / rate);
+        for k in &markers {
+            match frame {
+                Some(x) => {
+                    let p = x[*k];
+                    let _ = write!(text, "\t{}\t{}\t{}", p.y, p.z, p.x);
+                }
+                None => text.push_str("\t\t\t"),
+            }
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// How far a motion lies from markers of the same names, of all that both have (mm): every distance, sorted.
+pub fn distances(motion: &PoseMotion, truth: &TrcMotion) -> Vec<f64> {
+    let mut off = Vec::new();
+    for (x, markers) in motion.frames.iter().zip(&truth.frames) {
+        for (name, marker) in truth.names.iter().zip(markers) {
+            let keypoint = (0..25).find(|k| marker_name(*k) == name);
+            if let (Some(x), Some(k), true) = (x, keypoint, marker.is_finite()) {
+                off.push(x[k].distance(*marker) * 1e3);
+            }
+        }
+    }
+    off.sort_by(f64::total_cmp);
+    off
+}

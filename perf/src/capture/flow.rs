@@ -1,0 +1,162 @@
+//! Model flowing against the truth: cameras, disturbances, springs and references, each with its error over time.
+
+use glam::DVec3;
+use image::RgbImage;
+use serde::Serialize;
+use thiserror::Error;
+use toile_capture::error::CaptureError;
+use toile_capture::flow::{FlowSettings, FlowTracker, Reference, Springs};
+use toile_capture::surface::Surface;
+use toile_fitting::scene::RunError;
+
+use super::cloth::{Disturbance, HangingCloth};
+
+/// Goals: mean error without and with the arm (mm), the last ten frames over the first ten, an iteration (s).
+pub const GOALS: [f64; 4] = [0.25, 1.0, 1.5, 0.030];
+
+/// Why a study could not be run.
+#[derive(Debug, Error)]
+pub enum FlowStudyError {
+    /// The capture was refused.
+    #[error(transparent)]
+    Capture(#[from] CaptureError),
+    /// The cloth could not be stepped.
+    #[error(transparent)]
+    Scene(#[from] RunError),
+}
+
+/// One row of the study.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FlowRow {
+    /// What it is.
+    pub name: String,
+    /// Cameras before the cloth.
+    pub cameras: usize,
+    /// Frames that were followed.
+    pub frames: usize,
+    /// Mean, 95th percentile and largest distance of a vertex from where it was, over all frames (mm).
+    pub error_mm: ErrorMm,
+    /// Mean distance of each frame (mm).
+    pub over_time_mm: Vec<f64>,
+    /// Mean of the last ten frames over that of the first ten.
+    pub drift: f64,
+    /// Root mean square residual (of 255).
+    pub residual: f64,
+    /// Least part of the triangles that cameras placed.
+    pub least_placed: f64,
+    /// Mean iterations a frame.
+    pub iterations: f64,
+    /// Time of an iteration (s).
+    pub seconds_per_iteration: f64,
+    /// Whether it meets its goals; absent where it has none.
+    pub met: Option<bool>,
+}
+
+/// A distance in its summary.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ErrorMm {
+    /// Mean.
+    pub mean: f64,
+    /// 95th percentile.
+    pub p95: f64,
+    /// Largest.
+    pub max: f64,
+}
+
+/// What a row is run with.
+#[derive(Debug, Clone)]
+pub struct FlowCase {
+    /// What it is called.
+    pub name: &'static str,
+    /// Cameras.
+    pub cameras: usize,
+    /// What disturbs them.
+    pub disturbed: Disturbance,
+    /// How it is followed.
+    pub settings: FlowSettings,
+    /// Largest mean error and drift; none where it only compares.
+    pub goals: Option<[f64; 2]>,
+}
+
+/// All rows of the study.
+pub fn cases() -> Vec<FlowCase> {
+    let plain = FlowSettings::default();
+    let (none, shadow) = (Disturbance::default(), Disturbance { shadow: true, arm: false });
+    let both = Disturbance { shadow: true, arm: true };
+    let [mean, arm, drift, _] = GOALS;
+    let case = |name, cameras, disturbed, settings, goals| FlowCase { name, cameras, disturbed, settings, goals };
+    vec![
+        case("plain", 2, none, plain, Some([mean, drift])),
+        case("plain", 4, none, plain, Some([mean, drift])),
+        case("plain", 8, none, plain, Some([mean, drift])),
+        case("shadow", 4, shadow, plain, Some([mean, drift])),
+        case("shadow and arm", 4, both, plain, Some([arm, f64::INFINITY])),
+        case("shadow and arm", 8, both, plain, Some([arm, f64::INFINITY])),
+        case("shadow, brightness as it is", 4, shadow, FlowSettings { brightness: false, ..plain }, None),
+        case("linear springs", 2, none, FlowSettings { springs: Springs::Linear, ..plain }, None),
+        case("no springs", 2, none, FlowSettings { springs: Springs::Off, ..plain }, None),
+        case("linear springs, arm", 4, both, FlowSettings { springs: Springs::Linear, ..plain }, None),
+        case("no springs, arm", 4, both, FlowSettings { springs: Springs::Off, ..plain }, None),
+        case("frame before as reference", 4, none, FlowSettings { reference: Reference::Previous, ..plain }, None),
+        case("three channels", 4, none, FlowSettings { channels: 3, ..plain }, None),
+    ]
+}
+
+/// A moment of a row, for its contact sheet: the frame, a camera's picture, the mesh as it was found, its distances from the truth (m).
+pub struct FollowedMoment<'a> {
+    /// The frame.
+    pub frame: usize,
+    /// The pictures of all cameras.
+    pub pictures: &'a [RgbImage],
+    /// Where the mesh was found.
+    pub found: &'a [DVec3],
+    /// Distance of each vertex from the truth (m).
+    pub off: &'a [f64],
+    /// The truth.
+    pub cloth: &'a HangingCloth,
+}
+
+/// Runs one row over so many frames; `see` is called after each.
+///
+/// # Errors
+/// A cloth that cannot be stepped, a capture that was refused.
+pub fn run(case: &FlowCase, frames: usize, mut see: impl FnMut(FollowedMoment<'_>)) -> Result<FlowRow, FlowStudyError> {
+    let cloth = HangingCloth::new(frames, case.cameras)?;
+    let surface = Surface::new("the cloth", cloth.frames[0].clone(), Vec::new(), cloth.triangles.clone())?;
+    let mut tracker = FlowTracker::new(surface, cloth.cameras.clone(), case.settings)?;
+    tracker.start(&cloth.pictures(0, case.disturbed))?;
+    let (mut all, mut over_time) = (Vec::new(), Vec::new());
+    let (mut residual, mut placed, mut iterations, mut seconds) = (0.0, 1.0_f64, 0, 0.0);
+    for frame in 1..frames {
+        let pictures = cloth.pictures(frame, case.disturbed);
+        let outcome = tracker.step(&pictures)?;
+        let off: Vec<f64> = cloth.frames[frame].iter().zip(tracker.positions()).map(|(a, b)| a.distance(*b)).collect();
+        over_time.push(off.iter().sum::<f64>() / off.len() as f64 * 1e3);
+        see(FollowedMoment { frame, pictures: &pictures, found: tracker.positions(), off: &off, cloth: &cloth });
+        all.extend(off.iter().map(|d| d * 1e3));
+        residual += outcome.residual / (frames - 1) as f64;
+        placed = placed.min(outcome.placed);
+        iterations += outcome.iterations;
+        seconds += outcome.seconds;
+    }
+    all.sort_by(f64::total_cmp);
+    let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len().max(1) as f64;
+    let ten = over_time.len().min(10);
+    let drift = mean(&over_time[over_time.len() - ten..]) / mean(&over_time[..ten]);
+    let error_mm = ErrorMm { mean: mean(&all), p95: all[all.len() * 95 / 100], max: all[all.len() - 1] };
+    let seconds_per_iteration = seconds / iterations as f64;
+    let met = case.goals.map(|[most, drifts]| error_mm.mean <= most && drift <= drifts);
+    Ok(FlowRow {
+        name: case.name.to_owned(),
+        cameras: case.cameras,
+        frames,
+        error_mm,
+        over_time_mm: over_time,
+        drift,
+        residual,
+        least_placed: placed,
+        iterations: iterations as f64 / (frames - 1) as f64,
+        seconds_per_iteration,
+        met,
+    })
+}
