@@ -98,7 +98,7 @@ impl HangingCloth {
         let apart = (WIDEST / (cameras - 1) as f64).min(APART).to_radians();
         let camera = |k: usize| {
             let angle = (k as f64 - 0.5 * (cameras - 1) as f64) * apart;
-            let lift = if k % 2 == 0 { 0.15 } else { -0.15 };
+            let lift = if k.is_multiple_of(2) { 0.15 } else { -0.15 };
             let from = middle + DVec3::new(angle.sin(), lift, angle.cos()) * DISTANCE;
             look_at(&format!("cam{}", k + 1), PICTURE, FOCAL, [from, middle], DVec3::Y)
         };

@@ -33,7 +33,7 @@ impl Sheet {
 
     /// Looks at a moment, and keeps it if it is due.
     pub fn see(&mut self, moment: &FollowedMoment<'_>) {
-        if moment.frame % self.every != 0 || self.seen.len() == MOMENTS {
+        if !moment.frame.is_multiple_of(self.every) || self.seen.len() == MOMENTS {
             return;
         }
         let k = moment.pictures.len() / 2;
