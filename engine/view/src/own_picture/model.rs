@@ -97,8 +97,8 @@ impl OwnPictureModel {
 
     /// Whether a snapshot's garments are these.
     pub(super) fn wears(&self, garments: &[Box<[Vec3]>]) -> bool {
-        let same = |(own, worn): (&OwnGarment, &Box<[Vec3]>)| own.weights.len() == worn.len();
-        self.garments.len() == garments.len() && self.garments.iter().zip(garments).all(same)
+        self.garments.len() == garments.len()
+            && self.garments.iter().zip(garments).all(|(own, worn)| own.weights.len() == worn.len())
     }
 }
 
