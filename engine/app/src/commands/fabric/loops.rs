@@ -145,7 +145,7 @@ fn curve(kind: &LoopKind, law: &mut LinkLaw) -> Vec<[f64; 2]> {
     let [low, high] = kind.most.map(|end| (end / kind.most[1] * f64::from(POINTS)) as i32);
     let at = |k: i32| kind.most[1] * f64::from(k) / f64::from(POINTS);
     let mut points = Vec::new();
-    for k in (0..=high).chain((low..high).rev()).chain(if low < 0 { low + 1..=high } else { 0..=-1 }) {
+    for k in (0..=high).chain((low..high).rev()).chain((low + 1..=high).filter(|_| low < 0)) {
         let force = law.force(at(k));
         if low == 0 && force < 0.0 {
             break;
