@@ -262,6 +262,9 @@ pub struct FollowLaws<'a> {
     pub gain: Option<LawGain>,
 }
 
+/// Least stiffness of what sticks, over a link's own (1).
+const LEAST_STICKING: f32 = 0.1;
+
 /// Strains beyond this are not cloth's, or not numbers: they do not make anything slip (1).
 const FARTHEST: f32 = 1e6;
 
@@ -339,6 +342,21 @@ impl Places for Listed<'_> {
 }
 
 impl FollowLaws<'_> {
+    /// Stiffness of what sticks, over the link's own. Links that are solved once a substep hold what their ends weigh over its square
+    /// and no more: as stiff as the rest of that, so that what sticks carries what the law says before it slips.
+    #[inline(always)]
+    fn sticking<L: Numbers>(&self, weight: L, compliance: L) -> L {
+        let most = L::splat(STICKING as f32);
+        match self.gain {
+            Some(LawGain { damped, passes: Passes::Once }) => {
+                let ends = (weight * L::splat(damped)).max(L::splat(f32::MIN_POSITIVE));
+                let room = (compliance * L::splat(self.per_dt2)).div(ends) - L::splat(1.0);
+                room.max(L::splat(LEAST_STICKING)).min(most)
+            }
+            _ => most,
+        }
+    }
+
     #[inline(always)]
     fn follow<L: Lanes>(&self, at: impl Places, [had, has]: [V3<L>; 2], weight: L) {
         let (table, one) = (self.table, L::splat(1.0));
@@ -352,7 +370,8 @@ impl FollowLaws<'_> {
         // A thread that has given way does not rub: what was measured is friction of threads that are drawn.
         let gives = had.lt(below[0]).and(below[1].lt(one));
         let holds = L::splat(0.0).select(gives, holds);
-        let [stuck, sticks, keeps, rubs] = rubbed(had, stuck, holds);
+        let sticking = self.sticking(weight, compliance);
+        let [stuck, sticks, keeps, rubs] = rubbed(had, stuck, holds, sticking);
         at.store(stuck, self.to.sticks);
         let stiff = at.load::<L>(self.to.stiffness) * L::splat(self.per_dt2.recip());
         at.store(least(had, below, rubs, stiff), self.to.least);
@@ -399,11 +418,11 @@ fn slope_at<L: Numbers>(strain: L, [lower, below]: [L; 2], [upper, above]: [L; 2
     [slope, knee * (slope - one)]
 }
 
-/// Where a link sticks after it was strained so far, what its friction adds to slope and offset, and what it holds.
+/// Where a link sticks, as stiff as `sticking` over its own stiffness, after it was strained so far, what its friction adds to slope and offset, and what it holds.
 #[inline(always)]
-fn rubbed<L: Numbers>(strain: L, stuck: L, holds: L) -> [L; 4] {
-    let (zero, sticking) = (L::splat(0.0), L::splat(STICKING as f32));
-    let reach = holds * L::splat((1.0 / STICKING) as f32);
+fn rubbed<L: Numbers>(strain: L, stuck: L, holds: L, sticking: L) -> [L; 4] {
+    let zero = L::splat(0.0);
+    let reach = holds.div(sticking);
     let off = strain - stuck;
     let held = off.max(-reach).min(reach);
     let slips = off - held;

@@ -88,8 +88,8 @@ fn what_links_are_carries_what_the_law_of_f64_says_at_every_width() {
 }
 
 fn loose(links: &[(u32, [u32; 2])]) -> LawRows {
-    let column = |of: &dyn Fn(&(u32, [u32; 2])) -> u32| links.iter().map(of).collect();
-    let loose = [column(&|l| l.1[0]), column(&|l| l.1[1]), column(&|l| l.0)];
+    let end = |k: usize| links.iter().map(|l| l.1[k]).collect();
+    let loose = [end(0), end(1), links.iter().map(|l| l.0).collect()];
     LawRows { rows: [].into(), loose, shares: [[0..0, 0..16], [0..0, 16..links.len()]] }
 }
 
