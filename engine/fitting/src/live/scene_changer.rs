@@ -169,6 +169,8 @@ impl<S: Scene, O> SceneChanger<S, O> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::{Quat, Vec3};
+    use toile_assets::skeleton::{JOINTS, Pose};
     use toile_engine::clock::Clock;
     use toile_engine::frame::SnapshotTimes;
     use toile_engine::frame_loop::governor::Rung;
