@@ -221,6 +221,8 @@ mod tests {
         let fabric = Fabric::built_in("cotton-broad").unwrap();
         let study = tablecloth(&fabric, &["plain", "both"], 5.0, &mut |_| ()).unwrap();
         assert_eq!(study.rows.len(), 2);
-        assert!(study.rows.iter().all(|row| row.error_cm == [0.0; 2] && row.fastest_mm_s.is_finite()));
+        for row in study.rows {
+            assert!(row.error_cm.iter().all(|e| *e < 1e-9) && row.fastest_mm_s.is_finite(), "{row:?}");
+        }
     }
 }

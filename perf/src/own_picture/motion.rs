@@ -134,9 +134,9 @@ mod tests {
             }
             assert_eq!((0.9..1.2).contains(&fastest), motion == OwnMotion::Walk, "{motion:?}: {fastest}");
         }
-        // Crossed: each wrist on the other side, before the chest.
+        // Crossed: each hand on the other side, before the chest.
         let crossed = OwnMotion::Crossed.joints(skeleton, 4.0, 0);
-        let [left, right, chest] = [Joint::LeftWrist, Joint::RightWrist, Joint::Chest].map(|j| crossed.at(j).position);
+        let [left, right, chest] = [Joint::LeftHand, Joint::RightHand, Joint::Chest].map(|j| crossed.at(j).position);
         assert!(
             left.x < chest.x && right.x > chest.x && left.z > chest.z + 0.1 && right.z > left.z,
             "{left} {right} {chest}"

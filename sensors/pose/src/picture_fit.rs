@@ -33,6 +33,10 @@ const DISTANCE_SHARE: f32 = 0.3;
 /// Distances of somebody from the camera (m).
 const DISTANCES: std::ops::RangeInclusive<f32> = 0.4..=12.0;
 
+/// Landmarks farther than this from a body's joints, in the root of their mean square, are nobody's (part of the picture's longer
+/// side).
+const FARTHEST_OFF: f32 = 0.25;
+
 /// Joints and the landmarks whose middle is theirs.
 const SEEN: [(Joint, &[usize]); 15] = {
     use Joint::*;
@@ -81,7 +85,7 @@ impl PictureFitter {
         self.distance = None;
     }
 
-    /// Fits the camera and the joints of a picture of this size (px); none where too little is seen.
+    /// Fits the camera and the joints of a picture of this size (px); none where too little is seen, or what no body can be.
     pub fn fit(
         &mut self,
         landmarks: &Landmarks,
@@ -126,7 +130,8 @@ impl PictureFitter {
         }
         shift(&mut fitted, &moves);
         let off = (off / points.len() as f32).sqrt();
-        (off.is_finite() && fitted.is_valid()).then_some(PictureFit { camera, joints: fitted, off })
+        let farthest = FARTHEST_OFF * size[0].max(size[1]) as f32;
+        (off <= farthest && fitted.is_valid()).then_some(PictureFit { camera, joints: fitted, off })
     }
 }
 
