@@ -2,7 +2,7 @@
 //!
 //! Between two knees the force is slope * d; behind a knee it goes on from there with a slope of its own: stretch that becomes
 //! stiff (upper), shear that locks (both), a thread that is pushed together and gives way as an arc (lower, [`arc_force`]). In parallel a
-//! slider in series with a spring, as [`FrictionElement`](super::friction_element::FrictionElement) has it.
+//! slider in series with a spring, as [`FrictionElement`] has it.
 
 use super::friction_element::{FrictionElement, STICKING};
 

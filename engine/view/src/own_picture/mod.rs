@@ -5,7 +5,7 @@
 //! Budget: 25 ms a picture of 1080 rows on one core; nothing is allocated once the first of a size was drawn.
 //! Thread: render.
 //!
-//! The garment is drawn at the picture's own moment: [`repose`] brings the newest snapshot's cloth to the joints that were seen in that
+//! The garment is drawn at the picture's own moment: `repose` brings the newest snapshot's cloth to the joints that were seen in that
 //! very picture, so that nothing has to be predicted where the two have to agree.
 
 // Rooms in the order of the data.

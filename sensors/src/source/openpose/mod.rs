@@ -6,8 +6,8 @@
 //!
 //! A folder holds a calibration (`*.toml`) and a folder of JSON files for each camera, in the order of the calibration's
 //! cameras, in itself or one level below; a file is a frame, in the order of their names. In each frame the people that
-//! the cameras see are [matched](people), the shopper is followed, and their keypoints become points in space by a
-//! weighted linear [triangulation](triangulate).
+//! the cameras see are matched, the shopper is followed, and their keypoints become points in space by a
+//! weighted linear triangulation.
 
 mod keypoints;
 mod people;
