@@ -81,6 +81,7 @@ fn quarter(block: &DraftBlock, style: &DressStyle, side: usize) -> f64 {
     0.25 * (block.waist + style.waist_ease) + [FORWARD_M, -FORWARD_M][side]
 }
 
+/// Width of the dart (m), by how much narrower the waist's quarter is than the chest's (m).
 fn dart_width(spare: f64) -> f64 {
     ((1.0 - SIDE) * spare).max(LEAST_M)
 }
@@ -99,10 +100,10 @@ fn bodice(block: &DraftBlock, style: &DressStyle, side: usize) -> DraftPanel {
         .line(&edge("dart inner"), tip)
         .line(&edge("dart outer"), outer)
         .line(&edge("low side"), end);
-    let length = |side| side_line(block, style, side).iter().copied().reduce(|a, b| b - a).map_or(0.0, DVec2::length);
     // In front the side is longer by what the bust takes up: a dart takes that out again.
-    let spare = length(side) - length(1);
-    let below = |m: f64| underarm.lerp(end, m / length(side));
+    let (length, [behind_end, behind_underarm]) = (end.distance(underarm), side_line(block, style, 1));
+    let spare = length - behind_end.distance(behind_underarm);
+    let below = |m: f64| underarm.lerp(end, m / length);
     let outline = outline.line(&edge("side"), below(UNDER_BUST_DART_M + spare));
     let outline = match side {
         0 => {

@@ -114,7 +114,6 @@ impl PictureFitter {
             return None;
         }
         let followed = self.distance.map_or(distance, |was| was + DISTANCE_SHARE * (distance - was));
-        self.distance = Some(followed);
         let depth = found.z + followed - distance;
         let at = aside(&points, &intrinsics, depth).extend(depth);
         let camera_to_world = Affine3A::from_mat3_translation(rotation, rotation * -at);
@@ -131,7 +130,11 @@ impl PictureFitter {
         shift(&mut fitted, &moves);
         let off = (off / points.len() as f32).sqrt();
         let farthest = FARTHEST_OFF * size[0].max(size[1]) as f32;
-        (off <= farthest && fitted.is_valid()).then_some(PictureFit { camera, joints: fitted, off })
+        if !(off <= farthest && fitted.is_valid()) {
+            return None;
+        }
+        self.distance = Some(followed);
+        Some(PictureFit { camera, joints: fitted, off })
     }
 }
 
