@@ -8,7 +8,7 @@ use toile_assets::fabric::Fabric;
 use toile_assets::skeleton::Joint;
 
 /// Strain of all but one in a hundred edges (1): trousers reach it at the crotch.
-const STRAIN_P99: f32 = 0.11;
+const STRAIN_P99: f32 = 0.06;
 
 /// Widest gap of a seam before its sides are merged (m).
 const OPEN_M: f64 = 0.04;

@@ -52,6 +52,7 @@ const JERSEY: &str = "cotton-jersey";
 const LAWN: &str = "cotton-lawn";
 const LINEN: &str = "linen-twill";
 const WOOL: &str = "wool-suiting";
+const STRIPE: &str = "linen-stripe";
 const GINGHAM: &str = "lawn-gingham";
 const SHIRTING: &str = "shirting-stripe";
 const BRETON: &str = "jersey-breton";
@@ -62,12 +63,13 @@ const WINDOWPANE: &str = "wool-windowpane";
 const SCARF: &str = "scarf-wool";
 
 /// All of them, by layer from the inside out.
-pub const STYLES: [DraftStyle; 23] = [
+pub const STYLES: [DraftStyle; 24] = [
     style("straight-skirt", WOMEN, GarmentKind::Skirt, (LINEN, 17.0, 2), |b| skirt::straight(b, &STRAIGHT_SKIRT)),
     style("pencil-skirt", WOMEN, GarmentKind::Skirt, (WOOL, 17.0, 2), |b| skirt::straight(b, &PENCIL_SKIRT)),
     style("circle-skirt", WOMEN, GarmentKind::Skirt, (GINGHAM, 20.0, 2), skirt::circle),
     style("slim-trousers", WOMEN, GarmentKind::Trousers, (LINEN, 18.0, 2), |b| trousers(b, &SLIM)),
     style("straight-trousers", WOMEN, GarmentKind::Trousers, (WOOL, 18.0, 2), |b| trousers(b, &STRAIGHT)),
+    style("wide-leg-trousers", WOMEN, GarmentKind::Trousers, (STRIPE, 19.0, 2), |b| trousers(b, &WIDE)),
     style("mens-trousers", MEN_TROUSERS, GarmentKind::Trousers, (WOOL, 19.0, 2), |b| trousers(b, &MENS_STRAIGHT)),
     style("shorts", WOMEN, GarmentKind::Trousers, (LINEN, 16.0, 2), |b| trousers(b, &SHORTS)),
     style("mens-shorts", MEN_TROUSERS, GarmentKind::Trousers, (LINEN, 16.0, 2), |b| trousers(b, &SHORTS)),
@@ -112,6 +114,7 @@ const PENCIL_SKIRT: SkirtStyle = SkirtStyle { hip_ease: 0.035, length: 1.0, flar
 
 const SLIM: TrouserStyle = TrouserStyle { hip_ease: 0.05, rise_ease: 0.055, knee: 0.47, hem: 0.4, length: 0.92 };
 const STRAIGHT: TrouserStyle = TrouserStyle { hip_ease: 0.07, rise_ease: 0.04, knee: 0.47, hem: 0.45, length: 0.94 };
+const WIDE: TrouserStyle = TrouserStyle { hip_ease: 0.08, rise_ease: 0.04, knee: 0.62, hem: 0.74, length: 0.95 };
 const MENS_STRAIGHT: TrouserStyle = TrouserStyle { length: 0.9, ..STRAIGHT };
 const SHORTS: TrouserStyle = TrouserStyle { hip_ease: 0.075, rise_ease: 0.06, knee: 0.6, hem: 0.64, length: 0.42 };
 

@@ -65,13 +65,14 @@ const CLOSING: RelaxRun =
 const SMOOTHING: RelaxRun =
     RelaxRun { steps: 250, step_s: 1.0 / 500.0, gravity: 0.0, kept: 0.7, seam: 0.0, shear: 30.0, exact: false };
 
-/// Steps in which cloth comes down.
+/// Steps in which cloth comes down. Short ones: a sweep of a longer step leaves threads stretched by their weight, and what springs
+/// back from there is crumpled (a flared dress at 1/900 s: strain 20 % at the 99th percentile, at 1/4000 s under 1 %).
 const HANGING: RelaxRun =
-    RelaxRun { steps: 500, step_s: 1.0 / 900.0, gravity: 9.81, kept: 0.98, seam: 0.0, shear: 20.0, exact: false };
+    RelaxRun { steps: 1600, step_s: 1.0 / 4000.0, gravity: 9.81, kept: 0.995, seam: 0.0, shear: 20.0, exact: false };
 
 /// Steps in which it comes to rest, out of the skin exactly: so short that its weight stretches it no more than the fabric lets it.
 const RESTING: RelaxRun =
-    RelaxRun { steps: 900, step_s: 1.0 / 4000.0, gravity: 9.81, kept: 0.9, seam: 0.0, shear: 20.0, exact: true };
+    RelaxRun { steps: 500, step_s: 1.0 / 9000.0, gravity: 9.81, kept: 0.9, seam: 0.0, shear: 20.0, exact: true };
 
 /// Lays a pattern around a body, sews it and lets it hang, at a spacing (m).
 ///

@@ -3,7 +3,6 @@
 use toile_assets::body::Sex;
 use toile_assets::limits::MAX_GARMENTS;
 use toile_assets::sizes::Population;
-use toile_assets::wardrobe;
 use toile_engine::cloth::Quality;
 use toile_track::tape_readings::TapeReadings;
 
@@ -14,7 +13,7 @@ use crate::FittingError;
 /// Garments, size and quality that are asked for, and what the shopper says of themselves.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Wish {
-    /// Garments of the wardrobe or mesh files, inner first; empty is the first of the wardrobe.
+    /// Garments of the wardrobe, patterns or mesh files, inner first; empty is [`shown_first`].
     pub garments: Vec<String>,
     /// A size in place of the recommended one.
     pub size: Option<String>,
@@ -61,10 +60,18 @@ impl Wish {
 
     fn names(&self) -> Vec<&str> {
         if self.garments.is_empty() {
-            vec![wardrobe::names()[0]]
+            shown_first(self.sex).to_vec()
         } else {
             self.garments.iter().map(String::as_str).collect()
         }
+    }
+}
+
+/// What is worn where nothing is asked for, inner first: a dress, or trousers and a shirt by who is known to be a man.
+pub const fn shown_first(sex: Option<Sex>) -> &'static [&'static str] {
+    match sex {
+        Some(Sex::Male) => &["mens-trousers", "mens-shirt"],
+        Some(Sex::Female) | None => &["strap-dress"],
     }
 }
 

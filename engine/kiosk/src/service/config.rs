@@ -15,7 +15,7 @@ use super::picture_config::{OwnPictureUse, PictureConfig};
 use super::session::SessionTimes;
 use crate::error::KioskError;
 use toile_fitting::dress::measured::ShopperFacts;
-use toile_fitting::dress::wish::Wish;
+use toile_fitting::dress::wish::{Wish, shown_first};
 use toile_sensors::source::live::{CameraError, CameraName};
 use toile_track::tape_readings::TapeReadings;
 use toile_view::figure::{Appearance, Hair, SkinTone};
@@ -251,7 +251,7 @@ pub struct CrashConfig {
 impl Default for WearConfig {
     fn default() -> Self {
         Self {
-            garments: vec!["sun-dress".into()],
+            garments: shown_first(None).iter().map(|&name| name.to_owned()).collect(),
             catalogue: None,
             size: None,
             quality: Quality::default().name().into(),

@@ -359,7 +359,7 @@ mod tests {
         let track = session::filtered(&session);
         let pose = track[session::first_standing(&track)];
         let known = context.measure(job(ShopperSource::Joints(session.joints), false)).unwrap();
-        let item = context.wardrobe.find("t-shirt").unwrap();
+        let item = context.wardrobe.find("tee").unwrap();
         let outfit = |size, colour| -> Outfit { [WornItem { item, size, colour }].into_iter().collect() };
         let client = Box::new(MeasuredVisitor { known, pose });
         let mut worker = DressingWorker::new(context);
@@ -389,7 +389,7 @@ mod tests {
         let code = offered.own.unwrap();
         assert!(code.side >= 101 && code.dark.len() == code.side * code.side, "{code:?}");
         let JobResult::Dressed(dressed) = done(9, DressingJob::Dress(client.clone(), outfit(2, 3))) else { panic!() };
-        assert_eq!(dressed.dressing.recipe.garments, [("t-shirt".to_owned(), "S".to_owned())]);
+        assert_eq!(dressed.dressing.recipe.garments, [("tee".to_owned(), "S".to_owned())]);
         let JobResult::Failed = done(10, DressingJob::Dress(client.clone(), outfit(99, 0))) else { panic!() };
         // Who has left gets nothing.
         worker.begin(11, DressingJob::Dress(client, outfit(2, 3))).unwrap();

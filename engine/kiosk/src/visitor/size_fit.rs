@@ -385,7 +385,7 @@ pub(super) mod tests {
 
     #[test]
     fn a_larger_size_is_nowhere_tighter_and_its_ease_is_that_of_garment_less_body() {
-        let (item, known) = (item("wide-trousers"), woman(0.90, 0.74, 0.98));
+        let (item, known) = (item("wide-leg-trousers"), woman(0.90, 0.74, 0.98));
         let fits: Vec<SizeFit> = (0..item.sizes.len()).map(|s| judge(&item, &known, Some(s), &[]).unwrap()).collect();
         for pair in fits.windows(2) {
             for (small, large) in pair[0].zones.iter().zip(&pair[1].zones) {
@@ -405,7 +405,7 @@ pub(super) mod tests {
 
     #[test]
     fn a_body_beyond_the_table_is_told_so() {
-        let item = item("sun-dress");
+        let item = item("strap-dress");
         assert_eq!(judge(&item, &woman(0.60, 0.50, 0.70), None, &[]).unwrap().outside, Some(OutOfRange::Smaller));
         assert_eq!(judge(&item, &woman(1.70, 1.60, 1.70), None, &[]).unwrap().outside, Some(OutOfRange::Larger));
         assert_eq!(judge(&item, &woman(0.90, 0.74, 0.98), None, &[]).unwrap().outside, None);
@@ -419,7 +419,7 @@ pub(super) mod tests {
         let known = VisitorMeasures::new(known.measured, true);
         assert_eq!(known.missing, [BodyPart::Hip]);
         assert_eq!((known.basis(Girth::Hip), known.basis(Girth::Waist)), (MeasureBasis::Guessed, MeasureBasis::Seen));
-        let fit = judge(&item("wide-trousers"), &known, None, &[]).unwrap();
+        let fit = judge(&item("wide-leg-trousers"), &known, None, &[]).unwrap();
         let hip = fit.zones.iter().find(|z| z.zone == Girth::Hip).unwrap();
         assert!(hip.ease.sigma > 0.02, "a guess is not sure: {hip:?}");
         assert!((hip.feel, hip.perhaps, hip.tightness) == (None, None, None) && fit.has_unknown(), "{hip:?}");
@@ -438,7 +438,7 @@ pub(super) mod tests {
             girth.as_mut().unwrap().sigma = 0.06;
         }
         let known = VisitorMeasures::new(known.measured, false);
-        let fit = judge(&item("sun-dress"), &known, None, &[]).unwrap();
+        let fit = judge(&item("strap-dress"), &known, None, &[]).unwrap();
         assert!(fit.zones.iter().all(|z| z.feel.is_none() && z.perhaps.is_none() && z.tightness.is_none()), "{fit:?}");
         assert!(fit.probability > 0.0 && fit.probability < toile_track::recommend::SURE, "{fit:?}");
         assert_eq!((known.unknown(), fit.outside), ([true; 3], None));
@@ -455,11 +455,11 @@ pub(super) mod tests {
         assert!((hip.value - 1.06).abs() < 0.005 && hip.sigma < 0.01, "{hip:?}");
         assert_eq!((known.basis(Girth::Hip), known.missing.len()), (MeasureBasis::Taped, 0));
         assert_eq!(known.basis(Girth::Waist), MeasureBasis::Seen);
-        let fit = judge(&item("wide-trousers"), &known, None, &[]).unwrap();
+        let fit = judge(&item("wide-leg-trousers"), &known, None, &[]).unwrap();
         assert!(!fit.has_unknown());
         let sized = |chest: f32| {
             let tape = TapeReadings::default().with(OwnMeasure::Chest.index(), chest).unwrap();
-            judge(&item("sun-dress"), &before.with_tape(&tape), None, &[]).unwrap().size
+            judge(&item("strap-dress"), &before.with_tape(&tape), None, &[]).unwrap().size
         };
         assert!(sized(0.84) < sized(1.0), "sizes follow");
         assert_eq!(known.with_tape(&TapeReadings::default()), before);

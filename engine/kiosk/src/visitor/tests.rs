@@ -35,7 +35,7 @@ fn defaults() -> VisitDefaults {
         times: VisitTimes::usual(session, 1_000 * MS, 180_000 * MS),
         language: Language::English,
         large: false,
-        wear: vec!["sun-dress".into()],
+        wear: vec!["strap-dress".into()],
         size: None,
         tape: TapeReadings::default(),
         motion: true,

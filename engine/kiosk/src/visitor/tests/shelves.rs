@@ -26,7 +26,7 @@ fn garments(screen: &Screen) -> Vec<usize> {
 
 fn dressed(count: usize) -> Play {
     let mut play = Play::new();
-    play.model.restock(Arc::new(many(count, false)), vec!["sun-dress".into()]);
+    play.model.restock(Arc::new(many(count, false)), vec!["strap-dress".into()]);
     play.see(Some(1));
     play.wait(6_000);
     assert_eq!(play.page(), Page::Fitting);

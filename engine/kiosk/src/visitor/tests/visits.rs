@@ -32,8 +32,8 @@ const ALL: [Page; 15] = [
 #[test]
 fn a_whole_visit_by_touch_ends_where_it_began() {
     let mut play = Play::dressed();
-    let trousers = play.model.wardrobe.find("wide-trousers").unwrap();
-    let shirt = play.model.wardrobe.find("t-shirt").unwrap();
+    let trousers = play.model.wardrobe.find("wide-leg-trousers").unwrap();
+    let shirt = play.model.wardrobe.find("tee").unwrap();
     play.press(Action::Open(Page::Garments));
     play.press(Action::Garment(trousers));
     play.press(Action::Garment(shirt));
@@ -209,7 +209,7 @@ fn who_cannot_be_measured_is_told_and_may_try_again() {
     play.fails = true;
     let before = play.model.visit.outfit.clone();
     play.press(Action::Open(Page::Garments));
-    play.press(Action::Garment(play.model.wardrobe.find("t-shirt").unwrap()));
+    play.press(Action::Garment(play.model.wardrobe.find("tee").unwrap()));
     play.wait(1_000);
     assert_eq!(play.model.visit.outfit, before);
     play.press(Action::Back);
