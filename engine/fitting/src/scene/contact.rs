@@ -79,7 +79,7 @@ mod tests {
         assert_eq!(ContactReport { contacts_most: 9, pairs_most: 2, ..ContactReport::default() }.warnings(), [""; 0]);
         let full = ContactReport { crowded: 3, left_out: 4, ..ContactReport::default() }.warnings();
         assert!(
-            full[0].starts_with("3 times") && full[0].contains("PAIRS_A_PARTICLE") && full[0].contains(", 6,"),
+            full[0].starts_with("3 times") && full[0].contains("PAIRS_A_PARTICLE") && full[0].contains(", 8,"),
             "{full:?}"
         );
         assert!(full[1].starts_with("4 times") && full[1].contains("MOST_CROSSINGS"), "{full:?}");

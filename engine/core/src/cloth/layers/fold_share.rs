@@ -23,8 +23,8 @@ use crate::cloth::state::get;
 
 /// Pairs that one worker keeps of a garment's particles, a particle of it. Of more the nearest are kept, by how far apart they are to
 /// be, then those of the lowest index; the others are counted. There is room enough: a particle has at most twelve others around it that keep apart, each
-/// pair is one share's, and few are folded everywhere.
-pub const PAIRS_A_PARTICLE: usize = 6;
+/// pair is one share's, and few are folded everywhere; wide skirts and trouser legs come to more than six while they fall.
+pub const PAIRS_A_PARTICLE: usize = 8;
 
 /// Which pairs are taken, by how far apart they are as a part of what they keep apart (1): all, and where there is no room those
 /// nearer than the next of these. What comes near fast is looked for from far away, so it begins well above 1.
