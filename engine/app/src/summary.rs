@@ -180,7 +180,8 @@ fn recommendation(text: &mut String, worn: &Recommendation, paint: Paint) {
     heading(text, &format!("{}, size {}", worn.garment, worn.size), paint);
     for zone in &worn.zones {
         let tone = if zone.verdict == "good" { Tone::Good } else { Tone::Warn };
-        let verdict = format!("{:7}", zone.verdict);
+        // The word of the pictures, from the same numbers; where nobody saw the body there is none.
+        let verdict = format!("{:7}", zone.feel.as_ref().unwrap_or(&zone.verdict));
         let verdict = paint.tone(&verdict, tone);
         put_line!(text, "  {:17} {verdict} {:+5.0} mm of ease +- {:.0}", zone.zone, zone.ease_mm, zone.sigma_mm);
     }

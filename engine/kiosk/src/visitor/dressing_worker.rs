@@ -389,7 +389,7 @@ mod tests {
         let code = offered.own.unwrap();
         assert!(code.side >= 101 && code.dark.len() == code.side * code.side, "{code:?}");
         let JobResult::Dressed(dressed) = done(9, DressingJob::Dress(client.clone(), outfit(2, 3))) else { panic!() };
-        assert_eq!(dressed.dressing.recipe.garments, [("tee".to_owned(), "S".to_owned())]);
+        assert_eq!(dressed.dressing.recipe.garments, [("tee".to_owned(), "36".to_owned())]);
         let JobResult::Failed = done(10, DressingJob::Dress(client.clone(), outfit(99, 0))) else { panic!() };
         // Who has left gets nothing.
         worker.begin(11, DressingJob::Dress(client, outfit(2, 3))).unwrap();

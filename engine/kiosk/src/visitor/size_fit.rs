@@ -296,8 +296,7 @@ pub fn judge(
     let judged = offer.judge(code, &known.measured)?;
     let place = |code: &str| item.sizes.iter().position(|s| s == code);
     let chosen = place(&judged.size).unwrap_or_default();
-    let best = judged.sizes.iter().max_by(|a, b| a.probability.total_cmp(&b.probability));
-    let best = if code.is_none() { chosen } else { best.and_then(|s| place(&s.size)).unwrap_or(chosen) };
+    let best = place(&judged.best).unwrap_or(chosen);
     let beside = if chosen + 1 < item.sizes.len() { Some(chosen + 1) } else { chosen.checked_sub(1) };
     let other = judged.runner_up.as_ref().and_then(|r| place(&r.size)).filter(|o| *o != chosen).or(beside);
     let zones: Vec<ZoneFit> = zones(offer, known, &judged);

@@ -89,6 +89,7 @@ pub fn judge_only(measured: &Measurements, offer: &Offer) -> Result<Recommendati
     Ok(Recommendation {
         garment: offer.garment.to_owned(),
         size: only.code.clone(),
+        best: only.code.clone(),
         probability: 1.0,
         sizes: vec![SizeProbability { size: only.code.clone(), probability: 1.0 }],
         uncertain: false,
@@ -129,6 +130,7 @@ fn judge(measured: &Measurements, offer: &Offer, wanted: Option<&str>) -> Result
     Ok(Recommendation {
         garment: offer.garment.to_owned(),
         size: offer.sizes[chosen].code.clone(),
+        best: offer.sizes[best].code.clone(),
         probability: share[chosen],
         verdict: sentences::verdict(&sizes, [chosen, best], girth_to_take.as_ref(), &fits),
         sizes,

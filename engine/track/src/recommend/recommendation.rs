@@ -79,6 +79,8 @@ pub struct Recommendation {
     pub garment: String,
     /// Code of the size.
     pub size: String,
+    /// Code of the size that is recommended: the same, unless the person insists on another.
+    pub best: String,
     /// Probability that this size suits this person best, given the errors of the measures.
     pub probability: f32,
     /// All sizes that are made, smallest first; the probabilities sum to 1.

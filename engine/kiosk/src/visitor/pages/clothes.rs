@@ -50,14 +50,15 @@ impl PageWriter<'_> {
             let size = TextValue::Text(self.size(fit.size));
             // What is tight or loose somewhere is the best there is, and no more.
             let best = if fit.is_comfortable() { TextKey::FittingBest } else { TextKey::FittingNearest };
-            blocks.push(Block::Text(self.format(best, &[("size", size)])));
+            let best = self.format(best, &[("size", size)]);
             let how = if fit.probability >= SURE { TextKey::FittingSure } else { TextKey::FittingUnsure };
-            blocks.push(Block::Text(self.format(how, &[percent])));
+            blocks.push(Block::Text(format!("{best} {}", self.format(how, &[percent]))));
         } else {
             let size = TextValue::Text(self.size(fit.best));
             blocks.push(Block::Text(self.format(TextKey::FittingBetter, &[("size", size)])));
         }
-        if let Some(zone) = fit.girth_to_take {
+        // Who sees themselves reads less beside: the word on their picture, and what to take by tape only without one.
+        if let Some(zone) = fit.girth_to_take.filter(|_| self.own_picture(Page::Fitting).is_none()) {
             let zone = self.part(zone);
             blocks.push(Block::Text(self.format(TextKey::FittingTape, &[("zone", TextValue::Text(&zone))])));
         }

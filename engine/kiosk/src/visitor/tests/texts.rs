@@ -222,6 +222,6 @@ fn what_is_said_of_a_zone_is_said_with_its_error() {
     let play = Play::dressed();
     let fits: Vec<String> = texts_of(&play.screen()).into_iter().filter(|t| t.contains('±')).collect();
     assert_eq!(fits.len(), 3, "{fits:?}");
-    assert!(fits.iter().all(|t| t.contains("about ") && t.contains(" cm ")), "{fits:?}");
+    assert!(fits.iter().all(|t| t.contains("(+") && t.contains(" cm)")), "{fits:?}");
     println!("{}", fits.join("\n"));
 }

@@ -32,7 +32,7 @@ fn full() -> Screen {
         heading: "Sun dress, size 40".into(),
         blocks: vec![
             Block::Text("It suits you.".into()),
-            Block::Fit { text: "Waist: snug, about 1 cm ease \u{b1} 1".into(), tightness: Some(0.4) },
+            Block::Fit { text: "Waist: snug (+1 \u{b1} 1 cm)".into(), tightness: Some(0.4) },
             Block::Legend { ends: ["loose".into(), "tight".into()] },
         ],
         controls,
