@@ -33,14 +33,15 @@ fn main() -> Result<(), Error> {
         .iter()
         .for_each(|[a, b, c]| writeln!(obj, "f {} {} {}", a + 1, b + 1, c + 1).expect("text can be written"));
     let text = "duration = 2\n[wind]\nvelocity = [0, 0, 8]\ndrag = 0.6\n[garment]\nmesh = \"flag.obj\"\npin = { vertices = [0, 31] }\n";
-    let mut windy = Scene::parse("flag.toml", text, &[("flag.obj".to_owned(), obj.into_bytes())])?;
+    let files = [("flag.obj".to_owned(), obj.into_bytes())];
+    let mut windy = Scene::parse("flag.toml", text, &files)?;
     windy.step_many(windy.duration_steps().unwrap_or_default());
     let blown = windy.positions(0)?.iter().map(|p| p.z).sum::<f32>() / positions.len() as f32;
     println!("in wind: blown {:.2} m out of its plane on average after {:.1} s", blown, windy.time());
     assert!(blown > 0.02);
 
     // What cannot be honoured is refused, with the line and the cure.
-    let refused = Scene::parse("flag.toml", &text.replace("drag", "darg"), &[]).expect_err("there is no key `darg`");
+    let refused = Scene::parse("flag.toml", &text.replace("drag", "darg"), &files).expect_err("there is no key `darg`");
     println!("refused: {refused}");
     Ok(())
 }

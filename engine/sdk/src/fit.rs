@@ -79,7 +79,7 @@ pub struct Recommendation {
 /// A garment that has no sizes, or cannot be laid on the body.
 pub fn recommend(body: &Body, garment: &Garment) -> Result<Recommendation> {
     let judged = garment.choice().judge(garment.size(), body.known(), body.shape(), &[])?;
-    judged.map(Recommendation::from).ok_or_else(|| {
+    judged.map(Recommendation::of).ok_or_else(|| {
         Error::input(format!(
             "{} is a mesh without sizes, of which none can be recommended; give its sizes in a TOML file beside it \
              (docs/meshes.md)",
@@ -88,8 +88,8 @@ pub fn recommend(body: &Body, garment: &Garment) -> Result<Recommendation> {
     })
 }
 
-impl From<Judged> for Recommendation {
-    fn from(judged: Judged) -> Self {
+impl Recommendation {
+    pub(crate) fn of(judged: Judged) -> Self {
         let mm = |metres: f32| f64::from(metres) * 1e3;
         let zones = judged.zones.into_iter().map(|fit| ZoneFit {
             zone: fit.zone.name(),

@@ -213,7 +213,7 @@ fn described(garment: &Garment, worn: Worn, baked: &[BakedGarment], order: &Vert
         vertices: order.vertices(),
         faces: order.triangles.len(),
         layers: baked.len(),
-        fit: worn.fit.map(Recommendation::from),
+        fit: worn.fit.map(Recommendation::of),
         notes: worn.mesh.iter().flat_map(|report| report.lines()).collect(),
     }
 }

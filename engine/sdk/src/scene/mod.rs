@@ -402,7 +402,7 @@ impl GarmentStats {
         self.strain_p99 = self.strain_p99.max(strain.p99);
         self.strain_max = self.strain_max.max(strain.max);
         self.penetration_mm = self.penetration_mm.max(penetration_m * 1e3);
-        self.rolled_back += u64::from(cloth.events.rolled_back);
+        self.rolled_back += cloth.events.rolled_back;
     }
 }
 

@@ -80,7 +80,7 @@ pub(super) fn first_joints(motion: &Motion, skeleton: &Skeleton) -> Result<Joint
     match motion {
         Motion::Standing => Ok(poses::joints(skeleton, &poses::arms_down(skeleton))),
         Motion::Sitting => Ok(poses::joints(skeleton, &poses::sitting(skeleton))),
-        Motion::Joints(joints) => checked(joints).map(|joints| *joints),
+        Motion::Joints(joints) => checked(joints).copied(),
         Motion::Track(track) => {
             let Some(first) = track.first() else {
                 return Err(Error::input("the track has no frame; give one at least, or let the body stand"));
@@ -95,7 +95,7 @@ pub(super) fn first_joints(motion: &Motion, skeleton: &Skeleton) -> Result<Joint
                 true => Ok(()),
                 false => Err(Error::input(format!("frame {at} of the track: {NOT_VALID}"))),
             })?;
-            checked(first).map(|joints| *joints)
+            checked(first).copied()
         }
     }
 }
