@@ -16,6 +16,7 @@ pub const FLOORS: &[(&str, &str)] = &[
     ("engine/gpu", "toile-gpu"),
     ("engine/view", "toile-view"),
     ("engine/fitting", "toile-fitting"),
+    ("engine/sdk", "toile-sdk"),
     ("engine/kiosk", "toile-kiosk"),
     ("perf", "toile-perf"),
     ("engine/app", "toile"),

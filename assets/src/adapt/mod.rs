@@ -10,6 +10,7 @@
 //! is laid on them ([`place`], [`lay`]), held where it lies on the skin ([`hold`]), and each piece judged ([`judge`]).
 
 mod error;
+pub mod file_order;
 pub mod grading;
 pub mod hems;
 pub mod hold;
@@ -32,5 +33,6 @@ pub mod unit;
 pub mod wear;
 
 pub use error::AdaptError;
+pub use file_order::FileOrder;
 pub use own_mesh::OwnMesh;
 pub use report::{MeshReport, PieceReport, Repair};

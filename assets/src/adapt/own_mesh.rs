@@ -5,6 +5,7 @@ use std::path::Path;
 use glam::Vec3;
 
 use super::error::AdaptError;
+use super::file_order::FileOrder;
 use super::lay::smooth_weights;
 use super::made_for::MadeFor;
 use super::measures::{GarmentMeasures, MeshSizes};
@@ -37,6 +38,8 @@ pub struct OwnMesh {
     pub path: String,
     /// The mesh, in metres, repaired.
     pub mesh: ForeignMesh,
+    /// The order of its file, by which others know its vertices.
+    pub file_order: FileOrder,
     /// The body that it is made for, standing in it.
     pub made_for: MadeFor,
     /// Its measures.
@@ -67,7 +70,9 @@ impl OwnMesh {
         let Standing { mut made_for, axes, known_pose } = stand(path, &files, sizes.as_ref(), &mut notes)?;
         let mut mesh = files.mesh;
         mesh.positions.iter_mut().for_each(|p| *p = axes.place(*p));
+        let as_drawn = mesh.clone();
         let repairs = repaired(&mut mesh);
+        let file_order = FileOrder::of(&as_drawn, &mesh);
         check(&mesh.positions, &mesh.faces)
             .map_err(|flaw| AdaptError::Mesh { path: files.path.clone(), flaw: described(&mesh, &flaw) })?;
         if !known_pose {
@@ -80,6 +85,7 @@ impl OwnMesh {
         Ok(Self {
             path: files.path,
             mesh,
+            file_order,
             made_for,
             measures: files.measures,
             sizes,

@@ -15,6 +15,8 @@ pub enum SceneSource<'a> {
     Folder(&'a Path),
     /// Files inside the program: name and content.
     Inside(&'static [(&'static str, &'static str)]),
+    /// Files in memory, by the names that the scene has for them.
+    Memory(&'a [(String, Vec<u8>)]),
 }
 
 impl SceneSource<'_> {
@@ -32,6 +34,14 @@ impl SceneSource<'_> {
             Self::Inside(files) => {
                 let file = files.iter().find(|(known, _)| *known == name);
                 file.map(|(_, text)| text.as_bytes().to_vec()).ok_or_else(|| "no such file in the program".into())
+            }
+            Self::Memory(files) => {
+                let file = files.iter().find(|(known, _)| known == name);
+                file.map(|(_, bytes)| bytes.clone()).ok_or_else(|| {
+                    let given: Vec<&str> = files.iter().map(|(known, _)| known.as_str()).collect();
+                    let given = if given.is_empty() { "none".to_owned() } else { given.join(", ") };
+                    format!("no file of this name was given along with the scene (given: {given})")
+                })
             }
         }
     }

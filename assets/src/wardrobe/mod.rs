@@ -94,6 +94,11 @@ pub fn names() -> Vec<&'static str> {
     BUILT_IN.iter().map(|(name, _)| *name).collect()
 }
 
+/// The file of a garment that is built in, by its name.
+pub fn text(name: &str) -> Option<&'static str> {
+    BUILT_IN.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
+}
+
 /// A garment that is built in, by its name.
 pub fn style(name: &str) -> Result<Style, WardrobeError> {
     match BUILT_IN.iter().find(|(known, _)| *known == name) {

@@ -25,6 +25,8 @@ pub const UNKNOWN: &str = "unknown";
 pub struct DressedMesh {
     /// A garment for each layer of the mesh, the innermost first, ready to be stepped.
     pub garments: Vec<Garment>,
+    /// The vertex of the repaired mesh that each vertex of a garment's shape is `[garments][vertices]`.
+    pub vertices: Vec<Vec<u32>>,
     /// What was repaired and what became of each piece.
     pub report: MeshReport,
 }
@@ -86,7 +88,7 @@ pub fn dress_in(
         Ok(garment)
     });
     let garments = garments.collect::<Result<_, WardrobeError>>()?;
-    Ok(DressedMesh { garments, report: worn.report })
+    Ok(DressedMesh { garments, vertices: worn.layers, report: worn.report })
 }
 
 /// The ease that a wearer finds good at each zone (m): by the mesh's file of measures, else as garments of its kind in the

@@ -175,6 +175,13 @@ impl Frame {
         }
     }
 
+    /// The same, and shows them as they then stand: readers have that snapshot before the first step.
+    pub fn dress_and_show(&mut self, first: &Joints) {
+        self.dress(first);
+        let clock = self.clock;
+        self.publish(SnapshotTimes::default(), &clock);
+    }
+
     /// The same with another pool, one whose helper has a core of its own for example. At load.
     #[must_use]
     pub fn with_workers(self, pool: WorkerPool) -> Self {

@@ -1,6 +1,10 @@
 //! The fit map: how tight a garment sits at each place, in eight colours that a colour-blind reader can tell apart.
 
 use glam::Vec3;
+use toile_assets::garment::Garment;
+use toile_assets::sizes::Girth;
+use toile_engine::cloth::{Cloth, measure};
+use toile_engine::frame::Frame;
 
 use crate::{
     image::{Image, Size},
@@ -63,6 +67,28 @@ pub fn agreed(local: &[f32], heights: &[f32], levels: &[(f32, f32)]) -> Vec<f32>
         }
     };
     local.iter().zip(heights).map(|(v, y)| (v + at(*y)).clamp(-1.0, 1.0)).collect()
+}
+
+/// How tight a garment was judged, -1 (loose) .. 1 (tight), at the zones where it is known.
+pub type JudgedTightness = Vec<(Girth, f32)>;
+
+/// The fit map of each garment of a frame: how tight it sits from place to place, in the mean as tight as it was judged
+/// `[garments][particles]`.
+pub fn of_frame(frame: &Frame, judged: &[JudgedTightness]) -> Vec<Vec<f32>> {
+    let levels = &frame.body().levels;
+    let level = |zone: Girth| match zone {
+        Girth::Chest => levels.chest,
+        Girth::Waist => levels.waist,
+        Girth::Hip => levels.hip,
+    };
+    let map = |((cloth, garment), judged): ((&Cloth, &Garment), &JudgedTightness)| {
+        let local = measure::tightness(cloth, garment, frame.colliders());
+        let heights: Vec<f32> = garment.start.iter().map(|p| p.y).collect();
+        let mut known: Vec<(f32, f32)> = judged.iter().map(|(zone, tight)| (level(*zone), *tight)).collect();
+        known.sort_by(|a, b| b.0.total_cmp(&a.0));
+        agreed(&local, &heights, &known)
+    };
+    frame.cloths().iter().zip(frame.garments()).zip(judged).map(map).collect()
 }
 
 /// A strip with the eight steps and the words loose, good, tight, on the given paper (sRGB).

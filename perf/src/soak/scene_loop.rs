@@ -109,16 +109,16 @@ impl<C: Clock> SceneLoop<C> {
 /// Garment files that nobody can wear: cut off, with NaN or a number beyond measure, without what they need, with what
 /// nobody knows, and noise.
 fn broken() -> [String; 6] {
-    const GARMENT: &str = include_str!("../../../assets/data/garments/sun-dress.toml");
-    let line = |key: &str| GARMENT.lines().find(|l| l.starts_with(key)).unwrap_or_default();
+    let garment = wardrobe::text("sun-dress").unwrap_or_default();
+    let line = |key: &str| garment.lines().find(|l| l.starts_with(key)).unwrap_or_default();
     let spacing = line("spacing_mm");
     [
-        GARMENT[..GARMENT.len() / 3].to_owned(),
-        GARMENT.replace(spacing, "spacing_mm = nan"),
-        GARMENT.replace(spacing, "spacing_mm = 1e30"),
-        GARMENT.replace(line("columns"), ""),
-        format!("{GARMENT}\nunheard_of = 1\n"),
-        GARMENT.chars().rev().collect(),
+        garment[..garment.len() / 3].to_owned(),
+        garment.replace(spacing, "spacing_mm = nan"),
+        garment.replace(spacing, "spacing_mm = 1e30"),
+        garment.replace(line("columns"), ""),
+        format!("{garment}\nunheard_of = 1\n"),
+        garment.chars().rev().collect(),
     ]
 }
 

@@ -1,7 +1,7 @@
 //! What a session holds, and what it promises.
 
 use crate::clock::SECOND_NS;
-use crate::error::{Fault, Place};
+use crate::error::{Fault, Place, SourceError};
 use crate::frame::{DepthFrame, Intrinsics, Joints};
 use crate::limits::{MAX_DEPTH_BYTES, MAX_DEPTH_FRAMES, MAX_DURATION_NS, MAX_GAP_NS, MAX_JOINT_FRAMES};
 
@@ -25,6 +25,16 @@ impl Session {
     pub fn duration_ns(&self) -> u64 {
         let joints = self.joints.last().map_or(0, |f| f.time_ns);
         joints.max(self.depth.last().map_or(0, |f| f.time_ns))
+    }
+
+    /// The session itself, where it keeps its promises: what a sensor of the caller's own saw.
+    ///
+    /// # Errors
+    /// As a recording that breaks them: empty, too long, times that do not increase, numbers that are not finite, images of
+    /// another size than their camera.
+    pub fn checked(self) -> Result<Self, SourceError> {
+        self.check().map_err(|fault| fault.at(&self.name))?;
+        Ok(self)
     }
 
     /// Refuses a session that breaks its own promises: empty, too long, times that do not increase, numbers that are

@@ -37,6 +37,7 @@ use toile_fitting::wearing;
 use toile_sensors::frame::Joints;
 use toile_view::drawn_frame::DrawnFrame;
 use toile_view::figure::{Appearance, Figure};
+use toile_view::fit_map::{self, JudgedTightness};
 
 use crate::arguments::{AppearanceArgs, Printing, TapeArgs, one_of, quality};
 use crate::commands::crossings::CrossingCount;
@@ -203,10 +204,11 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     let track = session::standing(&session)?;
     let (body, note) = worn_body(args, &mut measured, &choices, has_joints)?;
     let notes: Vec<String> = note.into_iter().chain(measured.best.notes.iter().cloned()).collect();
-    let worn::PutOn { mut garments, recommendations, meshes, judged } =
-        worn::put_on(&choices, args.size.as_deref(), &measured, &body)?;
+    let outfit = worn::put_on(&choices, args.size.as_deref(), &args.tuck, &measured, &body)?;
+    let (recommendations, judged) = (worn::recommendations(&outfit.worn), outfit.judged());
+    let meshes: Vec<MeshReport> = outfit.worn.into_iter().filter_map(|worn| worn.mesh).collect();
     meshes.iter().flat_map(MeshReport::lines).for_each(|line| words.print_line(&line));
-    args.tuck.iter().try_for_each(|name| worn::tuck(&mut garments, name))?;
+    let garments = outfit.garments;
 
     let rig = Rig::fit(&body);
     let settings = LADDER[usize::from(args.rung)].of(&Settings { quality: args.quality, ..Settings::default() });
@@ -289,7 +291,7 @@ struct Played {
 
 /// Plays the session through the frame, 120 steps a second, and draws it.
 fn play(
-    (args, words, title, judged): (&TryOnArgs, &Words, &str, &[worn::JudgedTightness]),
+    (args, words, title, judged): (&TryOnArgs, &Words, &str, &[JudgedTightness]),
     out: &mut OutputFolder,
     renderer: &mut PictureRenderer,
     frame: &mut Frame,
@@ -334,7 +336,7 @@ fn play(
     let drew = pictures.is_some() || video.is_some();
     let mut hidden_m = 0.0f32;
     if let Some(pictures) = pictures {
-        let tightness = worn::fit_colours(frame, judged);
+        let tightness = fit_map::of_frame(frame, judged);
         draw_lines(&mut lines, &args.lines, frame);
         let (facing, worst) = (facing(frame), worst.as_ref());
         let ending = FinalState { tightness: &tightness, facing, title, lines: lines.as_slice(), worst };

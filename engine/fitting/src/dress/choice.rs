@@ -85,6 +85,8 @@ fn unknown(name: &str) -> WardrobeError {
 pub struct Worn {
     /// The garment, baked; a mesh of several layers becomes one for each, the innermost first.
     pub garments: Vec<Garment>,
+    /// Of a mesh of the user's own: the vertex of the repaired mesh that each vertex of a garment's shape is `[garments][vertices]`.
+    pub mesh_vertices: Vec<Vec<u32>>,
     /// How it fits; none where it was not recommended.
     pub fit: Option<Recommendation>,
     /// What became of a mesh of the user's own.
@@ -287,7 +289,7 @@ impl Choice {
     /// # Errors
     /// A size that is not made, a mesh or pattern that cannot be laid on the body.
     pub fn dress(&self, size: Option<&str>, wearer: &Body) -> Result<Worn, FittingError> {
-        let mut worn = Worn { garments: Vec::new(), fit: None, mesh: None };
+        let mut worn = Worn { garments: Vec::new(), mesh_vertices: Vec::new(), fit: None, mesh: None };
         match &self.source {
             ChoiceSource::Style(style) => {
                 let size = size.ok_or_else(|| FittingError::Internal(format!("{} has no size", self.name)))?;
@@ -301,6 +303,7 @@ impl Choice {
                 let size = size.filter(|size| *size != own::UNKNOWN);
                 let dressed = own::dress_in(mesh, self.own.fabric.as_ref(), size, wearer);
                 let dressed = dressed.map_err(FittingError::input)?;
+                worn.mesh_vertices = dressed.vertices;
                 (worn.garments, worn.mesh) = (dressed.garments, Some(dressed.report));
             }
             ChoiceSource::Pattern(package) => {

@@ -14,6 +14,7 @@ pub mod depth;
 pub mod dressed;
 pub mod measured;
 pub mod offer;
+pub mod outfit;
 pub mod player;
 pub mod recipe;
 pub mod session;

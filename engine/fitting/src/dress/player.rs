@@ -1,6 +1,8 @@
 //! A session played to a body that is stepped faster or slower than the sensor saw it, as the loop plays it: a step knows the
 //! frames that have come by then and none that comes later.
 
+use std::borrow::Cow;
+
 use toile_engine::frame_loop::motion_input::MotionInput;
 use toile_sensors::clock::{ns_to_ticks, ticks_to_ns};
 use toile_sensors::frame::Joints;
@@ -8,7 +10,7 @@ use toile_sensors::frame::Joints;
 /// Filtered joints on their way to the steps.
 #[derive(Debug, Clone)]
 pub struct Player<'a> {
-    track: &'a [Joints],
+    track: Cow<'a, [Joints]>,
     next: usize,
     tick: u64,
     intake: MotionInput,
@@ -16,8 +18,8 @@ pub struct Player<'a> {
 
 impl<'a> Player<'a> {
     /// From the first frame of a filtered track on. An empty track has no steps.
-    pub fn new(track: &'a [Joints]) -> Self {
-        Self { track, next: 0, tick: 0, intake: MotionInput::default() }
+    pub fn new(track: impl Into<Cow<'a, [Joints]>>) -> Self {
+        Self { track: track.into(), next: 0, tick: 0, intake: MotionInput::default() }
     }
 
     /// Steps from the first frame to the last, at the engine's rate; at least one where there is a frame.

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use toile_assets::scene::SESSION;
 use toile_assets::skeleton::Joint;
 use toile_sensors::clock::SECOND_NS;
 use toile_sensors::filter::{FilterSettings, JointFilter};
@@ -9,9 +10,6 @@ use toile_sensors::frame::{DepthFrame, Joints};
 use toile_sensors::source::{self, OpenOptions, Session};
 
 use crate::FittingError;
-
-/// The session that is embedded: `toile record` makes it.
-const EMBEDDED: &[u8] = include_bytes!("../../../../assets/data/sessions/shopper.mcap");
 
 /// Name of the embedded session in reports.
 const EMBEDDED_NAME: &str = "shopper (embedded)";
@@ -28,7 +26,7 @@ pub fn open(path: Option<&Path>, camera: Option<&Path>) -> Result<Session, Fitti
     let options = OpenOptions { camera: camera.map(Path::to_path_buf) };
     match path {
         Some(path) => source::open(path, &options).map_err(FittingError::input),
-        None => source::read_bytes(EMBEDDED_NAME, EMBEDDED_NAME, EMBEDDED, None).map_err(FittingError::internal),
+        None => source::read_bytes(EMBEDDED_NAME, EMBEDDED_NAME, SESSION, None).map_err(FittingError::internal),
     }
 }
 

@@ -213,24 +213,21 @@ impl Runner {
     }
 
     fn measure(&mut self) {
-        let cones: Vec<RoundCone> = (0..self.colliders.capsules().len()).map(|c| self.colliders.cone(c, 1.0)).collect();
         let (mut mean, mut p99, mut kinetic) = (0.0f64, 0.0f64, 0.0);
         let (mut inside, mut free) = (0usize, 0usize);
+        for garment in 0..self.garments.len() {
+            let (deepest, count) = self.penetration(garment);
+            self.sums.penetration_mm = self.sums.penetration_mm.max(f64::from(deepest) * 1e3);
+            inside += count;
+        }
         for (cloth, garment) in self.cloths.iter_mut().zip(&self.garments) {
             let strain = measure::strain(cloth, garment);
             mean = mean.max(f64::from(strain.mean));
             p99 = p99.max(f64::from(strain.p99));
             self.sums.strain_max = self.sums.strain_max.max(f64::from(strain.max));
             kinetic += cloth.kinetic_energy(garment);
-            for (p, w) in cloth.positions.iter().zip(&garment.inverse_mass) {
-                self.sums.nonfinite += u64::from(!p.is_finite());
-                if *w > 0.0 {
-                    let depth = depth(Vec3::from(*p), &cones, self.colliders.planes(), self.colliders.floor);
-                    self.sums.penetration_mm = self.sums.penetration_mm.max(f64::from(depth) * 1e3);
-                    inside += usize::from(depth > 0.0);
-                    free += 1;
-                }
-            }
+            self.sums.nonfinite += cloth.positions.iter().filter(|p| !p.is_finite()).count() as u64;
+            free += garment.inverse_mass.iter().filter(|w| **w > 0.0).count();
         }
         let sums = &mut self.sums;
         sums.steps += 1;
@@ -267,6 +264,15 @@ impl Runner {
         let at = &self.cloths[garment].positions;
         let particles = self.particles[garment].iter().zip(stands);
         particles.map(move |(p, stands)| if *p == STANDS { *stands } else { at[*p as usize].into() })
+    }
+
+    /// How deep the free particles of a garment are inside of capsules and planes: the deepest (m), 0 if none is, and how many are.
+    pub fn penetration(&self, garment: usize) -> (f32, usize) {
+        let cones: Vec<RoundCone> = (0..self.colliders.capsules().len()).map(|c| self.colliders.cone(c, 1.0)).collect();
+        let particles = self.cloths[garment].positions.iter().zip(&self.garments[garment].inverse_mass);
+        let free = particles.filter(|(_, w)| **w > 0.0);
+        let depths = free.map(|(p, _)| depth(Vec3::from(*p), &cones, self.colliders.planes(), self.colliders.floor));
+        depths.filter(|d| *d > 0.0).fold((0.0, 0), |(deepest, count), d| (f32::max(deepest, d), count + 1))
     }
 
     /// Steps taken so far.

@@ -1,0 +1,137 @@
+//! Garments: of the wardrobe, meshes, sewn patterns, packages.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use toile_assets::body::{Measures, Sex};
+use toile_assets::draping::{AS_DRAFTED, TO_MEASURE};
+use toile_assets::fabric::Fabric;
+use toile_assets::file::{self, FileKind};
+use toile_assets::{drafting, wardrobe};
+use toile_fitting::dress::choice::{Choice, ChoiceSource, ShopChoice};
+
+use crate::error::{Error, Result};
+
+/// A fabric's file: two dozen lines.
+const FABRIC_FILE: FileKind = FileKind {
+    name: "a fabric's file",
+    max_bytes: 1 << 20,
+    cure: "give the name of a built-in fabric, or its TOML file",
+};
+
+/// A garment, open and checked. It is put on by [`Scene::dress`](crate::Scene::dress) and judged by
+/// [`recommend`](crate::recommend); it can be put on many bodies.
+#[derive(Debug, Clone)]
+pub struct Garment {
+    choice: Arc<Choice>,
+    size: Option<String>,
+}
+
+/// Names of the garments that are built in.
+pub fn garment_names() -> Vec<&'static str> {
+    wardrobe::names().into_iter().chain(drafting::names()).collect()
+}
+
+/// Names of the fabrics that are built in.
+pub fn fabric_names() -> Vec<&'static str> {
+    Fabric::names()
+}
+
+impl Garment {
+    /// Opens a garment by the same words as `toile try-on --garment`: a name of [`garment_names`], the path of a mesh (OBJ, glTF,
+    /// GLB), of a sewn pattern (GarmentCode or FreeSewing JSON, DXF) or of a garment package; behind a colon a built-in fabric
+    /// may stand, `shirt:lawn-gingham`.
+    ///
+    /// # Errors
+    /// A name that is none of these, a file that cannot be used.
+    pub fn open(name: &str) -> Result<Self> {
+        Ok(Self { choice: Arc::new(Choice::find(name)?), size: None })
+    }
+
+    /// The same in a size, in place of the one that fits.
+    ///
+    /// # Errors
+    /// A size that is not made.
+    pub fn in_size(self, size: &str) -> Result<Self> {
+        let refused = || {
+            let sizes = self.sizes()?;
+            let name = self.name();
+            Err(Error::input(match sizes.is_empty() {
+                true => format!(
+                    "{name} is a mesh in one size; give no size, or its sizes in a TOML file beside it (docs/meshes.md)"
+                ),
+                false => format!("{name} is not made in size {size}; choose one of {}", sizes.join(", ")),
+            }))
+        };
+        let made = match &self.choice.source {
+            ChoiceSource::Pattern(package) => package.sized(size, &Measures::average(Sex::Female)).is_ok(),
+            _ => self.sizes()?.iter().any(|code| code == size),
+        };
+        if made { Ok(Self { size: Some(size.to_owned()), ..self }) } else { refused() }
+    }
+
+    /// The same in another fabric: a name of [`fabric_names`], or the path of a fabric's TOML file.
+    ///
+    /// # Errors
+    /// A fabric that there is not, a file that is none.
+    pub fn in_fabric(self, fabric: &str) -> Result<Self> {
+        let fabric = if fabric.ends_with(".toml") { read_fabric(Path::new(fabric))? } else { built_in(fabric)? };
+        let choice = self.choice.as_ref().clone();
+        let own = ShopChoice { fabric: Some(fabric), ..choice.own };
+        Ok(Self { choice: Arc::new(Choice { own, ..choice }), ..self })
+    }
+
+    /// What it was opened by.
+    pub fn name(&self) -> &str {
+        &self.choice.name
+    }
+
+    /// The size that was asked for; none is the one that fits.
+    pub fn size(&self) -> Option<&str> {
+        self.size.as_deref()
+    }
+
+    /// The sizes that are made, smallest first; none of a mesh that has no sizes.
+    ///
+    /// # Errors
+    /// Size tables that cannot be used.
+    pub fn sizes(&self) -> Result<Vec<String>> {
+        let owned = |codes: Vec<&str>| codes.into_iter().map(str::to_owned).collect();
+        Ok(match &self.choice.source {
+            ChoiceSource::Style(style) => owned(style.sizes().map_err(Error::input)?.codes()),
+            ChoiceSource::Mesh(own) => own.sizes.as_ref().map_or_else(Vec::new, |sizes| owned(sizes.table.codes())),
+            ChoiceSource::Pattern(package) => match package.graded().map_err(Error::input)? {
+                Some(graded) => {
+                    let made = graded.made().into_iter().map(|(code, _)| code);
+                    made.chain([TO_MEASURE.to_owned()]).collect()
+                }
+                None => vec![AS_DRAFTED.to_owned()],
+            },
+        })
+    }
+
+    /// The fabric that it is made of.
+    ///
+    /// # Errors
+    /// A fabric that there is not.
+    pub fn fabric(&self) -> Result<String> {
+        Ok(self.choice.fabric()?.name)
+    }
+
+    pub(crate) fn choice(&self) -> &Choice {
+        &self.choice
+    }
+}
+
+fn built_in(name: &str) -> Result<Fabric> {
+    Fabric::built_in(name).map_err(|error| Error::input(format!("{error}; there are {}", Fabric::names().join(", "))))
+}
+
+fn read_fabric(path: &Path) -> Result<Fabric> {
+    let text = file::read_text(path, &FABRIC_FILE).map_err(Error::input)?;
+    let mut fabric = Fabric::parse(&path.display().to_string(), &text).map_err(Error::input)?;
+    let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
+    let picture = |name: &str| file::read(&folder.join(name), &FABRIC_FILE).map_err(|e| e.to_string());
+    fabric.read_picture(picture).map_err(Error::input)?;
+    Ok(fabric)
+}
