@@ -2,10 +2,14 @@
 
     toile try-on --no-pictures --export glb --export usd --export mdd --export pc2 --export ply --out exported
     python compare.py exported
+    python compare.py exported walker.glb Walk
 
 The PLY files hold the positions of the engine as they are (f32, metres, y up). Against them are compared, as Blender evaluates
 them: the GLB (garments by shape keys, the body by its armature and shape keys), the USD stage, and each OBJ moved by a Mesh Cache modifier with
 its MDD and its PC2 file. Blender's z-up axes are turned back first.
+
+With a file and an animation, as `toile try-on --body walker.glb --animation Walk` was given them, the body of the PLY files is
+compared with that file as Blender skins it, and the distance is held against what the report says of it.
 
 Needs Python 3.11 with `pip install bpy==4.5.*` (docs/export.md). Exits with 1 where a limit is exceeded.
 """
@@ -119,7 +123,44 @@ def check_cache(folder, wanted, rate, ending):
     return distance(things, wanted)
 
 
-def main(folder):
+def play(armature, name):
+    """Lets an armature move by one animation alone."""
+    data = armature.animation_data
+    for track in data.nla_tracks:
+        track.mute = True
+    action = bpy.data.actions[name]
+    data.action = action
+    data.action_slot = action.slots[0]
+
+
+def placed(thing, armature):
+    """How far Toile moves a body: the middle of its hips to x = z = 0, its lowest vertex to y = 0, both at rest."""
+    matrix = np.array(thing.matrix_world, np.float64)
+    lowest = min((matrix @ np.array([*v.co, 1.0]))[2] for v in thing.data.vertices)
+    bones = [armature.matrix_world @ armature.data.bones[b].head_local for b in ("LeftUpLeg", "RightUpLeg")]
+    middle = sum((np.array(b) for b in bones), np.zeros(3)) / 2
+    return np.array([middle[0], lowest, -middle[1]])
+
+
+def check_animation(folder, wanted, rate, file, name):
+    """The body against the file that moved it, as Blender skins it; exits with its own limit: what the report says."""
+    fresh(rate)
+    bpy.ops.import_scene.gltf(filepath=file)
+    thing = next(o for o in bpy.data.objects if o.type == "MESH" and o.find_armature())
+    armature = thing.find_armature()
+    moved = placed(thing, armature)
+    play(armature, name)
+    scene = bpy.context.scene
+    apart = []
+    for frame, want in enumerate(wanted["body"]):
+        # The first frame is the state after the first step of 1/120 s.
+        at = frame + rate / 120.0
+        scene.frame_set(int(at), subframe=at % 1.0)
+        apart.append(np.linalg.norm(evaluated(thing) - moved - want, axis=1))
+    return np.concatenate(apart)
+
+
+def main(folder, file=None, name=None):
     folder = pathlib.Path(folder)
     report = json.loads((folder / "report.json").read_text())
     rate = report["export"]["rate_hz"]
@@ -144,8 +185,17 @@ def main(folder):
                 f"{format:4} {part:24} {wanted[part].shape[1]:6} vertices  mean {mean * 1e6:10.3f} um  "
                 f"max {worst * 1e6:10.3f} um at frame {frame}, vertex {vertex}  limit {limit * 1e6:.0f} um"
             )
+    if file:
+        apart = check_animation(folder, wanted, rate, file, name) * 1e3
+        said = report["animation"]
+        print(
+            f"{file} {name}: Blender's skin and Toile's are apart by mean {apart.mean():.3f} mm, "
+            f"p99 {np.quantile(apart, 0.99):.3f} mm, max {apart.max():.3f} mm; the report says mean "
+            f"{said['skin_mean_mm']} mm, p99 {said['skin_p99_mm']} mm, max {said['skin_max_mm']} mm"
+        )
+        failed |= not abs(apart.mean() - said["skin_mean_mm"]) < 0.1 * said["skin_mean_mm"] + 0.05
     return 1 if failed else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1]))
+    sys.exit(main(*sys.argv[1:]))

@@ -2,10 +2,11 @@
 //!
 //! Our rest pose is the file's bind pose, so a joint's rotation from rest to world is the rotation of its skin matrix (the joint's
 //! place in the scene times its inverse bind matrix), seen from our axes. Between two of our joints a file may have more, of a
-//! spine for example: our joint is then turned on, by the shortest way, until its child lies in the direction in which the
-//! file has it. What scales joints is left out: our bones are rigid.
+//! spine for example. So a joint with one child is turned on, by the shortest way, until that lies in the direction in which the
+//! file has it; one with several is turned so that they lie nearest to where the file has them (Horn 1987, "Closed-form
+//! solution of absolute orientation using unit quaternions"). What scales joints is left out: our bones are rigid.
 
-use glam::{DMat4, DQuat, DVec3, Quat};
+use glam::{DMat3, DMat4, DQuat, DVec3, DVec4, Quat};
 
 use super::ImportedBody;
 use super::animation::GltfClip;
@@ -15,26 +16,9 @@ use super::skinned::BoundJoints;
 use crate::limits::STEP_HZ;
 use crate::skeleton::{JOINTS, Joint, Pose, Skeleton};
 
-/// The joint that each of ours is aimed at, where it has one; those with several children are not aimed.
-const AIMS: [(Joint, Joint); 17] = [
-    (Joint::Spine, Joint::Chest),
-    (Joint::Chest, Joint::Neck),
-    (Joint::Neck, Joint::Head),
-    (Joint::LeftClavicle, Joint::LeftShoulder),
-    (Joint::LeftShoulder, Joint::LeftElbow),
-    (Joint::LeftElbow, Joint::LeftWrist),
-    (Joint::RightClavicle, Joint::RightShoulder),
-    (Joint::RightShoulder, Joint::RightElbow),
-    (Joint::RightElbow, Joint::RightWrist),
-    (Joint::LeftHip, Joint::LeftKnee),
-    (Joint::LeftKnee, Joint::LeftAnkle),
-    (Joint::RightHip, Joint::RightKnee),
-    (Joint::RightKnee, Joint::RightAnkle),
-    (Joint::LeftWrist, Joint::LeftHand),
-    (Joint::RightWrist, Joint::RightHand),
-    (Joint::LeftAnkle, Joint::LeftToe),
-    (Joint::RightAnkle, Joint::RightToe),
-];
+/// How much a joint's own rotation counts where it is laid by its children (m2): as axes of 5 mm, so that children in one line
+/// leave no turn about it open.
+const OWN_TURN_M2: f64 = 2.5e-5;
 
 /// An imported body with the motion of one animation.
 #[derive(Debug)]
@@ -126,12 +110,10 @@ impl MovingSkin {
         for joint in Joint::ALL {
             let above = joint.parent().map_or(DQuat::IDENTITY, |p| world[p.index()]);
             let mut now = of(joint).map_or(above, turn);
-            let aim = AIMS.iter().find(|(from, _)| *from == joint).map(|(_, to)| *to);
-            if let Some((child, from, to)) = aim.and_then(|to| Some((to, place(joint)?, place(to)?))) {
-                let (have, want) = (now * skeleton.offset(child).as_dvec3(), to - from);
-                if let (Some(have), Some(want)) = (have.try_normalize(), want.try_normalize()) {
-                    now = (DQuat::from_rotation_arc(have, want) * now).normalize();
-                }
+            if let Some(from) = place(joint) {
+                let children = Joint::ALL.into_iter().filter(|child| child.parent() == Some(joint));
+                let way = |child: Joint| Some((skeleton.offset(child).as_dvec3(), place(child)? - from));
+                now = laid(now, &children.filter_map(way).collect::<Vec<_>>());
             }
             world[joint.index()] = now;
             local[joint.index()] = (above.inverse() * now).normalize().as_quat();
@@ -150,6 +132,54 @@ impl MovingSkin {
         self.rest.iter().zip(&self.influences).map(vertex).collect()
     }
 }
+
+/// A rotation turned on so that the ways to children, as they are at rest, lie as they are wanted: exactly in the direction of a
+/// single one, nearest to several.
+fn laid(now: DQuat, children: &[(DVec3, DVec3)]) -> DQuat {
+    match children {
+        [] => now,
+        [(rest, want)] => match ((now * *rest).try_normalize(), want.try_normalize()) {
+            (Some(have), Some(want)) => (DQuat::from_rotation_arc(have, want) * now).normalize(),
+            _ => now,
+        },
+        _ => {
+            let own = DVec3::AXES.map(|axis| (axis, now * axis * OWN_TURN_M2));
+            let all = children.iter().copied().chain(own);
+            // Columns are those of the wanted ways: s[i][j] is rest_j want_i.
+            let s = all
+                .fold(DMat3::ZERO, |s, (rest, want)| s + DMat3::from_cols(want * rest.x, want * rest.y, want * rest.z));
+            nearest(&s)
+        }
+    }
+}
+
+/// The rotation nearest to a matrix (Horn 1987, section 4): the eigenvector of the largest eigenvalue of a symmetric matrix of
+/// quaternions, by squaring it again and again.
+fn nearest(s: &DMat3) -> DQuat {
+    let at = |want: usize, rest: usize| s.col(rest)[want];
+    let [xx, yy, zz] = [0, 1, 2].map(|k| at(k, k));
+    let [x, y, z] = [at(2, 1) - at(1, 2), at(0, 2) - at(2, 0), at(1, 0) - at(0, 1)];
+    let [xy, yz, zx] = [at(0, 1) + at(1, 0), at(1, 2) + at(2, 1), at(2, 0) + at(0, 2)];
+    let mut power = DMat4::from_cols(
+        DVec4::new(xx - yy - zz, xy, zx, x),
+        DVec4::new(xy, yy - xx - zz, yz, y),
+        DVec4::new(zx, yz, zz - xx - yy, z),
+        DVec4::new(x, y, z, xx + yy + zz),
+    );
+    let size = |m: &DMat4| m.to_cols_array().iter().map(|x| x * x).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
+    // No eigenvalue is negative then, and the largest stays the largest.
+    power += DMat4::from_diagonal(DVec4::splat(size(&power)));
+    for _ in 0..SQUARINGS {
+        power = power * (1.0 / size(&power));
+        power = power * power;
+    }
+    let column = [power.x_axis, power.y_axis, power.z_axis, power.w_axis];
+    let longest = column.into_iter().max_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
+    DQuat::from_vec4(longest.unwrap_or(DVec4::W)).normalize()
+}
+
+/// Squarings after which eigenvalues a millionth apart are told from each other.
+const SQUARINGS: usize = 28;
 
 impl MovingBody {
     pub(super) fn new(mut imported: ImportedBody, skin: MovingSkin) -> Result<Self, Flaw> {
@@ -171,5 +201,38 @@ impl MovingBody {
     /// body's vertices (m).
     pub fn surface(&self, pose: usize) -> Vec<DVec3> {
         self.skin.surface(pose as f64 / f64::from(STEP_HZ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rotation_is_found_by_where_it_takes_points() {
+        for (k, axis) in
+            [DVec3::X, DVec3::new(0.6, -0.8, 0.0), DVec3::new(1.0, 2.0, -3.0).normalize()].into_iter().enumerate()
+        {
+            for angle in [0.0, 0.3, -1.2, 2.5, std::f64::consts::PI] {
+                let turn = DQuat::from_axis_angle(axis, angle);
+                let ways = [DVec3::new(0.0, 0.2, 0.01), DVec3::new(0.05, 0.15, 0.0), DVec3::new(-0.05, 0.15, 0.0)];
+                let children = ways.map(|rest| (rest, turn * rest));
+                let found = laid(turn, &children);
+                assert!(found.angle_between(turn) < 1e-6, "{k}, {angle}: {}", found.angle_between(turn));
+                // From another rotation, which counts for little.
+                let off = laid(turn * DQuat::from_rotation_z(0.2), &children);
+                assert!(off.angle_between(turn) < 2e-3, "{k}, {angle}: {}", off.angle_between(turn));
+            }
+        }
+    }
+
+    #[test]
+    fn one_child_is_aimed_at_and_children_in_one_line_keep_the_turn_about_it() {
+        let turn = DQuat::from_rotation_y(0.7);
+        let aimed = laid(turn, &[(DVec3::Y * 0.3, DVec3::new(0.1, 0.3, 0.0))]);
+        assert!((aimed * DVec3::Y).angle_between(DVec3::new(0.1, 0.3, 0.0)) < 1e-6);
+        let line = [(DVec3::Y * 0.3, DVec3::Y * 0.3), (DVec3::Y * 0.1, DVec3::Y * 0.1)];
+        assert!(laid(turn, &line).angle_between(turn) < 1e-6);
+        assert_eq!(laid(turn, &[]), turn);
     }
 }
