@@ -11,7 +11,7 @@ use super::font;
 use super::limits::{LOGO_SIDE, MAX_FONT_BYTES, MAX_LOGO_BYTES, MAX_LOGO_SIDE, MIN_CONTRAST};
 use super::package::is_plain;
 use super::picture::Picture;
-use crate::export::glb::linear;
+use crate::export::linear;
 use crate::file::{self, FileKind};
 
 /// What is read as a logo.

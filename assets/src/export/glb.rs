@@ -4,20 +4,19 @@
 //! nodes stand in the pose asked for; garments lie around it as plain meshes, in the world. Metres, y up, facing +z, as
 //! the format has it. Colours are linear, as the format wants them, from the sRGB that fabrics state.
 
-use glam::{Affine3A, Mat3, Mat4, Quat, Vec3};
+use glam::{Affine3A, Vec3};
 use serde_json::{Value, json};
 
+use super::joints;
+use super::material::material;
 use super::parts::GlbBuffer;
+use super::surface::{SurfaceLook, linear};
 use crate::body::Body;
 use crate::mesh::vertex_normals;
-use crate::skeleton::{BONES, Joint, bone_joint, bone_name};
+use crate::skeleton::{BONES, Joint};
 
 /// sRGB of the body: the mannequin's warm light grey-beige.
 const SKIN_SRGB: [f32; 3] = [0.797, 0.754, 0.711];
-
-/// Roughness of skin and of cloth: neither shines.
-const SKIN_ROUGHNESS: f32 = 0.6;
-const CLOTH_ROUGHNESS: f32 = 0.9;
 
 /// A body with its garments, to be exported.
 #[derive(Debug, Clone, Copy)]
@@ -47,22 +46,21 @@ pub struct WornGarment<'a> {
 pub fn glb(dressed: &DressedBody<'_>) -> Vec<u8> {
     let mut parts = GlbBuffer::default();
     let body = dressed.body;
-    let joints = joint_nodes(body, dressed.palette);
+    let joints = joints::nodes(&joints::local_bones(body, dressed.palette), 1);
     let mut nodes = vec![json!({ "name": "body", "mesh": 0, "skin": 0 })];
     nodes.extend(joints);
     let mut meshes = vec![body_mesh(&mut parts, body)];
-    let mut materials = vec![material("skin", SKIN_SRGB, SKIN_ROUGHNESS, false)];
+    let mut materials = vec![material("skin", &SurfaceLook::skin(SKIN_SRGB.map(linear)), None)];
     // The joints' root, the body, then the garments.
     let mut roots = vec![0, 1 + Joint::Pelvis.index()];
     for garment in dressed.worn.iter().filter(|g| !g.triangles.is_empty()) {
         roots.push(nodes.len());
         nodes.push(json!({ "name": garment.name, "mesh": meshes.len() }));
         meshes.push(garment_mesh(&mut parts, garment, materials.len()));
-        materials.push(material(garment.name, garment.srgb, CLOTH_ROUGHNESS, true));
+        materials.push(material(garment.name, &SurfaceLook::cloth(garment.srgb), None));
     }
-    let inverse: Vec<Mat4> = body.skeleton.bone_origins().iter().map(|p| Mat4::from_translation(-*p)).collect();
     let bones: Vec<usize> = (1..=BONES).collect();
-    let matrices = parts.matrices(&inverse);
+    let matrices = parts.matrices(&joints::inverse_binds(body));
     let description = json!({
         "asset": { "version": "2.0", "generator": concat!("Toile ", env!("CARGO_PKG_VERSION")) },
         "scene": 0,
@@ -78,7 +76,8 @@ pub fn glb(dressed: &DressedBody<'_>) -> Vec<u8> {
     parts.glb(description)
 }
 
-fn body_mesh(parts: &mut GlbBuffer, body: &Body) -> Value {
+/// The mesh of a body in its rest pose, with its joints and weights; its material is the first.
+pub(super) fn body_mesh(parts: &mut GlbBuffer, body: &Body) -> Value {
     let joints = body.weights.iter().map(|w| {
         // A joint without weight is named 0, as the format asks.
         std::array::from_fn(|k| if w.weights[k] > 0.0 { w.bones[k] } else { 0 })
@@ -102,54 +101,4 @@ fn garment_mesh(parts: &mut GlbBuffer, garment: &WornGarment<'_>, material: usiz
     let attributes = json!({ "POSITION": parts.positions(garment.positions), "NORMAL": parts.normals(&normals) });
     let indices = parts.indices(garment.triangles);
     json!({ "name": garment.name, "primitives": [{ "attributes": attributes, "indices": indices, "material": material }] })
-}
-
-fn material(name: &str, srgb: [f32; 3], roughness: f32, double_sided: bool) -> Value {
-    let [r, g, b] = srgb.map(linear);
-    json!({
-        "name": name,
-        "pbrMetallicRoughness": {
-            "baseColorFactor": [r, g, b, 1.0], "metallicFactor": 0.0, "roughnessFactor": roughness,
-        },
-        "doubleSided": double_sided,
-    })
-}
-
-/// A linear value of an sRGB one (IEC 61966-2-1).
-pub(crate) fn linear(srgb: f32) -> f32 {
-    let c = srgb.clamp(0.0, 1.0);
-    if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
-}
-
-/// Parent of each bone; the pelvis has none.
-fn parent(bone: usize) -> Option<usize> {
-    match Joint::ALL.get(bone) {
-        Some(joint) => joint.parent().map(Joint::index),
-        None => bone_joint(bone).map(Joint::index),
-    }
-}
-
-/// The nodes of the bones, in their order, from the node 1 on.
-fn joint_nodes(body: &Body, palette: Option<&[Affine3A; BONES]>) -> Vec<Value> {
-    let rest = body.skeleton.bone_origins();
-    let world: [Mat4; BONES] = std::array::from_fn(|b| {
-        let skin = palette.map_or(Mat4::IDENTITY, |p| Mat4::from(p[b]));
-        skin * Mat4::from_translation(rest[b])
-    });
-    let mut nodes = Vec::with_capacity(BONES);
-    for bone in 0..BONES {
-        let local = parent(bone).map_or(world[bone], |p| world[p].inverse() * world[bone]);
-        let turn = Quat::from_mat3(&Mat3::from_mat4(local)).normalize();
-        let children: Vec<usize> = (0..BONES).filter(|b| parent(*b) == Some(bone)).map(|b| b + 1).collect();
-        let mut node =
-            json!({ "name": bone_name(bone).unwrap_or_default(), "translation": local.w_axis.truncate().to_array() });
-        if turn.x != 0.0 || turn.y != 0.0 || turn.z != 0.0 {
-            node["rotation"] = json!(turn.to_array());
-        }
-        if !children.is_empty() {
-            node["children"] = json!(children);
-        }
-        nodes.push(node);
-    }
-    nodes
 }

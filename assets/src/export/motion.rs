@@ -1,56 +1,37 @@
-//! A mesh that moves as GLB: the first frame, a morph target for each later one, and an animation that blends from one to the next.
+//! A mesh that moves as GLB, all of whose frames are known.
+
+use std::io::Cursor;
 
 use glam::Vec3;
-use serde_json::{Value, json};
 
-use super::parts::GlbBuffer;
+use super::frame_rate::FrameRate;
+use super::moving_glb::MovingGlb;
+use super::part::MovingPart;
+use super::surface::SurfaceLook;
+use crate::garment::shape::NO_VERTEX;
 
-/// The GLB file of a mesh (m) in each of some frames, `rate` of them a second. Colour is a plain light grey, both sides shown.
-/// `None` where there are no frames, or not all have the mesh's vertices.
+/// Grey of a mesh without a look (sRGB).
+const GREY: f32 = 0.8;
+
+/// The GLB file of a mesh (m) in each of some frames, `rate` of them a second, as [`MovingGlb`] writes it. Colour is a plain light
+/// grey, both sides shown. `None` where there are no frames or too many, or not all have the mesh's vertices.
 pub fn motion_glb(name: &str, frames: &[Vec<Vec3>], triangles: &[[u32; 3]], rate: f32) -> Option<Vec<u8>> {
     let first = frames.first()?;
     if first.is_empty() || triangles.is_empty() || frames.iter().any(|f| f.len() != first.len()) {
         return None;
     }
-    let mut parts = GlbBuffer::default();
-    let position = parts.positions(first);
-    let mut targets = Vec::new();
-    for frame in &frames[1..] {
-        let moved: Vec<Vec3> = frame.iter().zip(first).map(|(p, from)| *p - *from).collect();
-        targets.push(json!({ "POSITION": parts.positions(&moved) }));
-    }
-    let later = targets.len();
-    let indices = parts.indices(triangles);
-    let mut primitive = json!({ "attributes": { "POSITION": position }, "indices": indices, "material": 0 });
-    let mut mesh = json!({ "name": name });
-    let mut animations: Vec<Value> = Vec::new();
-    if later > 0 {
-        primitive["targets"] = targets.into();
-        mesh["weights"] = vec![0.0; later].into();
-        let times = parts.times(frames.len(), rate);
-        // At each frame one target counts, and none at the first.
-        let weights = (0..frames.len()).flat_map(|f| (1..=later).map(move |t| if t == f { 1.0 } else { 0.0 }));
-        let output = parts.scalars(weights, frames.len() * later);
-        animations.push(json!({
-            "name": "motion",
-            "samplers": [{ "input": times, "output": output, "interpolation": "LINEAR" }],
-            "channels": [{ "sampler": 0, "target": { "node": 0, "path": "weights" } }],
-        }));
-    }
-    mesh["primitives"] = json!([primitive]);
-    let mut description = json!({
-        "asset": { "version": "2.0", "generator": concat!("Toile ", env!("CARGO_PKG_VERSION")) },
-        "scene": 0,
-        "scenes": [{ "nodes": [0] }],
-        "nodes": [{ "name": name, "mesh": 0 }],
-        "meshes": [mesh],
-        "materials": [{ "name": name, "doubleSided": true,
-            "pbrMetallicRoughness": { "baseColorFactor": [0.6, 0.6, 0.6, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.9 } }],
-    });
-    if !animations.is_empty() {
-        description["animations"] = animations.into();
-    }
-    Some(parts.glb(description))
+    let part = MovingPart {
+        name: name.to_owned(),
+        vertices: first.len(),
+        faces: triangles.iter().map(|&[a, b, c]| [a, b, c, NO_VERTEX]).collect(),
+        uvs: Vec::new(),
+        look: SurfaceLook::cloth([GREY; 3]),
+        skinned: None,
+    };
+    let rate = FrameRate { frames: frames.len(), hz: f64::from(rate) };
+    let mut glb = MovingGlb::begin(Cursor::new(Vec::new()), "motion", &[part], rate).ok()?;
+    frames.iter().try_for_each(|frame| glb.add(None, &[frame])).ok()?;
+    Some(glb.finish().ok()?.into_inner())
 }
 
 #[cfg(test)]

@@ -4,6 +4,8 @@ use std::ops::RangeBounds;
 use std::path::Path;
 
 use clap::builder::{PossibleValuesParser, RangedU64ValueParser, TypedValueParser};
+use toile_assets::export::ExportFormat;
+use toile_assets::limits::STEP_HZ;
 use toile_engine::cloth::Quality;
 use toile_engine::lanes::Width;
 use toile_engine::workers::SHARES;
@@ -167,6 +169,33 @@ impl WornArgs {
             tape,
         })
     }
+}
+
+/// What is written of a session for other tools.
+#[derive(Debug, Clone, Default, PartialEq, clap::Args)]
+pub struct ExportArgs {
+    /// Write where the body and the garments are all the time, for other tools: glb, usd, mdd, pc2 or ply; repeat it for more
+    #[arg(long = "export", value_name = "FORMAT", value_parser = one_of(ExportFormat::ALL, ExportFormat::name))]
+    pub formats: Vec<ExportFormat>,
+    /// Frames a second of what is exported; it divides 120
+    #[arg(long = "export-rate", value_name = "HZ", value_parser = export_rate, default_value = "30", requires = "formats")]
+    pub rate_hz: u32,
+}
+
+impl ExportArgs {
+    /// Steps from one frame to the next.
+    pub fn stride(&self) -> u64 {
+        u64::from(STEP_HZ / self.rate_hz.max(1))
+    }
+}
+
+/// A number of frames a second between which there are whole steps.
+fn export_rate(text: &str) -> Result<u32, String> {
+    let divides = |hz: &u32| *hz > 0 && STEP_HZ.is_multiple_of(*hz);
+    text.parse().ok().filter(divides).ok_or_else(|| {
+        let all: Vec<String> = (1..=STEP_HZ).filter(divides).map(|hz| hz.to_string()).collect();
+        format!("the engine takes {STEP_HZ} steps a second, so give one of {}", all.join(", "))
+    })
 }
 
 /// Cores that this process may use; 1 where the system does not say.

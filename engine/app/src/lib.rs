@@ -21,6 +21,7 @@ pub mod arguments;
 
 pub mod camera;
 pub mod pictures;
+pub mod session_export;
 pub mod summary;
 pub mod video;
 

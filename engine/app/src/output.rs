@@ -214,7 +214,12 @@ impl OutputFolder {
     pub fn write(&mut self, name: &str, bytes: &[u8]) -> Result<(), OutputError> {
         let part = self.stage(name)?;
         let written = File::create(&part).and_then(|mut f| f.write_all(bytes));
-        written.map_err(|reason| OutputError::File { path: self.folder.join(name), reason })
+        written.map_err(|reason| self.failed(name, reason))
+    }
+
+    /// That a file of this name cannot be written, in words.
+    pub fn failed(&self, name: &str, reason: io::Error) -> OutputError {
+        OutputError::File { path: self.folder.join(name), reason }
     }
 
     /// The files' final paths, in the order of their making.

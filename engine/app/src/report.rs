@@ -239,12 +239,46 @@ pub struct TryOn {
     /// What the garments do when the wearer raises the arms or sits down; left out where it was not asked for.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub poses: Vec<PosePulls>,
+    /// The animation that moved the body; left out where a session did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub animation: Option<AnimationReport>,
+    /// What was written of the motion for other tools; left out where nothing was.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub export: Option<ExportReport>,
     /// Hash of the last state, 16 hexadecimal digits; the same input gives the same.
     pub state_hash: String,
     /// What drew the pictures; nothing where there are none.
     pub renderer: Option<String>,
     /// The files written.
     pub files: Vec<PathBuf>,
+}
+
+/// An animation of a body's file, and how far the body's skin as it was moved is from the skin as the file moves it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AnimationReport {
+    /// Name of the animation.
+    pub name: String,
+    /// Its length (s).
+    pub seconds: f64,
+    /// Mean distance of the two skins, over all vertices and 30 frames a second (mm).
+    pub skin_mean_mm: f64,
+    /// 99th percentile of it (mm).
+    pub skin_p99_mm: f64,
+    /// Most of any vertex in any frame (mm).
+    pub skin_max_mm: f64,
+    /// What was found in the file and how it was taken.
+    pub notes: Vec<String>,
+}
+
+/// What was written of a session's motion.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ExportReport {
+    /// Names of the formats.
+    pub formats: Vec<&'static str>,
+    /// Frames in each file.
+    pub frames: usize,
+    /// Frames a second.
+    pub rate_hz: u32,
 }
 
 /// The body of `toile measure`.
@@ -365,6 +399,8 @@ mod tests {
             contact: Some(ContactReport::default()),
             hidden_mm: Some(Penetration::default()),
             poses: Vec::new(),
+            animation: None,
+            export: None,
             state_hash: hash_text(10),
             files: vec!["out/front.png".into()],
         }

@@ -23,11 +23,19 @@ pub fn try_on(report: &TryOn, paint: Paint) -> String {
     contact(&mut text, report.contact.as_ref(), DRESS_STEPS + SETTLE_STEPS + report.physics.steps);
     crossings(&mut text, report);
     heading(&mut text, "Files", paint);
-    for file in &report.files {
+    // A file for each frame would fill the screen.
+    let more = report.files.len().saturating_sub(MOST_FILES);
+    for file in &report.files[..report.files.len() - more] {
         put_line!(text, "  {}", file.display());
+    }
+    if more > 0 {
+        put_line!(text, "  and {more} more");
     }
     text
 }
+
+/// Most files that are listed.
+const MOST_FILES: usize = 40;
 
 /// A hem that moves by less (mm) is not spoken of.
 const TOLD_MM: f32 = 10.0;
@@ -281,6 +289,8 @@ mod tests {
             meshes: Vec::new(),
             physics: PhysicsReport::default(),
             poses: Vec::new(),
+            animation: None,
+            export: None,
             state_hash: String::new(),
             files: vec!["out/front.png".into()],
         };

@@ -165,12 +165,17 @@ impl Frame {
     /// the session's first joints, then at rest until the garments have settled. Not metered.
     pub fn dress(&mut self, first: &Joints) {
         self.poser.reset();
+        let goal = self.poser.pose(first, STEP_SECONDS);
+        self.dress_in_pose(&goal);
+    }
+
+    /// The same for a session of poses that are known: nothing filters or limits them.
+    pub fn dress_in_pose(&mut self, goal: &Pose) {
         let clock = self.clock;
         let rest = Pose::rest(&self.body.skeleton);
-        let goal = self.poser.pose(first, STEP_SECONDS);
         for step in 1..=DRESS_STEPS + SETTLE_STEPS {
             let t = (step as f32 / DRESS_STEPS as f32).min(1.0);
-            self.pose = blend(&rest, &goal, t * t * (3.0 - 2.0 * t));
+            self.pose = blend(&rest, goal, t * t * (3.0 - 2.0 * t));
             self.advance(&mut StageTimes::from(clock.now_ns()), &clock);
         }
     }
@@ -231,10 +236,25 @@ impl Frame {
 
     /// The step itself, as the loop takes it: what it shows is published with these times.
     pub fn step_at(&mut self, joints: &Joints, times: SnapshotTimes, clock: &impl Clock) {
-        let mut stage_times = StageTimes::from(clock.now_ns());
+        let begun_ns = clock.now_ns();
         // It wakes while the body is posed and skinned.
         self.pool.wake();
         self.pose = self.poser.pose(joints, STEP_SECONDS);
+        self.finish_step(StageTimes::from(begun_ns), times, clock);
+    }
+
+    /// One step of a session of poses that are known: the body in its pose at the step's end.
+    pub fn step_in_pose(&mut self, pose: &Pose) {
+        let clock = self.clock;
+        let stage_times = StageTimes::from(clock.now_ns());
+        self.pool.wake();
+        self.pose = *pose;
+        self.finish_step(stage_times, SnapshotTimes::default(), &clock);
+        self.measure();
+    }
+
+    /// The stages after the pose, published and metered.
+    fn finish_step(&mut self, mut stage_times: StageTimes, times: SnapshotTimes, clock: &impl Clock) {
         self.advance(&mut stage_times, clock);
         self.publish(times, clock);
         stage_times.lap(PUBLISH, clock.now_ns());

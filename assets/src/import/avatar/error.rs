@@ -44,6 +44,22 @@ pub enum Flaw {
         /// The names that there are.
         known: String,
     },
+    /// No animation has the name that was asked for.
+    #[error("it has no animation named {name}, only {known}; name one of these")]
+    NoAnimation {
+        /// Name that was asked for.
+        name: String,
+        /// The names that there are.
+        known: String,
+    },
+    /// An animation that cannot be followed.
+    #[error("its animation \"{name}\" {reason}")]
+    Animation {
+        /// Name of the animation.
+        name: String,
+        /// What is wrong, and the cure.
+        reason: String,
+    },
     /// Too few vertices, or more than [`MAX_BODY_VERTICES`].
     #[error("it has {count} vertices, and a body has 4 to {MAX_BODY_VERTICES}; export a mesh of that size")]
     Vertices {

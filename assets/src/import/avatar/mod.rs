@@ -4,8 +4,10 @@
 //! Budget: at load only, about half a second for a body of 30,000 vertices.
 //! Thread: the loading thread.
 
+mod animation;
 mod carry;
 mod error;
+mod moving;
 pub mod names;
 mod nodes;
 pub(crate) mod raw;
@@ -25,9 +27,12 @@ use crate::file::{self, FileError, FileKind};
 use crate::import::gltf::file::GltfFile;
 use crate::limits::MAX_BODY_BYTES;
 use crate::mesh::{Mesh, vertex_normals};
-use crate::skeleton::Joint;
+use crate::skeleton::{Joint, Skeleton};
+use animation::GltfClip;
 pub use carry::PruningLoss;
 pub use error::{AvatarError, Flaw};
+pub use moving::MovingBody;
+use moving::MovingSkin;
 use raw::RawBody;
 use surface::SurfaceCheck;
 
@@ -81,6 +86,22 @@ pub struct ImportReport {
 /// # Errors
 /// [`AvatarError`], which names the file, what is wrong in it, and the cure.
 pub fn read(path: &Path, options: &ImportOptions) -> Result<ImportedBody, AvatarError> {
+    with_file(path, |bytes, beside| parse(bytes, beside, options))
+}
+
+/// The same with one of the file's animations, by its name.
+///
+/// # Errors
+/// [`AvatarError`], which names the file, what is wrong in it, and the cure.
+pub fn read_moving(path: &Path, animation: &str, options: &ImportOptions) -> Result<MovingBody, AvatarError> {
+    with_file(path, |bytes, beside| parse_moving(bytes, beside, animation, options))
+}
+
+/// Reads a file; its buffers lie beside it or inside.
+fn with_file<T>(
+    path: &Path,
+    parse: impl FnOnce(&[u8], crate::import::gltf::ReadBeside<'_>) -> Result<T, Flaw>,
+) -> Result<T, AvatarError> {
     let bytes = load(path).map_err(|flaw| flaw.of(path))?;
     let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
     let beside = |name: &str| {
@@ -91,7 +112,7 @@ pub fn read(path: &Path, options: &ImportOptions) -> Result<ImportedBody, Avatar
         }
         load(&file).map_err(|flaw| format!("its buffer {name}: {flaw}"))
     };
-    parse(&bytes, &beside, options).map_err(|flaw| flaw.of(path))
+    parse(&bytes, &beside).map_err(|flaw| flaw.of(path))
 }
 
 /// A file of a body, or one that it names.
@@ -116,13 +137,44 @@ pub fn parse(
     options: &ImportOptions,
 ) -> Result<ImportedBody, Flaw> {
     let file = GltfFile::open(bytes, beside)?;
-    settle(skinned::read(&file, &options.meshes)?, options)
+    settle(skinned::read(&file, &options.meshes)?.0, options)
+}
+
+/// The same with one of the file's animations, by its name.
+///
+/// # Errors
+/// [`Flaw`], to stand behind the file's name.
+pub fn parse_moving(
+    bytes: &[u8],
+    beside: crate::import::gltf::ReadBeside<'_>,
+    animation: &str,
+    options: &ImportOptions,
+) -> Result<MovingBody, Flaw> {
+    let file = GltfFile::open(bytes, beside)?;
+    let (mut raw, joints) = skinned::read(&file, &options.meshes)?;
+    let clip = GltfClip::read(&file, &joints, animation)?;
+    let placement = place(&mut raw)?;
+    let skin = MovingSkin::new(&raw, joints, clip, placement.2.matrix());
+    MovingBody::new(finish(raw, placement, options)?, skin)
 }
 
 /// Makes a raw body ours.
 pub(crate) fn settle(mut raw: RawBody, options: &ImportOptions) -> Result<ImportedBody, Flaw> {
+    let placement = place(&mut raw)?;
+    finish(raw, placement, options)
+}
+
+/// Checks a raw body and sets it upright in our axes and unit.
+fn place(raw: &mut RawBody) -> Result<(Skeleton, Vec<Joint>, rest::Placement), Flaw> {
     raw.check()?;
-    let (skeleton, placed) = rest::stand(&mut raw)?;
+    rest::stand(raw)
+}
+
+fn finish(
+    mut raw: RawBody,
+    (skeleton, placed, _): (Skeleton, Vec<Joint>, rest::Placement),
+    options: &ImportOptions,
+) -> Result<ImportedBody, Flaw> {
     let (weights, pruned) = carry::weights(&raw, &skeleton, &placed);
     let surface = SurfaceCheck::of(&raw.positions, &raw.triangles);
     let mesh = Mesh {

@@ -104,6 +104,11 @@ impl GltfNodes {
         self.parents[node]
     }
 
+    /// The node's place beside its parent.
+    pub fn local(&self, node: usize) -> Mat4 {
+        self.local[node]
+    }
+
     /// The node's place in the scene.
     pub fn global(&self, node: usize) -> Mat4 {
         self.global[node]

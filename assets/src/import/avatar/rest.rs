@@ -1,6 +1,6 @@
 //! A raw body set upright in our axes and unit, and its joints turned into our skeleton.
 
-use glam::{Mat3, Vec3};
+use glam::{DMat4, DVec3, Mat3, Vec3};
 
 use super::error::Flaw;
 use super::names::{HANIM, NEEDED};
@@ -19,6 +19,25 @@ const UPRIGHT: f32 = 0.8;
 /// How far the furthest toe may stand behind its ankle (share of the stature) before it points backwards.
 const TOE_BACK: f32 = 0.01;
 
+/// How a file's space becomes ours: turned, moved, and then scaled.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Placement {
+    turn: Mat3,
+    /// What comes to the middle between the feet, after the turn, in the file's unit.
+    origin: Vec3,
+    /// Metres a unit.
+    metres: f32,
+}
+
+impl Placement {
+    /// The same as a matrix from the file's space to ours.
+    pub fn matrix(&self) -> DMat4 {
+        DMat4::from_scale(DVec3::splat(f64::from(self.metres)))
+            * DMat4::from_translation(-self.origin.as_dvec3())
+            * DMat4::from_mat3(self.turn.as_dmat3())
+    }
+}
+
 /// Which of our joints each raw joint carries the skin of: its own, or that of the nearest joint above it.
 pub(super) fn carriers(raw: &RawBody) -> Vec<Joint> {
     let above = |mut joint: usize| loop {
@@ -33,9 +52,9 @@ pub(super) fn carriers(raw: &RawBody) -> Vec<Joint> {
     (0..raw.joints.len()).map(above).collect()
 }
 
-/// Turns, scales and moves a raw body so that it stands on the floor in metres, facing +z; returns its skeleton and
-/// which joints had to be placed between others.
-pub(super) fn stand(raw: &mut RawBody) -> Result<(Skeleton, Vec<Joint>), Flaw> {
+/// Turns, scales and moves a raw body so that it stands on the floor in metres, facing +z; returns its skeleton,
+/// which joints had to be placed between others, and how it was moved.
+pub(super) fn stand(raw: &mut RawBody) -> Result<(Skeleton, Vec<Joint>, Placement), Flaw> {
     check_joints(raw)?;
     let turn = upright(raw)?;
     let all = raw.positions.iter_mut().chain(&mut raw.normals).chain(raw.joints.iter_mut().map(|j| &mut j.at));
@@ -55,7 +74,8 @@ pub(super) fn stand(raw: &mut RawBody) -> Result<(Skeleton, Vec<Joint>), Flaw> {
     let origin = Vec3::new(middle.x, low, middle.z);
     let points = raw.positions.iter_mut().chain(raw.joints.iter_mut().map(|j| &mut j.at));
     points.for_each(|p| *p = (*p - origin) * *metres);
-    skeleton(raw, height * metres)
+    let (skeleton, placed) = skeleton(raw, height * metres)?;
+    Ok((skeleton, placed, Placement { turn, origin, metres: *metres }))
 }
 
 /// Where a joint that is known to be there stands.

@@ -37,8 +37,18 @@ struct GltfSkin {
     place: Mat4,
 }
 
+/// The joints of a raw body as the file has them, in the order of the raw ones.
+pub(super) struct BoundJoints {
+    /// All nodes of the file.
+    pub nodes: GltfNodes,
+    /// The node of each joint.
+    pub of: Vec<usize>,
+    /// Where each stood when the mesh was bound, in the file's space.
+    pub bound: Vec<Mat4>,
+}
+
 /// Reads the skinned meshes of a file, or those of the names `wanted` where there are any.
-pub(super) fn read(file: &GltfFile, wanted: &[String]) -> Result<RawBody, Flaw> {
+pub(super) fn read(file: &GltfFile, wanted: &[String]) -> Result<(RawBody, BoundJoints), Flaw> {
     let nodes = GltfNodes::read(&file.json)?;
     let shown = shown(&file.json, wanted)?;
     let used: BTreeSet<usize> = shown.iter().map(|s| s.skin).collect();
@@ -55,7 +65,8 @@ pub(super) fn read(file: &GltfFile, wanted: &[String]) -> Result<RawBody, Flaw> 
     for &skin in &used {
         skins[skin] = Some(open_skin(file, &nodes, skin, hips)?);
     }
-    let mut raw = RawBody { joints: raw_joints(&nodes, &bones, &skins), reading, ..RawBody::default() };
+    let bound = bound(&nodes, &bones, &skins);
+    let mut raw = RawBody { joints: raw_joints(&nodes, &bones, &bound), reading, ..RawBody::default() };
     if skins.iter().flatten().any(|skin| skin.inverse.is_none()) {
         raw.notes.push("it has no inverse bind matrices, so its rest pose is the one that its nodes show".into());
     }
@@ -69,7 +80,7 @@ pub(super) fn read(file: &GltfFile, wanted: &[String]) -> Result<RawBody, Flaw> 
             add(file, &nodes, &bones, skin, primitive, &mut raw)?;
         }
     }
-    Ok(raw)
+    Ok((raw, BoundJoints { nodes, of: bones, bound }))
 }
 
 /// The nodes that show a skinned mesh.
@@ -135,20 +146,25 @@ fn open_skin(file: &GltfFile, nodes: &GltfNodes, skin: usize, hips: Option<usize
     Ok(GltfSkin { joints, inverse: Some(inverse), place })
 }
 
-/// The joints and what is above them: each where it stood when the first skin that has it was bound.
-fn raw_joints(nodes: &GltfNodes, bones: &[usize], skins: &[Option<GltfSkin>]) -> Vec<RawJoint> {
+/// Where each joint stood when the first skin that has it was bound; what no skin has stands where the file's nodes show it.
+fn bound(nodes: &GltfNodes, bones: &[usize], skins: &[Option<GltfSkin>]) -> Vec<Mat4> {
     let bound = |node: usize| {
         skins.iter().flatten().find_map(|skin| {
             let k = skin.joints.iter().position(|j| *j == node)?;
             Some(skin.place * skin.inverse.as_ref()?[k].inverse())
         })
     };
-    let joint = |&node: &usize| RawJoint {
+    bones.iter().map(|&node| bound(node).unwrap_or_else(|| nodes.global(node))).collect()
+}
+
+/// The joints and what is above them, where they were bound.
+fn raw_joints(nodes: &GltfNodes, bones: &[usize], bound: &[Mat4]) -> Vec<RawJoint> {
+    let joint = |(&node, bound): (&usize, &Mat4)| RawJoint {
         name: nodes.name(node).into(),
         parent: nodes.parent(node).and_then(|p| bones.binary_search(&p).ok()),
-        at: bound(node).unwrap_or_else(|| nodes.global(node)).transform_point3(Vec3::ZERO),
+        at: bound.transform_point3(Vec3::ZERO),
     };
-    bones.iter().map(joint).collect()
+    bones.iter().zip(bound).map(joint).collect()
 }
 
 /// Adds the triangles of one primitive.

@@ -10,6 +10,7 @@ use crate::body::Measures;
 use crate::export::{DressedBody, glb};
 use crate::limits::MAX_BODY_VERTICES;
 
+mod animation;
 mod damage;
 
 /// Our own female body, and its GLB file: every import test begins with it.

@@ -84,11 +84,11 @@ pub struct RunArgs {
     /// Folder for the positions of every vertex; it is made if missing
     #[arg(long, value_name = "DIR")]
     pub dump: Option<PathBuf>,
-    /// How positions are written: csv or ply
+    /// How positions are written: csv or ply, a file a frame; glb, usd, mdd or pc2, all frames in one (docs/export.md)
     #[arg(
         long = "dump-format",
         value_name = "F",
-        value_parser = one_of([Format::Csv, Format::Ply], Format::ending),
+        value_parser = one_of(Format::ALL, Format::ending),
         default_value = Format::Csv.ending()
     )]
     pub format: Format,
@@ -148,7 +148,7 @@ pub fn run(args: &RunArgs) -> Result<(), AppError> {
     let mut dump = None;
     if let Some(folder) = &args.dump {
         let files = (scene.steps() / args.every + 1) * scene.garments.len() as u64;
-        if files > MAX_FILES {
+        if files > MAX_FILES && !args.format.is_one_file() {
             let cure = "give a larger --every or fewer --frames";
             return Err(AppError::Usage(format!("--dump would write {files} files, more than {MAX_FILES}; {cure}")));
         }
@@ -158,6 +158,7 @@ pub fn run(args: &RunArgs) -> Result<(), AppError> {
         dump = Some(Dump::new(folder, args.format, args.every));
     }
     let mut runner = Runner::counting(scene, HeapProbe::new(counted)).map_err(AppError::input)?;
+    dump.iter_mut().try_for_each(|dump| dump.begin(&runner))?;
     let crossings = play(&mut runner, &words, dump.as_mut())?;
     let dumped = dump.as_ref().map_or(0, Dump::frames);
     dump.map_or(Ok(()), Dump::finish)?;

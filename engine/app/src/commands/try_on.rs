@@ -2,6 +2,8 @@
 //!
 //! Reads: a session, garments, measures. Writes: pictures, a film, a report. Budget: 20 s with pictures. Thread: the main thread.
 
+mod animated;
+mod physics;
 mod worn;
 
 use clap::builder::RangedI64ValueParser;
@@ -15,8 +17,8 @@ use glam::Affine3A;
 use toile_assets::adapt::MeshReport;
 use toile_assets::body::Body;
 use toile_assets::export::{self, DressedBody, glb};
-use toile_assets::garment::Garment;
-use toile_assets::limits::{STEP_HZ, STEP_SECONDS};
+use toile_assets::import::avatar::MovingBody;
+use toile_assets::limits::STEP_SECONDS;
 use toile_assets::rig::Rig;
 use toile_assets::skeleton::{BONES, Joint};
 use toile_assets::{drafting, wardrobe};
@@ -28,18 +30,15 @@ use toile_engine::lines::{CAPACITY, Kind, Lines};
 use toile_engine::triple_buffer::Reader;
 use toile_fitting::dress::choice::Choice;
 use toile_fitting::dress::measured::{self, Measured};
-use toile_fitting::dress::player::Player;
+use toile_fitting::dress::motion::{self, Motion};
 use toile_fitting::dress::wish::{self, Wish};
 use toile_fitting::dress::{body, session};
-use toile_fitting::scene::StepTimes;
-use toile_fitting::scene::contact::ContactReport;
 use toile_fitting::wearing;
-use toile_sensors::frame::Joints;
 use toile_view::drawn_frame::DrawnFrame;
 use toile_view::figure::{Appearance, Figure};
 use toile_view::fit_map::{self, JudgedTightness};
 
-use crate::arguments::{AppearanceArgs, Printing, TapeArgs, one_of, quality};
+use crate::arguments::{AppearanceArgs, ExportArgs, Printing, TapeArgs, one_of, quality};
 use crate::commands::crossings::CrossingCount;
 use crate::exit::AppError;
 use crate::output::Inputs;
@@ -47,6 +46,7 @@ use crate::output::OutputFolder;
 use crate::pictures::{FinalState, Pictures, ROWS, STILL_ROWS, WorstMoment};
 use crate::renderer::{PictureRenderer, RendererChoice};
 use crate::report::{self, Document, Recommendation, TryOn, ZoneFitReport};
+use crate::session_export::DressedExport;
 use crate::summary;
 use crate::terminal::{self, Paint, Progress, Words};
 use crate::video::Video;
@@ -77,6 +77,9 @@ pub struct TryOnArgs {
     /// Body to show: female, male, or a file (.glb, .gltf, .vrm) (default: by the garment)
     #[arg(long, value_name = "B", value_parser = Wearer::parse)]
     pub body: Option<Wearer>,
+    /// Animation of the file of --body that moves it, in place of a session
+    #[arg(long, value_name = "NAME", requires = "body", conflicts_with = "session")]
+    pub animation: Option<String>,
     #[command(flatten)]
     look: AppearanceArgs,
     /// Measures taken by tape
@@ -94,6 +97,9 @@ pub struct TryOnArgs {
     /// Write the dressed body at the session's end as dressed.glb too
     #[arg(long)]
     pub glb: bool,
+    /// What is written for other tools
+    #[command(flatten)]
+    pub export: ExportArgs,
     /// Try the outfit with arms raised and sitting too, and say where it pulls
     #[arg(long)]
     pub poses: bool,
@@ -194,15 +200,20 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     out.check(&args.names())?;
     let wish = wish(args)?;
     let choices = wish.choices()?;
-    let mut session = session::open(args.session.as_deref(), None)?;
-    let mut measured = measured::measure(&session, wish.facts())?;
+    let moving = animated::body(args, &choices)?;
+    let mut session = match &moving {
+        Some(moving) => motion::session_of(moving),
+        None => session::open(args.session.as_deref(), None)?,
+    };
+    let still = moving.as_ref().map(motion::standing_still);
+    let mut measured = measured::measure(still.as_ref().unwrap_or(&session), wish.facts())?;
     let has_joints = !session.joints.is_empty();
     if !has_joints {
         words.print_line("there are no joints: the fitted body is followed through the depth");
     }
     measured::add_joints(&mut session, &measured)?;
     let track = session::standing(&session)?;
-    let (body, note) = worn_body(args, &mut measured, &choices, has_joints)?;
+    let (body, note) = worn_body(args, &mut measured, &choices, (has_joints, moving.as_ref()))?;
     let notes: Vec<String> = note.into_iter().chain(measured.best.notes.iter().cloned()).collect();
     let outfit = worn::put_on(&choices, args.size.as_deref(), &args.tuck, &measured, &body)?;
     let (recommendations, judged) = (worn::recommendations(&outfit.worn), outfit.judged());
@@ -215,7 +226,8 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     let poses = if args.poses { wearing::in_poses(&body, &rig, &garments, &settings)? } else { Vec::new() };
     let (mut frame, mut reader) = Frame::new(body, &rig, garments, settings).map_err(AppError::internal)?;
     let title = title(&recommendations);
-    let played = play((args, &words, &title, &judged), &mut out, &mut renderer, &mut frame, &mut reader, &track)?;
+    let motion = moving.as_ref().map_or_else(|| Motion::of_joints(&track), |m| Motion::of_poses(&m.poses));
+    let played = play((args, &words, &title, &judged), &mut out, &mut renderer, (&mut frame, &mut reader), motion)?;
 
     if args.glb {
         out.write("dressed.glb", &dressed(&frame, reader.latest()))?;
@@ -231,12 +243,14 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
             measurements: report::measures::measurements(&measured.best, measured.population),
             recommendation: recommendations.next().unwrap_or_default(),
             others: recommendations.collect(),
-            physics: physics(&frame),
+            physics: physics::physics(&frame),
             crossings: played.crossings,
-            contact: contact(&frame),
+            contact: physics::contact(&frame),
             meshes,
             hidden_mm: played.hidden_mm.map(|max| report::Penetration { max }),
             poses,
+            animation: moving.as_ref().map(animated::report).transpose()?,
+            export: played.export,
             state_hash: report::hash_text(frame.state_hash()),
             renderer: played.renderer,
             files,
@@ -264,14 +278,17 @@ fn worn_body(
     args: &TryOnArgs,
     measured: &mut Measured,
     choices: &[Choice],
-    has_joints: bool,
+    (has_joints, moving): (bool, Option<&MovingBody>),
 ) -> Result<(Body, Option<String>), AppError> {
     let sex = measured.sex(wish::population(choices)?);
     if let Some(Wearer::File(file)) = &args.body {
-        let imported = crate::commands::body::wearer(file, sex)?;
-        measured.best = body::read_off(measured.best.clone(), &imported.body);
+        let shown = match moving {
+            Some(moving) => moving.imported.body.clone(),
+            None => crate::commands::body::wearer(file, sex)?.body,
+        };
+        measured.best = body::read_off(measured.best.clone(), &shown);
         let note = format!("the body shown is {}, and the measures are read off it", file.display());
-        return Ok((imported.body, Some(note)));
+        return Ok((shown, Some(note)));
     }
     match &measured.fitted {
         Some(fitted) if !has_joints && args.tape.measures.is_empty() => Ok((fitted.body.body.clone(), None)),
@@ -284,6 +301,7 @@ struct Played {
     /// Who drew; nobody where no picture was asked for.
     renderer: Option<String>,
     film: Option<PathBuf>,
+    export: Option<report::ExportReport>,
     crossings: report::CrossingReport,
     /// What the pictures hid at most (mm); none where there are none.
     hidden_mm: Option<f64>,
@@ -294,12 +312,10 @@ fn play(
     (args, words, title, judged): (&TryOnArgs, &Words, &str, &[JudgedTightness]),
     out: &mut OutputFolder,
     renderer: &mut PictureRenderer,
-    frame: &mut Frame,
-    reader: &mut Reader<Snapshot>,
-    track: &[Joints],
+    (frame, reader): (&mut Frame, &mut Reader<Snapshot>),
+    mut motion: Motion<'_>,
 ) -> Result<Played, AppError> {
-    let mut player = Player::new(track);
-    let steps = player.steps();
+    let steps = motion.steps();
     let appearance = args.appearance()?;
     renderer.prepare(&Figure::of(frame.body(), appearance), frame.garments());
     let mut pictures = None;
@@ -312,16 +328,20 @@ fn play(
         Video::begin(path, DrawnFrame::new(frame, appearance), steps, bar)
     };
     let mut video = args.video.as_ref().map(film).transpose()?;
+    let mut export = export(args, out, frame, steps)?;
     let playing = (pictures.is_none() && video.is_none()).then(|| words.bar(steps, "playing"));
     let mut lines = Lines::new(if args.lines.is_empty() { 0 } else { CAPACITY });
     let mut crossings = CrossingCount::new(frame.garments(), f64::from(STEP_SECONDS));
     let mut worst = None;
-    frame.dress(&track[0]);
+    motion.dress(frame);
     for tick in 0..steps {
-        frame.step(&player.step());
+        motion.step(frame);
         playing.iter().for_each(|bar| bar.inc(1));
         if crossings.after(tick, frame.cloths()) && args.pictures {
             worst = Some(worst_moment(frame, reader.latest(), &crossings.report()));
+        }
+        if let Some(export) = &mut export {
+            export.after(tick, frame, reader.latest(), out)?;
         }
         if let Some(pictures) = pictures.as_mut().filter(|p| p.wants(tick)) {
             draw_lines(&mut lines, &args.lines, frame);
@@ -344,12 +364,35 @@ fn play(
     }
     let film = video.map(Video::finish).transpose()?;
     hidden_m = film.iter().map(|(_, hidden)| *hidden).fold(hidden_m, f32::max);
+    let exported = |frames| report::ExportReport {
+        formats: args.export.formats.iter().map(|f| f.name()).collect(),
+        frames,
+        rate_hz: args.export.rate_hz,
+    };
+    let export = export.map(|export| export.finish(out)).transpose()?.map(exported);
     Ok(Played {
+        export,
         renderer: drew.then(|| renderer.describe()),
         film: film.map(|(path, _)| path),
         crossings: crossings.report(),
         hidden_mm: drew.then_some(f64::from(hidden_m) * 1e3),
     })
+}
+
+/// The files of the motion, where any are asked for.
+fn export(
+    args: &TryOnArgs,
+    out: &mut OutputFolder,
+    frame: &Frame,
+    steps: u64,
+) -> Result<Option<DressedExport>, AppError> {
+    let ExportArgs { formats, rate_hz } = &args.export;
+    if formats.is_empty() {
+        return Ok(None);
+    }
+    let timing = (steps, args.export.stride(), f64::from(*rate_hz));
+    let skin = args.appearance()?.skin.colour().to_array();
+    DressedExport::begin(out, frame, skin, formats, timing).map(Some)
 }
 
 /// The direction in which the shopper looks (rad from +z towards +x).
@@ -406,57 +449,6 @@ fn title(recommendations: &[Recommendation]) -> String {
         format!("{}, size {}\n{}", r.garment, r.size, zones.collect::<Vec<_>>().join("   "))
     };
     recommendations.iter().map(line).collect::<Vec<_>>().join("\n")
-}
-
-/// What contact of cloth with cloth did, dressing included.
-fn contact(frame: &Frame) -> Option<ContactReport> {
-    frame.layers().map(|layers| ContactReport::from(layers.counts()))
-}
-
-fn physics(frame: &Frame) -> report::PhysicsReport {
-    let meters = frame.meters();
-    let us = |quantile: f64| meters.step_ns.value_at_quantile(quantile) as f64 * 1e-3;
-    let strain = meters.strain();
-    let mut warnings = Vec::new();
-    for (cloth, garment) in frame.cloths().iter().zip(frame.garments()) {
-        let events = cloth.events;
-        if events.rolled_back > 0 {
-            warnings
-                .push(format!("{}: {} steps were not finite and were rolled back", garment.name, events.rolled_back));
-        }
-        if events.speed_limited > 0 {
-            warnings.push(format!(
-                "{}: particles were held at the speed limit {} times",
-                garment.name, events.speed_limited
-            ));
-        }
-    }
-    warnings.extend(contact(frame).iter().flat_map(ContactReport::warnings));
-    let held = frame.colliders().held();
-    if held > 0 {
-        warnings.push(format!("collision spheres jumped or were not finite and were held {held} times"));
-    }
-    if frame.broken() > 0 {
-        warnings.push(format!("{} steps broke off in a worker; the garments kept their last places", frame.broken()));
-    }
-    report::PhysicsReport {
-        hz: STEP_HZ,
-        quality: frame.settings().quality.name(),
-        lanes: frame.settings().width.lanes(),
-        workers: frame.settings().workers,
-        substeps: frame.cloths().iter().map(|c| c.substeps()).max().unwrap_or(0),
-        particles: frame.garments().iter().map(Garment::particles).sum(),
-        steps: frame.tick(),
-        step_us: StepTimes { p50: us(0.5), p99: us(0.99), p999: us(0.999), max: meters.step_ns.max() as f64 * 1e-3 },
-        strain: report::StrainReport {
-            mean: f64::from(strain.mean),
-            p99: f64::from(strain.p99),
-            max: f64::from(strain.max),
-        },
-        penetration_mm: report::Penetration { max: f64::from(meters.penetration_max) * 1e3 },
-        nonfinite: frame.cloths().iter().map(|c| c.events.rolled_back).sum(),
-        warnings,
-    }
 }
 
 #[cfg(test)]

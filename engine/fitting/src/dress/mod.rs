@@ -13,6 +13,7 @@ pub mod choice;
 pub mod depth;
 pub mod dressed;
 pub mod measured;
+pub mod motion;
 pub mod offer;
 pub mod outfit;
 pub mod player;

@@ -7,12 +7,15 @@
 use std::fmt::Write as _;
 
 use glam::Vec3;
+use toile_assets::export::session::ExportFrame;
+use toile_assets::export::{ExportFormat, ExportPlan, FrameRate, MovingPart, SessionExport, SurfaceLook};
 use toile_assets::garment::check::corners;
-use toile_assets::scene_file::UserMesh;
+use toile_assets::scene_file::{SceneGarment, UserMesh};
 use toile_fitting::scene::Runner;
 
 use crate::exit::AppError;
 use crate::output::OutputFolder;
+use crate::session_export;
 
 /// Name of the file that lists the others.
 pub const INDEX: &str = "index.csv";
@@ -25,14 +28,32 @@ pub enum Format {
     Csv,
     /// Binary PLY with faces.
     Ply,
+    /// All frames in the files of a format of motion.
+    Moving(ExportFormat),
 }
 
 impl Format {
-    /// Ending of its files.
+    /// All of them.
+    pub const ALL: [Self; 6] = [
+        Self::Csv,
+        Self::Ply,
+        Self::Moving(ExportFormat::Glb),
+        Self::Moving(ExportFormat::Usd),
+        Self::Moving(ExportFormat::Mdd),
+        Self::Moving(ExportFormat::Pc2),
+    ];
+
+    /// Whether all frames are in the same files.
+    pub fn is_one_file(self) -> bool {
+        matches!(self, Self::Moving(_))
+    }
+
+    /// Name of the format, which is the ending of its files.
     pub fn ending(self) -> &'static str {
         match self {
             Self::Csv => "csv",
             Self::Ply => "ply",
+            Self::Moving(format) => format.name(),
         }
     }
 }
@@ -45,12 +66,30 @@ pub struct Dump {
     every: u64,
     index: String,
     frame: u64,
+    /// The files of a format of motion.
+    moving: Option<SessionExport>,
 }
 
 impl Dump {
     /// A dump of every `every`th step.
     pub fn new(folder: OutputFolder, format: Format, every: u64) -> Self {
-        Self { folder, format, every, index: "frame,step,time_s,garment,file\n".into(), frame: 0 }
+        let index = "frame,step,time_s,garment,file\n".into();
+        Self { folder, format, every, index, frame: 0, moving: None }
+    }
+
+    /// Opens the files of a format of motion; others are opened frame by frame.
+    ///
+    /// # Errors
+    /// More than the format holds, and a file that cannot be written.
+    pub fn begin(&mut self, runner: &Runner) -> Result<(), AppError> {
+        let Format::Moving(format) = self.format else { return Ok(()) };
+        let scene = runner.scene();
+        let frames = (scene.steps() / self.every + 1) as usize;
+        let rate = FrameRate { frames, hz: scene.step_hz / self.every as f64 };
+        let plan = ExportPlan::new(&scene.name, &[format], scene.garments.iter().map(part).collect(), rate)
+            .map_err(|e| AppError::input(format!("--dump-format {}: {e}", format.name())))?;
+        self.moving = Some(session_export::begin(&mut self.folder, plan)?);
+        Ok(())
     }
 
     /// Writes the state of a run if its step is to be dumped; step 0 is the start.
@@ -62,11 +101,19 @@ impl Dump {
             return Ok(());
         }
         let scene = runner.scene();
+        if let Some(moving) = &mut self.moving {
+            let all: Vec<Vec<Vec3>> = (0..scene.garments.len()).map(|k| runner.positions(k).collect()).collect();
+            let positions: Vec<&[Vec3]> = all.iter().map(Vec::as_slice).collect();
+            let frame = ExportFrame { palette: None, positions: &positions };
+            moving.add(&frame).map_err(|e| session_export::failed(&self.folder, e))?;
+            self.frame += 1;
+            return Ok(());
+        }
         for (k, garment) in scene.garments.iter().enumerate() {
             let file = format!("{}-{:06}.{}", garment.name, self.frame, self.format.ending());
             let bytes = match self.format {
-                Format::Csv => csv(runner.positions(k)).into_bytes(),
                 Format::Ply => ply(runner.positions(k), &garment.mesh),
+                _ => csv(runner.positions(k)).into_bytes(),
             };
             self.folder.write(&file, &bytes)?;
             let (frame, step, time, name) = (self.frame, runner.steps(), runner.time(), &garment.name);
@@ -87,9 +134,25 @@ impl Dump {
     /// # Errors
     /// Where a file cannot be written or named.
     pub fn finish(mut self) -> Result<(), AppError> {
-        self.folder.write(INDEX, self.index.as_bytes())?;
+        match self.moving.take() {
+            Some(moving) => moving.finish().map_err(|e| session_export::failed(&self.folder, e))?,
+            None => self.folder.write(INDEX, self.index.as_bytes())?,
+        }
         self.folder.commit()?;
         Ok(())
+    }
+}
+
+/// A garment of the scene as it is written: the user's mesh, in the colour of its fabric.
+fn part(garment: &SceneGarment) -> MovingPart {
+    let uvs = if garment.shape.uvs.len() == garment.mesh.faces.len() { garment.shape.uvs.clone() } else { Vec::new() };
+    MovingPart {
+        name: garment.name.clone(),
+        vertices: garment.mesh.start.len(),
+        faces: garment.mesh.faces.clone(),
+        uvs,
+        look: SurfaceLook { opacity: garment.fabric.opacity, ..SurfaceLook::cloth(garment.fabric.colour) },
+        skinned: None,
     }
 }
 

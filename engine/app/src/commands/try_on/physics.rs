@@ -1,0 +1,61 @@
+//! How the physics of a try-on went: times, strain, contact, and what was out of order.
+
+use toile_assets::garment::Garment;
+use toile_assets::limits::STEP_HZ;
+use toile_engine::frame::Frame;
+use toile_fitting::scene::StepTimes;
+use toile_fitting::scene::contact::ContactReport;
+
+use crate::report;
+
+/// What contact of cloth with cloth did, dressing included.
+pub fn contact(frame: &Frame) -> Option<ContactReport> {
+    frame.layers().map(|layers| ContactReport::from(layers.counts()))
+}
+
+/// Settings, times and errors.
+pub fn physics(frame: &Frame) -> report::PhysicsReport {
+    let meters = frame.meters();
+    let us = |quantile: f64| meters.step_ns.value_at_quantile(quantile) as f64 * 1e-3;
+    let strain = meters.strain();
+    let mut warnings = Vec::new();
+    for (cloth, garment) in frame.cloths().iter().zip(frame.garments()) {
+        let events = cloth.events;
+        if events.rolled_back > 0 {
+            warnings
+                .push(format!("{}: {} steps were not finite and were rolled back", garment.name, events.rolled_back));
+        }
+        if events.speed_limited > 0 {
+            warnings.push(format!(
+                "{}: particles were held at the speed limit {} times",
+                garment.name, events.speed_limited
+            ));
+        }
+    }
+    warnings.extend(contact(frame).iter().flat_map(ContactReport::warnings));
+    let held = frame.colliders().held();
+    if held > 0 {
+        warnings.push(format!("collision spheres jumped or were not finite and were held {held} times"));
+    }
+    if frame.broken() > 0 {
+        warnings.push(format!("{} steps broke off in a worker; the garments kept their last places", frame.broken()));
+    }
+    report::PhysicsReport {
+        hz: STEP_HZ,
+        quality: frame.settings().quality.name(),
+        lanes: frame.settings().width.lanes(),
+        workers: frame.settings().workers,
+        substeps: frame.cloths().iter().map(|c| c.substeps()).max().unwrap_or(0),
+        particles: frame.garments().iter().map(Garment::particles).sum(),
+        steps: frame.tick(),
+        step_us: StepTimes { p50: us(0.5), p99: us(0.99), p999: us(0.999), max: meters.step_ns.max() as f64 * 1e-3 },
+        strain: report::StrainReport {
+            mean: f64::from(strain.mean),
+            p99: f64::from(strain.p99),
+            max: f64::from(strain.max),
+        },
+        penetration_mm: report::Penetration { max: f64::from(meters.penetration_max) * 1e3 },
+        nonfinite: frame.cloths().iter().map(|c| c.events.rolled_back).sum(),
+        warnings,
+    }
+}
