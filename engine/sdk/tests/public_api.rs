@@ -143,6 +143,13 @@ fn open_method(item: &mut ImplItem) -> bool {
     }
 }
 
+/// Items as text.
+fn written(items: Vec<Item>) -> String {
+    let mut file = syn::parse_file("").unwrap();
+    file.items = items;
+    prettyplease::unparse(&file)
+}
+
 /// The whole of it, as Rust without bodies: what is re-exported, then what each file defines of it.
 fn list() -> String {
     let door = parsed(&here("src/lib.rs"));
@@ -168,7 +175,7 @@ fn list() -> String {
     for file in files {
         items.extend(parsed(&file).items.into_iter().filter_map(|item| shown(item, &known)));
     }
-    prettyplease::unparse(&syn::File { shebang: None, attrs: Vec::new(), items })
+    written(items)
 }
 
 #[test]
@@ -205,12 +212,11 @@ fn every_item_that_is_re_exported_is_found() {
         }
     }
     known.remove("glam");
+    let ends = |rest: &str| !rest.starts_with(|c: char| c.is_alphanumeric() || c == '_');
     let defined = |name: &String| {
         ["struct", "enum", "fn", "const", "type"].iter().any(|kind| {
-            let found = text
-                .match_indices(&format!("pub {kind} {name}"))
-                .any(|(at, found)| !text[at + found.len()..].starts_with(|c: char| c.is_alphanumeric() || c == '_'));
-            found
+            let wanted = format!("pub {kind} {name}");
+            text.match_indices(&wanted).any(|(at, found)| ends(&text[at + found.len()..]))
         })
     };
     let missing: Vec<&String> = known.iter().filter(|name| !defined(name)).collect();
@@ -232,7 +238,7 @@ fn what_callers_cannot_name_is_left_out_and_what_they_can_is_kept() {
         pub fn open() {}
     };
     let items = file.items.into_iter().filter_map(|item| shown(item, &known)).collect();
-    let text = prettyplease::unparse(&syn::File { shebang: None, attrs: Vec::new(), items });
+    let text = written(items);
     let words: Vec<&str> = text.split_whitespace().collect();
     let wanted = "#[derive(Debug)] pub struct Open { pub a: u8, _private: (), } impl Open { pub fn of(a: u8) -> Self {} } \
                   impl Drop for Open {}";

@@ -74,7 +74,7 @@ mod tests {
 
     #[test]
     fn steps_last_from_the_first_frame_to_the_last() {
-        assert_eq!(Player::new(&track(31)).steps(), 119);
-        assert_eq!((Player::new(&track(1)).steps(), Player::new(&[]).steps()), (1, 0));
+        assert_eq!(Player::new(track(31)).steps(), 119);
+        assert_eq!((Player::new(track(1)).steps(), Player::new(Vec::new()).steps()), (1, 0));
     }
 }

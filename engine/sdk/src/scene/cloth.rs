@@ -9,7 +9,7 @@ use toile_view::image::linear;
 use toile_view::scene::{Colours, Material, Surface};
 
 use super::vertex_order::triangles;
-use super::{GarmentStats, WornGarment};
+use super::worn::{GarmentStats, WornGarment, no_body};
 use crate::error::{Error, Result};
 use crate::picture::{self, Look, Picture, View};
 
@@ -91,7 +91,7 @@ impl ClothScene {
     pub fn pictures(&self, views: &[View], size: [u32; 2], look: Look) -> Result<Vec<Picture>> {
         let size = picture::checked_size(size)?;
         if look != Look::Fabric {
-            return Err(super::no_body("a fit map"));
+            return Err(no_body("a fit map"));
         }
         let mut meshes = Vec::new();
         for (garment, triangles) in self.triangles.iter().enumerate() {

@@ -20,7 +20,7 @@ use toile_view::fit_map::{self, JudgedTightness};
 
 use super::options::{DressOptions, Motion, check_count, checked, first_joints};
 use super::vertex_order::VertexOrder;
-use super::{GarmentStats, WornGarment};
+use super::worn::{GarmentStats, WornGarment};
 use crate::body::Body;
 use crate::error::{Error, Result};
 use crate::fit::Recommendation;

@@ -8,28 +8,27 @@ mod cloth;
 mod dressed;
 mod options;
 mod vertex_order;
+mod worn;
 
 use std::fmt::Write;
 use std::path::Path;
 
 use glam::Vec3;
-use serde::Serialize;
 use toile_assets::limits::STEP_HZ;
 use toile_assets::mesh::vertex_normals;
 use toile_assets::scene_file::{SceneFile, SceneSource};
-use toile_engine::cloth::Cloth;
-use toile_engine::cloth::measure::Strain;
 use toile_sensors::frame::Joints;
 
 use crate::body::Body;
 use crate::error::{Error, Result};
-use crate::fit::Recommendation;
 use crate::garment::Garment;
 use crate::picture::{Look, Picture, View};
 use cloth::ClothScene;
 use dressed::DressedScene;
+use worn::no_body;
 
 pub use options::{DressOptions, Motion};
+pub use worn::{GarmentStats, WornGarment};
 
 /// Length of a step of a dressed body (s). Said here once: a scene file may have another, so ask [`Scene::time_step`] for a
 /// scene's own.
@@ -45,42 +44,6 @@ pub struct Scene {
 enum SceneKind {
     Dressed(Box<DressedScene>),
     Cloth(Box<ClothScene>),
-}
-
-/// A garment of a scene.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct WornGarment {
-    /// What it was opened by, or the name that the scene file gives it.
-    pub name: String,
-    /// Code of its size; empty in a scene file.
-    pub size: String,
-    /// Its fabric.
-    pub fabric: String,
-    /// Vertices in the caller's order.
-    pub vertices: usize,
-    /// Triangles.
-    pub faces: usize,
-    /// Layers of a mesh that lie over each other; 1 of all else.
-    pub layers: usize,
-    /// How its size fits over what is worn beneath; none of a mesh without sizes and in a scene file.
-    pub fit: Option<Recommendation>,
-    /// What was repaired in a mesh and what became of its pieces, a sentence each.
-    pub notes: Vec<String>,
-}
-
-/// How a garment does at the moment.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct GarmentStats {
-    /// Mean strain of warp and weft edges, |length / rest - 1| (1); of a mesh in layers the worst layer's, as all of these.
-    pub strain_mean: f32,
-    /// 99th percentile of it (1).
-    pub strain_p99: f32,
-    /// The worst edge's (1).
-    pub strain_max: f32,
-    /// Deepest point of a free particle inside of the body or the colliders (mm).
-    pub penetration_mm: f32,
-    /// Steps so far that were not finite and were rolled back.
-    pub rolled_back: u64,
 }
 
 /// Everything that a display needs of one moment, copied.
@@ -395,22 +358,6 @@ impl Scene {
     }
 }
 
-impl GarmentStats {
-    /// With one more layer.
-    fn add(&mut self, strain: Strain, penetration_m: f32, cloth: &Cloth) {
-        self.strain_mean = self.strain_mean.max(strain.mean);
-        self.strain_p99 = self.strain_p99.max(strain.p99);
-        self.strain_max = self.strain_max.max(strain.max);
-        self.penetration_mm = self.penetration_mm.max(penetration_m * 1e3);
-        self.rolled_back += cloth.events.rolled_back;
-    }
-}
-
 fn fill(to: &mut [Vec3], from: impl Iterator<Item = Vec3>) {
     to.iter_mut().zip(from).for_each(|(to, from)| *to = from);
-}
-
-/// That a scene file has nobody in it.
-fn no_body(what: &str) -> Error {
-    Error::usage(format!("a scene file has no body, so that there is no {what}; make the scene by Scene::dress"))
 }
