@@ -87,7 +87,7 @@ impl Dump {
         let frames = (scene.steps() / self.every + 1) as usize;
         let rate = FrameRate { frames, hz: scene.step_hz / self.every as f64 };
         let plan = ExportPlan::new(&scene.name, &[format], scene.garments.iter().map(part).collect(), rate)
-            .map_err(|e| AppError::input(format!("--dump-format {}: {e}", format.name())))?;
+            .map_err(|e| AppError::Usage(format!("--dump-format {}: {e}", format.name())))?;
         self.moving = Some(session_export::begin(&mut self.folder, plan)?);
         Ok(())
     }
