@@ -16,6 +16,7 @@ use toile_fitting::dress::offer::GarmentOffer;
 use toile_fitting::dress::session;
 use toile_fitting::dress::wish::Wish;
 use toile_fitting::live::dresser::{DressJob, DressOutcome, Dresser, ShopperSource};
+use toile_sdk::{Garment, Quality, Recording, TryOnOptions, try_on};
 
 /// The measures of the contract.
 const MEASURES: [&str; 5] = ["stature_mm", "shoulder_breadth_mm", "chest_girth_mm", "waist_girth_mm", "hip_girth_mm"];
@@ -53,6 +54,29 @@ fn dressed_by_the_kiosk(path: &Path, garment: &str) -> (String, [f32; 5]) {
     (recipe.garments[0].1.clone(), recipe.measures.map(f32::from_bits))
 }
 
+/// The door of programs of others: what is measured, the size, and every bit of the cloth are those of the command.
+fn by_the_sdk(path: &Path, garment: &str, tried: &Value) {
+    let garments = [Garment::open(garment).unwrap()];
+    let options = TryOnOptions { quality: Quality::Draft, ..TryOnOptions::default() };
+    let own = try_on(&Recording::open(path).unwrap(), &garments, &options).unwrap();
+    let file = path.display();
+    for name in MEASURES {
+        let measure = own.measures.iter().find(|m| m.name == name.trim_end_matches("_mm")).unwrap();
+        let printed = &tried["measurements"][name];
+        for (own, printed) in [(measure.mm, &printed["value"]), (measure.sigma_mm, &printed["sigma"])] {
+            assert!((own - printed.as_f64().unwrap()).abs() < 0.051, "{file}: {name} is {own} and {printed}");
+        }
+    }
+    let fit = own.fits[0].as_ref().unwrap();
+    assert_eq!(tried["recommendation"]["size"], fit.size.as_str(), "{file}: sdk");
+    let verdicts: Vec<(String, f64, String)> =
+        fit.zones.iter().map(|z| (z.zone.into(), (z.ease_mm * 10.0).round() / 10.0, z.verdict.into())).collect();
+    assert_eq!(verdicts, zones(&tried["recommendation"]), "{file}: sdk");
+    assert_eq!(tried["physics"]["steps"], own.scene.steps(), "{file}: sdk");
+    let hash = format!("{:016x}", own.scene.state_hash());
+    assert_eq!(tried["state_hash"], hash.as_str(), "{file}: sdk");
+}
+
 fn one_answer(path: &Path, garment: &str) {
     let file = path.to_str().unwrap();
     let scratch = Scratch::new(&format!("one-answer-{}-{garment}", path.file_stem().unwrap().display()));
@@ -88,6 +112,7 @@ fn one_answer(path: &Path, garment: &str) {
         .collect();
     assert_eq!(judged.size, size_code);
     assert_eq!(by_window, zones(recommended), "{file}: verdicts");
+    by_the_sdk(path, garment, &tried);
 }
 
 #[test]
