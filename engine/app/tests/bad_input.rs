@@ -247,7 +247,11 @@ fn what_cannot_be_tucked_in_is_refused_with_the_cure() {
     let scratch = Scratch::new("tucked");
     refused(&scratch, &["--garment", "t-shirt", "--tuck", "t-shirt"], &["--tuck", "waistband", "wear trousers"]);
     let trousers = ["--garment", "wide-trousers"];
-    refused(&scratch, &[&trousers[..], &["--tuck", "t-shirt"]].concat(), &["t-shirt", "not worn", "name one of wide-trousers"]);
+    refused(
+        &scratch,
+        &[&trousers[..], &["--tuck", "t-shirt"]].concat(),
+        &["t-shirt", "not worn", "name one of wide-trousers"],
+    );
     refused(&scratch, &[&trousers[..], &["--tuck", "wide-trousers"]].concat(), &["wide-trousers", "do not tuck it in"]);
     let dress = [&trousers[..], &["--garment", "sun-dress", "--tuck", "sun-dress"]].concat();
     refused(&scratch, &dress, &["sun-dress", "below the waistband", "shorter"]);
