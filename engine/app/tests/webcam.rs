@@ -110,7 +110,7 @@ fn a_visit_at_the_kiosk_is_seen_by_a_webcam() {
         "kiosk",
         "--headless",
         "--seconds",
-        "20",
+        "30",
         "--config",
         "kiosk.toml",
         "--instance",
