@@ -19,7 +19,7 @@ fn a_scene_has_the_same_bits_in_every_format() {
         let output = scratch.toile(&[&line[..], &["--dump-format", format, "--quiet"]].concat());
         assert!(output.status.success(), "{format}: {}", String::from_utf8_lossy(&output.stderr));
     };
-    ["ply", "pc2", "mdd", "usd", "glb"].map(write);
+    ["ply", "pc2", "mdd", "usd", "glb"].into_iter().for_each(write);
     let file = |name: &str| fs::read(scratch.path().join(name)).unwrap_or_else(|e| panic!("{name}: {e}"));
     let mut names: Vec<String> = fs::read_dir(scratch.path().join("pc2"))
         .expect("the folder")
