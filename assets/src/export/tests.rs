@@ -221,7 +221,9 @@ fn a_body_has_what_linear_blending_misses() {
     let mut palette = [Affine3A::IDENTITY; BONES];
     let at = body.skeleton.at(Joint::LeftElbow);
     let bent = Affine3A::from_translation(at) * Affine3A::from_rotation_y(1.5) * Affine3A::from_translation(-at);
-    [Joint::LeftElbow, Joint::LeftWrist, Joint::LeftHand].iter().for_each(|j| palette[j.index()] = bent);
+    for joint in [Joint::LeftElbow, Joint::LeftWrist, Joint::LeftHand] {
+        palette[joint.index()] = bent;
+    }
     let blend = |v: usize| {
         let weighted = body.weights[v].iter().map(|(b, w)| glam::Mat4::from(palette[usize::from(b)]) * w);
         weighted.fold(glam::Mat4::ZERO, |sum, m| sum + m)

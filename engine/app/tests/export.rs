@@ -68,7 +68,7 @@ fn a_session_that_was_exported_is_played_again_as_an_animation() {
     let again = run(&again);
     assert_eq!(again["physics"]["steps"], 2 * (frames - 1));
     assert_eq!(again["physics"]["nonfinite"], 0);
-    // The skin is ours, but a limb's twist is shared out along it where the file has its end: raised arms are off by centimetres.
+    // The skin is ours; between the two are blending and the limbs' twist, which bones that are not read share out.
     let animation = &again["animation"];
     assert!(animation["skin_mean_mm"].as_f64().expect("a number") < 1.0, "{animation}");
     assert!(animation["skin_max_mm"].as_f64().expect("a number") < 40.0, "{animation}");

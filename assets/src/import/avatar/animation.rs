@@ -171,17 +171,17 @@ fn read_channel(
     };
     let (input, output) = (accessor("input")?, accessor("output")?);
     let whose = |what: &str| format!("{what} of node \"{}\"", joints.nodes.name(node));
-    let times: Vec<f64> = file.floats::<1>(input).map_err(has)?.into_iter().map(|[t]| f64::from(t)).collect();
+    let times: Vec<f64> = file.floats::<1>(input).map_err(|e| has(&e))?.into_iter().map(|[t]| f64::from(t)).collect();
     if times[0] < 0.0 || times.iter().any(|t| !t.is_finite()) || times.windows(2).any(|w| w[0] >= w[1]) {
         return Err(format!("has times that do not rise in the {}; export it again", whose("keys")));
     }
     let values: Vec<DVec4> = match path {
         AnimatedPath::Rotation => {
-            file.floats::<4>(output).map_err(has)?.into_iter().map(|v| v.map(f64::from).into()).collect()
+            file.floats::<4>(output).map_err(|e| has(&e))?.into_iter().map(|v| v.map(f64::from).into()).collect()
         }
         _ => file
             .floats::<3>(output)
-            .map_err(has)?
+            .map_err(|e| has(&e))?
             .into_iter()
             .map(|[x, y, z]| DVec3::from([x, y, z].map(f64::from)).extend(0.0))
             .collect(),
@@ -201,7 +201,7 @@ fn read_channel(
 }
 
 /// What is wrong with an accessor, behind the animation's name.
-fn has(reason: String) -> String {
+fn has(reason: &str) -> String {
     format!("cannot be read: {reason}")
 }
 

@@ -7,6 +7,7 @@
 mod animation;
 mod carry;
 mod error;
+mod imported;
 mod moving;
 pub mod names;
 mod nodes;
@@ -31,6 +32,7 @@ use crate::skeleton::{Joint, Skeleton};
 use animation::GltfClip;
 pub use carry::PruningLoss;
 pub use error::{AvatarError, Flaw};
+pub use imported::{ImportReport, ImportedBody};
 pub use moving::MovingBody;
 use moving::MovingSkin;
 use raw::RawBody;
@@ -51,34 +53,6 @@ impl Default for ImportOptions {
     fn default() -> Self {
         Self { sex: Sex::Female, meshes: Vec::new(), allow_holes: false }
     }
-}
-
-/// A body, and what was found in its file.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ImportedBody {
-    /// The body in its rest pose: metres, y up, facing +z, the floor at y = 0.
-    pub body: Body,
-    /// What was found in the file and how it was taken.
-    pub report: ImportReport,
-}
-
-/// What was found in a file.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct ImportReport {
-    /// Dialect of its joints' names.
-    pub dialect: &'static str,
-    /// For each of our joints that was found: its H-Anim name, and the file's own.
-    pub joints: Vec<(String, String)>,
-    /// Weight lost by pruning influences.
-    pub pruned: PruningLoss,
-    /// Connected pieces of the surface.
-    pub parts: usize,
-    /// Edges with a triangle on one side alone.
-    pub boundary_edges: usize,
-    /// Edges of more than two triangles.
-    pub crowded_edges: usize,
-    /// What was found and how it was taken, one sentence each.
-    pub notes: Vec<String>,
 }
 
 /// Imports the skinned meshes of a `.gltf`, `.glb` or `.vrm` file.

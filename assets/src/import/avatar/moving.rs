@@ -8,9 +8,9 @@
 
 use glam::{DMat3, DMat4, DQuat, DVec3, DVec4, Quat};
 
-use super::ImportedBody;
 use super::animation::GltfClip;
 use super::error::Flaw;
+use super::imported::ImportedBody;
 use super::raw::{RawBody, RawInfluences};
 use super::skinned::BoundJoints;
 use crate::limits::STEP_HZ;

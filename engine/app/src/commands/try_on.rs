@@ -143,9 +143,14 @@ impl TryOnArgs {
         }
     }
 
+    /// The file of the body, where it is one.
+    fn body_file(&self) -> Option<&Path> {
+        if let Some(Wearer::File(file)) = &self.body { Some(file.as_path()) } else { None }
+    }
+
     /// Files that are read, and so must not be overwritten.
     pub fn inputs(&self) -> Inputs {
-        let body = if let Some(Wearer::File(file)) = &self.body { Some(file.as_path()) } else { None };
+        let body = self.body_file();
         // A garment that is built in is no file, also where a folder has its name.
         let is_built_in = |name: &str| wardrobe::names().contains(&name) || drafting::style(name).is_some();
         let garments = self.garments.iter().filter(|name| !is_built_in(name)).map(Path::new);
@@ -200,7 +205,8 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     out.check(&args.names())?;
     let wish = wish(args)?;
     let choices = wish.choices()?;
-    let moving = animated::body(args, &choices)?;
+    let animation = args.animation.as_deref();
+    let moving = animation.map(|name| animated::body(args.body_file(), name, &choices)).transpose()?;
     let mut session = match &moving {
         Some(moving) => motion::session_of(moving),
         None => session::open(args.session.as_deref(), None)?,

@@ -1,28 +1,27 @@
 //! A body of a file that moves as an animation of the file says.
 
+use std::path::Path;
+
 use toile_assets::import::avatar::{ImportOptions, MovingBody, read_moving};
 use toile_assets::sizes::Population;
 use toile_fitting::dress::choice::Choice;
 use toile_fitting::dress::{measured, motion, wish};
 
-use super::{TryOnArgs, Wearer};
 use crate::exit::AppError;
 use crate::report::AnimationReport;
 
-/// The body of the file and its motion, where an animation is asked for.
+/// The body of a file and its motion by the animation of this name.
 ///
 /// # Errors
 /// A file that is no such body or lacks the animation, and an animation of no file.
-pub fn body(args: &TryOnArgs, choices: &[Choice]) -> Result<Option<MovingBody>, AppError> {
-    let Some(name) = &args.animation else { return Ok(None) };
-    let Some(Wearer::File(file)) = args.body.as_ref().filter(|b| !matches!(b, Wearer::File(file) if file.is_dir()))
-    else {
+pub fn body(file: Option<&Path>, name: &str, choices: &[Choice]) -> Result<MovingBody, AppError> {
+    let Some(file) = file.filter(|file| !file.is_dir()) else {
         let cure = "name it too, as in --body walker.glb";
         return Err(AppError::Usage(format!("--animation {name} belongs to a .glb, .gltf or .vrm file; {cure}")));
     };
     let sex = measured::sex(Population::Mixed, wish::population(choices)?);
     let options = ImportOptions { sex, ..ImportOptions::default() };
-    read_moving(file, name, &options).map(Some).map_err(AppError::input)
+    read_moving(file, name, &options).map_err(AppError::input)
 }
 
 /// What is said of the motion.

@@ -1,0 +1,32 @@
+//! What an import gives: a body, and what was found in its file.
+
+use super::carry::PruningLoss;
+use crate::body::Body;
+
+/// A body, and what was found in its file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ImportedBody {
+    /// The body in its rest pose: metres, y up, facing +z, the floor at y = 0.
+    pub body: Body,
+    /// What was found in the file and how it was taken.
+    pub report: ImportReport,
+}
+
+/// What was found in a file.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ImportReport {
+    /// Dialect of its joints' names.
+    pub dialect: &'static str,
+    /// For each of our joints that was found: its H-Anim name, and the file's own.
+    pub joints: Vec<(String, String)>,
+    /// Weight lost by pruning influences.
+    pub pruned: PruningLoss,
+    /// Connected pieces of the surface.
+    pub parts: usize,
+    /// Edges with a triangle on one side alone.
+    pub boundary_edges: usize,
+    /// Edges of more than two triangles.
+    pub crowded_edges: usize,
+    /// What was found and how it was taken, one sentence each.
+    pub notes: Vec<String>,
+}
