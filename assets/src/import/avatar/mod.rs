@@ -139,14 +139,14 @@ pub(crate) fn settle(mut raw: RawBody, options: &ImportOptions) -> Result<Import
 }
 
 /// Checks a raw body and sets it upright in our axes and unit.
-fn place(raw: &mut RawBody) -> Result<(Skeleton, Vec<Joint>, rest::Placement), Flaw> {
+fn place(raw: &mut RawBody) -> Result<(Skeleton, Vec<Joint>, rest::RestPlacement), Flaw> {
     raw.check()?;
     rest::stand(raw)
 }
 
 fn finish(
     mut raw: RawBody,
-    (skeleton, placed, _): (Skeleton, Vec<Joint>, rest::Placement),
+    (skeleton, placed, _): (Skeleton, Vec<Joint>, rest::RestPlacement),
     options: &ImportOptions,
 ) -> Result<ImportedBody, Flaw> {
     let (weights, pruned) = carry::weights(&raw, &skeleton, &placed);

@@ -21,7 +21,7 @@ const TOE_BACK: f32 = 0.01;
 
 /// How a file's space becomes ours: turned, moved, and then scaled.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Placement {
+pub(super) struct RestPlacement {
     turn: Mat3,
     /// What comes to the middle between the feet, after the turn, in the file's unit.
     origin: Vec3,
@@ -29,7 +29,7 @@ pub(super) struct Placement {
     metres: f32,
 }
 
-impl Placement {
+impl RestPlacement {
     /// The same as a matrix from the file's space to ours.
     pub fn matrix(&self) -> DMat4 {
         DMat4::from_scale(DVec3::splat(f64::from(self.metres)))
@@ -54,7 +54,7 @@ pub(super) fn carriers(raw: &RawBody) -> Vec<Joint> {
 
 /// Turns, scales and moves a raw body so that it stands on the floor in metres, facing +z; returns its skeleton,
 /// which joints had to be placed between others, and how it was moved.
-pub(super) fn stand(raw: &mut RawBody) -> Result<(Skeleton, Vec<Joint>, Placement), Flaw> {
+pub(super) fn stand(raw: &mut RawBody) -> Result<(Skeleton, Vec<Joint>, RestPlacement), Flaw> {
     check_joints(raw)?;
     let turn = upright(raw)?;
     let all = raw.positions.iter_mut().chain(&mut raw.normals).chain(raw.joints.iter_mut().map(|j| &mut j.at));
@@ -75,7 +75,7 @@ pub(super) fn stand(raw: &mut RawBody) -> Result<(Skeleton, Vec<Joint>, Placemen
     let points = raw.positions.iter_mut().chain(raw.joints.iter_mut().map(|j| &mut j.at));
     points.for_each(|p| *p = (*p - origin) * *metres);
     let (skeleton, placed) = skeleton(raw, height * metres)?;
-    Ok((skeleton, placed, Placement { turn, origin, metres: *metres }))
+    Ok((skeleton, placed, RestPlacement { turn, origin, metres: *metres }))
 }
 
 /// Where a joint that is known to be there stands.

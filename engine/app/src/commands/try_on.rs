@@ -30,7 +30,7 @@ use toile_engine::lines::{CAPACITY, Kind, Lines};
 use toile_engine::triple_buffer::Reader;
 use toile_fitting::dress::choice::Choice;
 use toile_fitting::dress::measured::{self, Measured};
-use toile_fitting::dress::motion::{self, Motion};
+use toile_fitting::dress::motion::{self, SessionMotion};
 use toile_fitting::dress::wish::{self, Wish};
 use toile_fitting::dress::{body, session};
 use toile_fitting::wearing;
@@ -232,7 +232,8 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     let poses = if args.poses { wearing::in_poses(&body, &rig, &garments, &settings)? } else { Vec::new() };
     let (mut frame, mut reader) = Frame::new(body, &rig, garments, settings).map_err(AppError::internal)?;
     let title = title(&recommendations);
-    let motion = moving.as_ref().map_or_else(|| Motion::of_joints(&track), |m| Motion::of_poses(&m.poses));
+    let motion =
+        moving.as_ref().map_or_else(|| SessionMotion::of_joints(&track), |m| SessionMotion::of_poses(&m.poses));
     let played = play((args, &words, &title, &judged), &mut out, &mut renderer, (&mut frame, &mut reader), motion)?;
 
     if args.glb {
@@ -319,7 +320,7 @@ fn play(
     out: &mut OutputFolder,
     renderer: &mut PictureRenderer,
     (frame, reader): (&mut Frame, &mut Reader<Snapshot>),
-    mut motion: Motion<'_>,
+    mut motion: SessionMotion<'_>,
 ) -> Result<Played, AppError> {
     let steps = motion.steps();
     let appearance = args.appearance()?;

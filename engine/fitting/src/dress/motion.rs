@@ -19,7 +19,7 @@ const COMPARED_HZ: u32 = 30;
 
 /// A motion on its way to the steps.
 #[derive(Debug, Clone)]
-pub enum Motion<'a> {
+pub enum SessionMotion<'a> {
     /// Filtered joints, as a sensor gives them.
     Joints {
         /// The joints.
@@ -36,7 +36,7 @@ pub enum Motion<'a> {
     },
 }
 
-impl<'a> Motion<'a> {
+impl<'a> SessionMotion<'a> {
     /// Of filtered joints, of which there is at least one.
     pub fn of_joints(track: &'a [Joints]) -> Self {
         Self::Joints { track, player: Box::new(Player::new(track)) }
