@@ -75,6 +75,8 @@ impl Kiosk {
             std::thread::sleep(Duration::from_secs(match name {
                 "1-attract" => 4,
                 "2-fitting" => 16,
+                // Two sizes are sewn up meanwhile.
+                "6-compare" => 25,
                 _ => 7,
             }));
             self.display.look().write(&kept);
