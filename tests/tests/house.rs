@@ -8,8 +8,21 @@ use toile_tests::scan;
 use toile_tests::tree::{self, FLOORS};
 
 /// Files that may hold unsafe code, each with its reason.
-const UNSAFE_FILES: [(&str, &str); 24] = [
+const UNSAFE_FILES: [(&str, &str); 39] = [
     ("engine/app/src/heap.rs", "the program's allocator counts, for which it has to implement an unsafe trait"),
+    ("engine/c/src/border.rs", "what C hands over is read and written"),
+    ("engine/c/src/failure.rs", "a function that C calls by its name"),
+    ("engine/c/src/version.rs", "the same"),
+    ("engine/c/src/body.rs", "the same"),
+    ("engine/c/src/garment.rs", "the same"),
+    ("engine/c/src/fit.rs", "the same"),
+    ("engine/c/src/recording.rs", "the same"),
+    ("engine/c/src/try_on.rs", "the same"),
+    ("engine/c/src/scene/make.rs", "the same"),
+    ("engine/c/src/scene/step.rs", "the same"),
+    ("engine/c/src/scene/read.rs", "the same"),
+    ("engine/c/src/scene/picture.rs", "the same"),
+    ("engine/c/src/scene/snapshot.rs", "the same"),
     ("engine/core/src/workers/per_share.rs", "what belongs to a share is lent to whoever works on it"),
     ("engine/core/src/workers/mod.rs", "a job that borrows the caller's stack is handed to another thread"),
     ("engine/core/src/cloth/work.rs", "the workers of a step share its columns"),
@@ -31,6 +44,8 @@ const UNSAFE_FILES: [(&str, &str); 24] = [
     ("sensors/src/source/live/realsense.rs", "librealsense's C interface is called"),
     ("sensors/src/source/live/orbbec.rs", "OrbbecSDK's C interface is called"),
     ("sensors/src/source/live/v4l2.rs", "the kernel's calls for webcams, and the memory that it shares"),
+    ("engine/view/tests/own_picture_allocations.rs", "a counting allocator has to implement an unsafe trait"),
+    ("sensors/tests/cameras/azure_lens.rs", "libk4a shows where points of a calibration are seen"),
     ("sensors/tests/cameras/realsense_recorder.rs", "librealsense's recorder writes what the test plays"),
     ("tests/tests/allocations.rs", "a counting allocator has to implement an unsafe trait"),
 ];
