@@ -12,6 +12,7 @@ pub mod limits;
 
 pub mod calibration;
 pub mod frame;
+pub mod lens;
 pub mod pictures;
 
 pub mod colour_camera;

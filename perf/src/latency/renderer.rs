@@ -1,6 +1,7 @@
 //! What stands in for a display: it takes what it would be handed and, where that is asked for, draws the mirror with the shopper's own
 //! picture, which costs the same with a display.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use serde::Serialize;
@@ -12,7 +13,7 @@ use toile_fitting::live::assembly::HeadlessRenderer;
 use toile_fitting::live::own_picture::PictureReceiver;
 use toile_fitting::live::report::Quantiles;
 use toile_view::image::Size;
-use toile_view::own_picture::{OwnPicture, OwnPictureInput, OwnPictureModel, OwnPictureOptions};
+use toile_view::own_picture::{OwnPicture, OwnPictureInput, OwnPictureModel, OwnPictureOptions, Plain};
 
 /// Size of the mirror: 1080 rows of a standing display.
 const SIZE: Size = Size::new(608, 1080);
@@ -26,7 +27,7 @@ pub struct OwnPictureParts {
 }
 
 /// What became of the pictures.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct OwnPictureFigures {
     /// From a picture's stamp until it was drawn (us).
     pub stamp_us: Quantiles,
@@ -34,6 +35,8 @@ pub struct OwnPictureFigures {
     pub drawing_us: Quantiles,
     /// Pictures that were drawn, and those with the garment on them.
     pub pictures: [u64; 2],
+    /// Pictures without it, by reason.
+    pub plain: BTreeMap<String, u64>,
 }
 
 /// Takes what a display would be handed.
@@ -50,6 +53,7 @@ struct MeteredMirror {
     stamp: Meter,
     drawing: Meter,
     pictures: [u64; 2],
+    plain: [u64; Plain::ALL.len()],
 }
 
 impl LatencyRenderer {
@@ -63,6 +67,7 @@ impl LatencyRenderer {
             stamp: Meter::new(),
             drawing: Meter::new(),
             pictures: [0; 2],
+            plain: [0; Plain::ALL.len()],
         };
         Self { headless: HeadlessRenderer::sized_for(snapshot), own: own.map(mirror) }
     }
@@ -71,7 +76,10 @@ impl LatencyRenderer {
     pub fn figures(&self) -> Option<(OwnPictureFigures, [&Meter; 2])> {
         let own = self.own.as_ref()?;
         let [stamp_us, drawing_us] = [&own.stamp, &own.drawing].map(Quantiles::of);
-        Some((OwnPictureFigures { stamp_us, drawing_us, pictures: own.pictures }, [&own.stamp, &own.drawing]))
+        let counted = Plain::ALL.iter().zip(own.plain).filter(|(_, count)| *count > 0);
+        let plain = counted.map(|(why, count)| (format!("{why:?}"), count)).collect();
+        let figures = OwnPictureFigures { stamp_us, drawing_us, pictures: own.pictures, plain };
+        Some((figures, [&own.stamp, &own.drawing]))
     }
 }
 
@@ -99,7 +107,10 @@ impl Renderer for LatencyRenderer {
             own.stamp.add(now.saturating_sub(seen.taken_ns));
             own.drawing.add(now - begun);
             own.pictures[0] += 1;
-            own.pictures[1] += u64::from(drawn.is_ok());
+            match drawn {
+                Ok(()) => own.pictures[1] += 1,
+                Err(plain) => own.plain[plain as usize] += 1,
+            }
         }
     }
 }

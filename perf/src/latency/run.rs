@@ -273,7 +273,7 @@ fn report(
         late_frames: later_than(&gauges.reaction, snapshot_us) + gauges.skipped,
         pictures: render.pictures,
         quality: quality(frame, &gauges.rungs, events.changes),
-        goals: goals(snapshot_us, snapshot, total, step, response, own),
+        goals: goals(snapshot_us, snapshot, total, step, response, own.as_ref()),
         own_picture: own,
         capacities: capacities.into_iter().map(QueueUse::from).collect(),
         warnings,
@@ -317,7 +317,7 @@ fn goals(
     total: Quantiles,
     step: Quantiles,
     response: Quantiles,
-    own: Option<OwnPictureFigures>,
+    own: Option<&OwnPictureFigures>,
 ) -> Vec<Goal> {
     let period_us = PERIOD_NS as f64 * 1e-3;
     let own = own.map(|own| Goal::new("own picture after its stamp, p99", OWN_PICTURE_US, own.stamp_us.p99));

@@ -27,6 +27,8 @@ toile_assets::named! {
         Walk = "walking at 1 m/s",
         /// They cross their arms before the chest, and sway.
         Crossed = "arms crossed",
+        /// They put their hands behind their back, and sway.
+        Behind = "hands behind the back",
     }
 }
 
@@ -37,6 +39,7 @@ impl OwnMotion {
             Self::Rest => "rest",
             Self::Walk => "walk",
             Self::Crossed => "crossed",
+            Self::Behind => "behind",
         }
     }
 
@@ -51,12 +54,14 @@ impl OwnMotion {
         match self {
             Self::Rest => {}
             Self::Walk => walk(&mut pose, skeleton, share, since),
-            Self::Crossed => pose.root.x += 0.02 * share * (TAU * 0.4 * since).sin(),
+            Self::Crossed | Self::Behind => pose.root.x += 0.02 * share * (TAU * 0.4 * since).sin(),
         }
         let frames = JointFrames::new(skeleton, &pose);
         let mut joints = Joints::seen(time_ns, frames.position);
-        if self == Self::Crossed {
-            cross(&mut joints, skeleton, share);
+        match self {
+            Self::Crossed => lead_arms(&mut joints, skeleton, share, &CROSSED),
+            Self::Behind => lead_arms(&mut joints, skeleton, share, &BEHIND),
+            Self::Rest | Self::Walk => {}
         }
         joints
     }
@@ -86,24 +91,34 @@ fn walk(pose: &mut Pose, skeleton: &Skeleton, share: f32, since: f32) {
     pose.root.y -= low(Joint::LeftAnkle).min(low(Joint::RightAnkle));
 }
 
+/// Ways of upper arm, forearm and hand of a left arm, left towards its own side, and of the right one.
+type ArmWays = [[[f32; 3]; 3]; 2];
+
 /// Upper arms hang, forearms lie across the chest, the right one before the left.
-fn cross(joints: &mut Joints, skeleton: &Skeleton, share: f32) {
+const CROSSED: ArmWays = [
+    [[0.22, -0.9, 0.36], [-0.85, 0.05, 0.42], [-0.97, 0.05, -0.08]],
+    [[0.22, -0.9, 0.36], [-0.85, 0.18, 0.62], [-0.97, 0.18, -0.08]],
+];
+
+/// Upper arms hang backwards, forearms lie behind the loins, one hand on the other.
+const BEHIND: ArmWays = [
+    [[0.2, -0.93, -0.3], [-0.72, -0.3, -0.6], [-0.95, -0.2, -0.1]],
+    [[0.2, -0.93, -0.3], [-0.72, -0.2, -0.68], [-0.95, -0.2, -0.1]],
+];
+
+/// From hanging to these ways, by a share.
+fn lead_arms(joints: &mut Joints, skeleton: &Skeleton, share: f32, arms: &ArmWays) {
     use Joint::*;
-    let arms = [
-        ([LeftShoulder, LeftElbow, LeftWrist, LeftHand], 1.0_f32, [0.05, 0.42]),
-        ([RightShoulder, RightElbow, RightWrist, RightHand], -1.0, [0.18, 0.62]),
-    ];
-    for ([shoulder, elbow, wrist, hand], side, [rise, ahead]) in arms {
-        let ways = [
-            (shoulder, elbow, Vec3::new(0.22 * side, -0.9, 0.36)),
-            (elbow, wrist, Vec3::new(-0.85 * side, rise, ahead)),
-            (wrist, hand, Vec3::new(-0.97 * side, rise, -0.08)),
-        ];
+    let left = [LeftShoulder, LeftElbow, LeftWrist, LeftHand];
+    let right = [RightShoulder, RightElbow, RightWrist, RightHand];
+    for (([shoulder, elbow, wrist, hand], side), ways) in [(left, 1.0_f32), (right, -1.0)].into_iter().zip(arms) {
+        let way = |at: usize| Vec3::from_array(ways[at]) * Vec3::new(side, 1.0, 1.0);
+        let ways = [(shoulder, elbow, way(0)), (elbow, wrist, way(1)), (wrist, hand, way(2))];
         let hung =
             ways.map(|(from, to, _)| (joints.at(to).position - joints.at(from).position).normalize_or(Vec3::NEG_Y));
         let mut at = joints.at(shoulder).position;
         for ((_, joint, way), hung) in ways.into_iter().zip(hung) {
-            // From hanging to crossed in directions, so that no limb changes its length.
+            // In directions, so that no limb changes its length.
             let turn = Quat::from_rotation_arc(hung, way.normalize());
             at += Quat::IDENTITY.slerp(turn, share) * hung * skeleton.offset(joint).length();
             joints.at_mut(joint).position = at;
@@ -133,6 +148,12 @@ mod tests {
                 before = now;
             }
             assert_eq!((0.9..1.2).contains(&fastest), motion == OwnMotion::Walk, "{motion:?}: {fastest}");
+        }
+        // Behind the back: nearer to the middle than the hips, and farther back than the trunk is thick.
+        let behind = OwnMotion::Behind.joints(skeleton, 4.0, 0);
+        for hand in [Joint::LeftHand, Joint::RightHand] {
+            let (hand, spine) = (behind.at(hand).position, behind.at(Joint::Spine).position);
+            assert!((hand.x - spine.x).abs() < 0.15 && hand.z < spine.z - 0.1, "{hand} {spine}");
         }
         // Crossed: each hand on the other side, before the chest.
         let crossed = OwnMotion::Crossed.joints(skeleton, 4.0, 0);

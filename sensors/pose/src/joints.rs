@@ -8,6 +8,7 @@ use glam::{Mat3, Quat, Vec2, Vec3};
 use toile_assets::body::shape::Shapes;
 use toile_assets::body::{En, Sex};
 use toile_assets::skeleton::{Joint, Skeleton};
+use toile_sensors::filter::one_euro::{OneEuro, OneEuroSettings};
 use toile_sensors::frame::{Joints, TrackedJoint};
 use toile_sensors::source::joint_map::{Format, JointMap};
 
@@ -37,6 +38,12 @@ const STANDING: u32 = 30;
 
 /// Largest lean that is the camera's or the network's, and not somebody's own (rad): 40 degrees.
 const LARGEST_LEAN: f32 = 0.7;
+
+/// Smoothing of somebody's distance (m): whoever comes nearer at 1 m/s is some 150 mm behind.
+const DISTANCE: OneEuroSettings = OneEuroSettings { min_cutoff: 0.6, beta: 0.5 };
+
+/// Longest time between two frames across which a distance is smoothed (s).
+const LONGEST: f32 = 0.5;
 
 /// Landmarks of an arm: shoulder, elbow, wrist; and of the hand, whose middle is taken: little finger, forefinger.
 const ARMS: [([usize; 3], [usize; 2]); 2] = [([11, 13, 15], [17, 19]), ([12, 14, 16], [18, 20])];
@@ -97,6 +104,8 @@ pub struct JointPlacer {
     mean_stature: f32,
     map: JointMap,
     mount: WebcamMount,
+    /// Their distance from frame to frame.
+    distance: FollowedDistance,
     /// Distance at which whoever is followed was first seen (m): they begin at the middle of our world.
     first: Option<f32>,
     /// Leans of trunk, thighs and shins of whoever is followed in their first frames (rad), and how many of them.
@@ -109,11 +118,20 @@ impl JointPlacer {
         let shapes = Shapes::of(sex);
         let mean_stature = shapes.read(shapes.mean()).readings.of(En::Stature);
         let mean = shapes.skeleton(shapes.mean());
-        Self { mean, mean_stature, map: JointMap::of(Format::MediaPipe33), mount, first: None, leans: ([0.0; 3], 0) }
+        Self {
+            mean,
+            mean_stature,
+            map: JointMap::of(Format::MediaPipe33),
+            mount,
+            distance: FollowedDistance::default(),
+            first: None,
+            leans: ([0.0; 3], 0),
+        }
     }
 
     /// Somebody else may stand there.
     pub fn reset(&mut self) {
+        self.distance = FollowedDistance::default();
         (self.first, self.leans) = (None, ([0.0; 3], 0));
     }
 
@@ -126,7 +144,7 @@ impl JointPlacer {
         self.learn_leans(&world, &confidence, &lengths.leans);
         upright(&mut world, &self.leans.0);
         let mut points = with_lengths(&world, &confidence, &lengths);
-        let camera = self.place(landmarks, size, &points, level);
+        let camera = self.place(landmarks, size, &points, level, time_ns);
         let up = above_floor(&points, &lengths);
         for point in &mut points {
             let p = point.position;
@@ -160,7 +178,14 @@ impl JointPlacer {
     }
 
     /// Where the hips are: to the left of the camera's axis and towards it from where they were first (m).
-    fn place(&mut self, landmarks: &Landmarks, [w, h]: [u32; 2], points: &[TrackedJoint; POINTS], level: Mat3) -> Vec2 {
+    fn place(
+        &mut self,
+        landmarks: &Landmarks,
+        [w, h]: [u32; 2],
+        points: &[TrackedJoint; POINTS],
+        level: Mat3,
+        time_ns: u64,
+    ) -> Vec2 {
         let focal = self.mount.focal * w.max(h) as f32;
         let unlevel = level.transpose();
         let seen = |k: &usize| landmarks.points[*k].confidence.min(points[*k].confidence) >= SURE;
@@ -179,9 +204,30 @@ impl JointPlacer {
         if count < FEWEST || !DISTANCES.contains(&distance) {
             return Vec2::ZERO;
         }
+        let distance = self.distance.follow(distance, time_ns);
         let first = *self.first.get_or_insert(distance);
         let across = (pixel.x - 0.5 * w as f32) * distance / focal - metre.x;
         Vec2::new(across, first - distance)
+    }
+}
+
+/// How far away somebody is from frame to frame: nobody comes nearer by jumps, and what a limb is turned wrongly by looks like it.
+#[derive(Debug, Clone, Copy, Default)]
+struct FollowedDistance {
+    filter: OneEuro,
+    last_ns: Option<u64>,
+}
+
+impl FollowedDistance {
+    fn follow(&mut self, measured: f32, time_ns: u64) -> f32 {
+        let measured = Vec3::Z * measured;
+        let dt = self.last_ns.map(|last| time_ns.saturating_sub(last) as f32 * 1e-9).filter(|dt| *dt <= LONGEST);
+        self.last_ns = Some(time_ns);
+        match dt {
+            None => self.filter = OneEuro { level: measured, velocity: Vec3::ZERO },
+            Some(dt) => self.filter.update(measured, dt, self.filter.speed(measured, dt), &DISTANCE),
+        }
+        self.filter.level.z
     }
 }
 
@@ -310,10 +356,19 @@ mod tests {
         placer.joints(&somebody(1.0, 3.0), [1280, 720], stature, 0);
         let mut near = somebody(1.0, 2.5);
         near.points.iter_mut().for_each(|p| p.pixel.x += 0.4 * 0.87 * 1280.0 / 2.5);
-        let joints = placer.joints(&near, [1280, 720], stature, 0);
-        let hip = joints.at(Joint::LeftHip).position;
+        // Across at once as far as the distance is known, nearer within a second or so.
+        let hips = |placer: &mut JointPlacer, seen: &Landmarks, picture: u64| {
+            placer.joints(seen, [1280, 720], stature, picture * 33_000_000).at(Joint::LeftHip).position
+        };
+        let mut hip = Vec3::ZERO;
+        for picture in 1..40 {
+            hip = hips(&mut placer, &near, picture);
+        }
         let own = placer.mean.at(Joint::LeftHip);
         assert!((hip.x - 0.4 - own.x).abs() < 0.01 && (hip.z - 0.5).abs() < 0.02, "{hip}");
+        // One picture in which they seem to be elsewhere moves them little.
+        let jumped = hips(&mut placer, &somebody(1.0, 3.0), 40);
+        assert!((jumped.z - hip.z).abs() < 0.16, "{hip}, then {jumped}");
     }
 
     #[test]

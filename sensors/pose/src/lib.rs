@@ -19,6 +19,8 @@ pub mod plausible;
 pub mod smoothing;
 
 pub mod scale;
+pub mod sides;
+
 pub mod tracker;
 
 pub mod joints;

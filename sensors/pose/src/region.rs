@@ -14,6 +14,10 @@ pub struct Region {
     pub turned: f32,
 }
 
+/// Squares are alike whose middles and sides differ by so much (sides), and which are turned by so much (rad).
+const LIKE: f32 = 0.04;
+const LIKE_TURNED: f32 = 0.06;
+
 /// What lies outside of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Border {
@@ -36,6 +40,15 @@ impl Region {
         let up = above - hips;
         // A quarter of the circle's radius is left around it on each side.
         Self { centre: hips, side: 2.0 * up.length() * 1.25, turned: up.x.atan2(-up.y) }
+    }
+
+    /// Whether another square differs by so little that this one shows the same: with a new one in each picture of somebody who stands still, the
+    /// landmarks and the square that comes of them move each other to and fro.
+    pub fn is_like(&self, other: &Self) -> bool {
+        let side = LIKE * self.side;
+        self.centre.distance(other.centre) <= side
+            && (self.side - other.side).abs() <= side
+            && (self.turned - other.turned).abs() <= LIKE_TURNED
     }
 
     /// From shares of the square, 0 to 1 right and down, to pixels of the picture.
@@ -165,6 +178,16 @@ mod tests {
     fn picture(width: u32, height: u32) -> ColourImage {
         let rgb = (0..height).flat_map(|y| (0..width).flat_map(move |x| [x as u8, y as u8, 100])).collect();
         ColourImage { width, height, rgb }
+    }
+
+    #[test]
+    fn a_square_is_like_another_that_is_a_little_aside_and_not_like_one_of_a_step() {
+        let square = Region { centre: Vec2::new(320.0, 240.0), side: 400.0, turned: 0.0 };
+        let near = Region { centre: Vec2::new(330.0, 246.0), side: 408.0, turned: -0.03 };
+        assert!(square.is_like(&near) && square.is_like(&square));
+        let aside = Region { centre: Vec2::new(345.0, 240.0), ..square };
+        let (larger, turned) = (Region { side: 420.0, ..square }, Region { turned: 0.1, ..square });
+        assert!([aside, larger, turned].iter().all(|other| !square.is_like(other)));
     }
 
     #[test]

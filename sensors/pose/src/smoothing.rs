@@ -11,6 +11,10 @@ use crate::landmarks::{Landmarks, POINTS};
 /// Of the body's landmarks, in metres.
 const BODY: OneEuroSettings = OneEuroSettings { min_cutoff: 0.1, beta: 40.0 };
 
+/// Of the body's depth, in sizes of the body at which the landmark moves in the picture: depth is a guess, and what stands still in the
+/// picture does not come nearer by jumps.
+const DEPTH: OneEuroSettings = OneEuroSettings { min_cutoff: 0.3, beta: 10.0 };
+
 /// Of the landmarks in the picture, in sizes of the body.
 const PICTURE: OneEuroSettings = OneEuroSettings { min_cutoff: 0.1, beta: 40.0 };
 
@@ -24,6 +28,7 @@ const LONGEST: f32 = 0.5;
 #[derive(Debug)]
 pub struct LandmarkFilter {
     body: [OneEuro; POINTS],
+    depth: [OneEuro; POINTS],
     picture: [OneEuro; POINTS],
     next: [OneEuro; 2],
     last_ns: Option<u64>,
@@ -32,7 +37,7 @@ pub struct LandmarkFilter {
 impl Default for LandmarkFilter {
     fn default() -> Self {
         let one = OneEuro::default();
-        Self { body: [one; POINTS], picture: [one; POINTS], next: [one; 2], last_ns: None }
+        Self { body: [one; POINTS], depth: [one; POINTS], picture: [one; POINTS], next: [one; 2], last_ns: None }
     }
 }
 
@@ -53,9 +58,21 @@ impl LandmarkFilter {
             }
             filter.level
         };
-        for ((point, body), picture) in landmarks.points.iter_mut().zip(&mut self.body).zip(&mut self.picture) {
+        let filters = self.body.iter_mut().zip(&mut self.depth).zip(&mut self.picture);
+        for (point, ((body, depth), picture)) in landmarks.points.iter_mut().zip(filters) {
+            let away = Vec3::Z * point.world.z;
             point.world = smooth(body, point.world, &BODY);
             point.pixel = scaled(point.pixel, side, |p| smooth(picture, p, &PICTURE));
+            point.world.z = match step {
+                None => {
+                    *depth = OneEuro { level: away, velocity: Vec3::ZERO };
+                    away.z
+                }
+                Some(dt) => {
+                    depth.update(away, dt, picture.velocity.length(), &DEPTH);
+                    depth.level.z
+                }
+            };
         }
         for (point, filter) in landmarks.next.iter_mut().zip(&mut self.next) {
             *point = scaled(*point, side, |p| smooth(filter, p, &NEXT));

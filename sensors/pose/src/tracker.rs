@@ -11,6 +11,7 @@ use crate::files::{PoseError, PoseFile};
 use crate::landmarks::{Landmarker, Landmarks};
 use crate::plausible;
 use crate::region::Region;
+use crate::sides::SideKeeper;
 use crate::smoothing::LandmarkFilter;
 
 /// Least presence of somebody in a region.
@@ -46,6 +47,8 @@ pub struct TrackerCounts {
     pub followed: u64,
     /// Bodies that no person has.
     pub implausible: u64,
+    /// Pictures in which the network exchanged left and right.
+    pub exchanged: u64,
     /// People in the last picture that was searched.
     pub people: u64,
 }
@@ -58,6 +61,7 @@ pub struct PoseTracker {
     region: Option<Region>,
     /// Size of the last picture (px).
     size: [u32; 2],
+    sides: SideKeeper,
     filter: LandmarkFilter,
     implausible: u32,
     /// Searches since somebody was last seen.
@@ -84,6 +88,7 @@ impl PoseTracker {
             landmarker: Landmarker::load(&file.read(folder)?, with_mask).map_err(unfit(file))?,
             region: None,
             size: [0; 2],
+            sides: SideKeeper::default(),
             filter: LandmarkFilter::default(),
             implausible: 0,
             tries: 0,
@@ -95,6 +100,7 @@ impl PoseTracker {
     pub fn reset(&mut self) {
         self.region = None;
         (self.implausible, self.tries) = (0, 0);
+        self.sides.reset();
         self.filter.reset();
         self.landmarker.wipe_mask();
     }
@@ -143,8 +149,10 @@ impl PoseTracker {
             return Ok(None);
         }
         self.implausible = 0;
+        self.counts.exchanged += u64::from(self.sides.keep(&mut landmarks, time_ns));
         self.filter.push(&mut landmarks, region.side, time_ns);
-        self.region = Some(Region::of_points(landmarks.next[0], landmarks.next[1]));
+        let next = Region::of_points(landmarks.next[0], landmarks.next[1]);
+        self.region = Some(if region.is_like(&next) { region } else { next });
         Ok(Some(landmarks))
     }
 

@@ -4,9 +4,9 @@
 use glam::{Affine3A, Mat3A, Vec3, Vec3A};
 use serde::Deserialize;
 
-use super::lens::BrownConrady;
 use crate::error::{Fault, Place};
 use crate::frame::{Intrinsics, pose_fault};
+use crate::lens::BrownConrady;
 
 /// A depth camera as described beside its images.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,7 +1,7 @@
 //! From the samples of a depth camera to millimetres of a pinhole: unit, lens, and the side on which the camera lies.
 
 use super::camera::Camera;
-use super::lens::Straighten;
+use super::straighten::Straighten;
 use crate::error::{Fault, Place};
 use crate::frame::Intrinsics;
 

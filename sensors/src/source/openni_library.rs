@@ -84,6 +84,8 @@ functions! {
         fn oniWaitForAnyStream(*mut OniHandle, c_int, *mut c_int, c_int) -> c_int;
         fn oniStreamReadFrame(OniHandle, *mut *mut OniFrame) -> c_int;
         fn oniFrameRelease(*mut OniFrame);
+        fn oniDeviceEnableDepthColorSync(OniHandle) -> c_int;
+        fn oniCoordinateConverterDepthToColor(OniHandle, OniHandle, c_int, c_int, u16, *mut c_int, *mut c_int) -> c_int;
     }
 }
 
@@ -165,6 +167,12 @@ impl OpenNiDevice {
         self.set(PLAYBACK_REPEAT, c_int::from(false).to_ne_bytes());
     }
 
+    /// Depth and colour are taken at one time; a driver that cannot refuses.
+    pub fn synchronise(&self) {
+        // SAFETY: the device is open.
+        let _ = unsafe { (self.library.api.oniDeviceEnableDepthColorSync)(self.handle) };
+    }
+
     /// Its depth stream, started.
     pub fn depth(self: &Arc<Self>) -> Result<OpenNiStream, Fault> {
         self.stream(SENSOR_DEPTH, "it holds no depth stream", "its depth stream cannot be played")
@@ -213,10 +221,22 @@ impl OpenNiStream {
 
     /// Width and height (px), frames a second (Hz) and millimetres in a unit, as the stream promises them.
     pub fn mode(&self) -> Option<(u32, u32, f32, f32)> {
+        let [format, .., rate] = self.video_mode()?;
+        let [width, height] = self.size()?;
+        Some((width, height, rate.max(1) as f32, unit_of(format)?))
+    }
+
+    /// Width and height (px) of whatever it streams.
+    pub fn size(&self) -> Option<[u32; 2]> {
+        let [_, width, height, _] = self.video_mode()?;
+        let side = |px: i32| u32::try_from(px).ok().filter(|px| *px > 0);
+        Some([side(width)?, side(height)?])
+    }
+
+    /// Pixel format, width, height, rate.
+    fn video_mode(&self) -> Option<[c_int; 4]> {
         let mode = self.property::<16>(VIDEO_MODE)?;
-        let field = |i: usize| i32::from_ne_bytes([mode[i], mode[i + 1], mode[i + 2], mode[i + 3]]);
-        let side = |i| u32::try_from(field(i)).ok().filter(|px| *px > 0);
-        Some((side(4)?, side(8)?, field(12).max(1) as f32, unit_of(field(0))?))
+        Some(std::array::from_fn(|i| c_int::from_ne_bytes([0, 1, 2, 3].map(|b| mode[4 * i + b]))))
     }
 
     /// The camera by its fields of view.
@@ -237,6 +257,16 @@ impl OpenNiStream {
             cy: middle(height),
         };
         k.fault().map_or(Ok(k), |fault| Err(Fault::new(Place::Whole, fault, CURE)))
+    }
+
+    /// Where the driver has a colour stream show what this depth stream measured at a pixel (px and depth in its units); none where it
+    /// cannot say so, as that of recordings.
+    pub fn seen_in_colour(&self, colour: &Self, [x, y]: [u32; 2], depth: u16) -> Option<[i32; 2]> {
+        let (mut u, mut v) = (0, 0);
+        let convert = self.device.library.api.oniCoordinateConverterDepthToColor;
+        // SAFETY: both streams are valid, and two places for a number are handed over.
+        let status = unsafe { convert(self.handle, colour.handle, x as c_int, y as c_int, depth, &mut u, &mut v) };
+        (status == OK).then_some([u, v])
     }
 
     /// The next frame; none where none comes in time (ms).

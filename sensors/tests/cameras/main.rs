@@ -2,6 +2,7 @@
 //!
 //! A library that is not installed is named, and its test does not run; those of Debian must be there in continuous integration.
 
+mod azure_lens;
 mod oni_writer;
 mod orbbec_recorder;
 mod people;
@@ -12,6 +13,8 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 use std::{env, fs};
 
+use glam::{Affine3A, Vec3};
+use toile_sensors::colour_camera::ColourCamera;
 use toile_sensors::frame::DepthFrame;
 use toile_sensors::session::Session;
 use toile_sensors::source::live::{self, Arrival, CameraFrame, CameraKind, CameraOptions, CameraRecorder, LiveDepth};
@@ -126,7 +129,11 @@ fn a_camera_of_openni_gives_what_its_recording_holds() {
     let folder = folder("openni");
     let file = folder.join("visit.oni");
     oni_writer::write(&file, &people::frames(12));
-    both_ways(&format!("openni:{}", file.display()), &file, &options, 8);
+    let name = format!("openni:{}", file.display());
+    both_ways(&name, &file, &options, 8);
+    // The driver of files says nothing of a colour lens: the mannequin is shown.
+    let camera = live::open(&name.parse().unwrap(), &CameraOptions { colour: true, ..options }).unwrap();
+    assert_eq!(camera.info().colour_camera(Affine3A::IDENTITY), None);
     fs::remove_dir_all(&folder).unwrap();
 }
 
@@ -139,6 +146,7 @@ fn a_recording_of_an_azure_kinect_is_the_same_live() {
     let file = PathBuf::from(data).join("depth/pyk4a-azure-mkv/recording.mkv");
     let options = CameraOptions { colour: true, ..options };
     both_ways(&format!("k4a:{}", file.display()), &file, &options, 1);
+    azure_lens::assert_like_the_library(&options, &file, &file.with_file_name("calibration.json"));
 }
 
 #[test]
@@ -147,11 +155,40 @@ fn a_real_sense_gives_what_it_was_made_to_see() {
     let folder = folder("realsense");
     let (file, frames) = (folder.join("visit.db3"), people::frames(12));
     if realsense_recorder::record(&options.libraries, &file, &frames) {
-        let live = seen_live(&format!("realsense:{}", file.display()), &options, 6);
+        let name = format!("realsense:{}", file.display());
+        let live = seen_live(&name, &options, 6);
         let written = people::placed(&frames);
         assert_same(&live, &written);
+        let options = CameraOptions { colour: true, ..options };
+        assert_colour_beside(&name, &options);
     }
     fs::remove_dir_all(&folder).unwrap();
+}
+
+/// The colour camera of the recording is where it was put, and its pictures come with the depth of their moment.
+fn assert_colour_beside(name: &str, options: &CameraOptions) {
+    let mut camera = live::open(&name.parse().unwrap(), options).unwrap_or_else(|e| panic!("{e}"));
+    let colour = camera.info().colour_camera(Affine3A::IDENTITY).expect("its lens and place are recorded");
+    let real = realsense_recorder::colour_camera();
+    for point in [Vec3::new(0.0, 0.0, 2.0), Vec3::new(0.7, -0.4, 2.5), Vec3::new(-0.5, 0.5, 1.2)] {
+        let at = |c: &ColourCamera| c.project(c.camera_to_world.inverse().transform_point3(point)).unwrap();
+        assert!(at(&colour).distance(at(&real)) < 0.01, "{point}: {} and not {}", at(&colour), at(&real));
+    }
+    let (mut frame, begun, mut pictures) = (CameraFrame::default(), Instant::now(), 0);
+    while pictures < 4 && begun.elapsed() < LONGEST {
+        match camera.read(&mut frame, Duration::from_millis(50)).unwrap_or_else(|e| panic!("{e}")) {
+            Arrival::Frame if frame.colour.width > 0 => {
+                assert_eq!(
+                    realsense_recorder::number_of(&frame.colour),
+                    realsense_recorder::number_at(frame.device_ns)
+                );
+                pictures += 1;
+            }
+            Arrival::Ended => break,
+            _ => {}
+        }
+    }
+    assert!(pictures >= 4, "{pictures} pictures came with their depth");
 }
 
 #[test]

@@ -233,7 +233,8 @@ fn table(report: &LatencyReport, paint: Paint) -> String {
     lines.push(format!("  steps on each rung of quality: {:?}", q.rungs));
     if let Some(own) = &found.own_picture {
         let [all, dressed] = own.pictures;
-        lines.push(format!("  {all} own pictures, {dressed} of them with the garment"));
+        let plain: String = own.plain.iter().map(|(why, count)| format!("; plain, {why}: {count}")).collect();
+        lines.push(format!("  {all} own pictures, {dressed} of them with the garment{plain}"));
     }
     for goal in &found.goals {
         let (word, tone) = if goal.pass { ("kept", Tone::Good) } else { ("missed", Tone::Warn) };

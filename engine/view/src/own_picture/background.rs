@@ -19,6 +19,9 @@ type Column = (u32, u32, u32);
 pub struct Background {
     columns: Vec<Option<Column>>,
     made_for: Option<(Framing, [u32; 2])>,
+    /// Two rows of the picture at the mirror's columns, in parts of 1/256, and which they are: a row is looked at once, and shows in
+    /// several of the mirror's `[3 * width]`.
+    rows: [(Option<usize>, Vec<u16>); 2],
 }
 
 impl Background {
@@ -30,7 +33,7 @@ impl Background {
             self.columns.extend((0..framing.size.width).map(|x| column(framing, x, size[0])));
             self.made_for = Some((*framing, size));
         }
-        let bytes = 3 * picture.width as usize;
+        self.rows.iter_mut().for_each(|(row, _)| *row = None);
         let last = picture.height as f32 - 1.0;
         for (y, row) in out.chunks_exact_mut(3 * framing.size.width as usize).enumerate() {
             let at = framing.to_picture(Vec2::new(0.0, y as f32)).y;
@@ -41,10 +44,32 @@ impl Background {
             let at = at.clamp(0.0, last);
             let (upper, part) = (at as usize, (at.fract() * ONE as f32) as u32);
             let lower = (upper + 1).min(last as usize);
-            let rows = [upper, lower].map(|n| &picture.rgb[n * bytes..(n + 1) * bytes]);
-            for (pixel, column) in row.as_chunks_mut::<3>().0.iter_mut().zip(&self.columns) {
-                *pixel = column.map_or(BESIDE, |column| between(rows, column, part));
+            self.spread(picture, upper, lower);
+            self.spread(picture, lower, upper);
+            let [(first, one), (_, other)] = &self.rows;
+            let (a, b) = if *first == Some(upper) { (one, other) } else { (other, one) };
+            // Both are one row at the picture's end.
+            let b = if upper == lower { a } else { b };
+            for ((to, a), b) in row.iter_mut().zip(a).zip(b) {
+                *to = ((u32::from(*a) * (ONE - part) + u32::from(*b) * part + ONE * ONE / 2) / (ONE * ONE)) as u8;
             }
+        }
+    }
+
+    /// Has a row of the picture at hand, in place of one that is not `kept`.
+    fn spread(&mut self, picture: &ColourImage, wanted: usize, kept: usize) {
+        if self.rows.iter().any(|(row, _)| *row == Some(wanted)) {
+            return;
+        }
+        let (row, places) = &mut self.rows[usize::from(self.rows[0].0 == Some(kept))];
+        *row = Some(wanted);
+        let bytes = 3 * picture.width as usize;
+        let colours = &picture.rgb[wanted * bytes..(wanted + 1) * bytes];
+        places.clear();
+        for column in &self.columns {
+            places.extend_from_slice(
+                &column.map_or(BESIDE.map(|c| u16::from(c) * ONE as u16), |column| at(colours, column)),
+            );
         }
     }
 }
@@ -60,14 +85,12 @@ fn column(framing: &Framing, x: u32, width: u32) -> Option<Column> {
     Some((3 * left, 3 * (left + 1).min(width - 1), (at.fract() * ONE as f32) as u32))
 }
 
+/// A row of the picture at a column of the mirror, in parts of 1/256.
 #[inline]
-fn between([upper, lower]: [&[u8]; 2], (left, right, share): Column, part: u32) -> [u8; 3] {
+fn at(row: &[u8], (left, right, share): Column) -> [u16; 3] {
     let (left, right) = (left as usize, right as usize);
-    let four = |row: &[u8]| -> [u32; 3] {
-        std::array::from_fn(|c| u32::from(row[left + c]) * (ONE - share) + u32::from(row[right + c]) * share)
-    };
-    let (a, b) = (four(upper), four(lower));
-    std::array::from_fn(|c| ((a[c] * (ONE - part) + b[c] * part + ONE * ONE / 2) / (ONE * ONE)) as u8)
+    // At most 255 times 256.
+    std::array::from_fn(|c| (u32::from(row[left + c]) * (ONE - share) + u32::from(row[right + c]) * share) as u16)
 }
 
 #[cfg(test)]

@@ -50,7 +50,7 @@ impl DepthInPicture {
         };
         let (d, k) = (depth.intrinsics, camera.intrinsics);
         let apart = camera.camera_to_world.inverse() * depth.camera_to_world;
-        let one = apart.abs_diff_eq(Affine3A::IDENTITY, SAME) && camera.distortion == [0.0; 5] && alike(&d, &k);
+        let one = apart.abs_diff_eq(Affine3A::IDENTITY, SAME) && camera.lens.is_none() && alike(&d, &k);
         self.size = [d.width, d.height];
         self.scale = k.width as f32 / d.width.max(1) as f32;
         self.z.clear();

@@ -173,18 +173,18 @@ impl Painter {
             at + width,
             at + width + 1,
         ];
-        let (mut count, mut sum) = (0_u32, [0_u32; 3]);
-        for (colour, is) in nine.iter().map(|i| &self.cloth[*i]) {
-            if *is {
-                count += 1;
-                sum.iter_mut().zip(colour).for_each(|(sum, c)| *sum += u32::from(*c));
-            }
-        }
+        let count: u32 = nine.iter().map(|i| u32::from(self.cloth[*i].1)).sum();
         if count == 0 {
             return;
         }
         let (colour, is) = self.cloth[at];
-        let colour = if is { colour } else { sum.map(|s| (s / count) as u8) };
+        let colour = if is {
+            colour
+        } else {
+            let seen = nine.iter().map(|i| &self.cloth[*i]).filter(|(_, is)| *is);
+            let sum = seen.fold([0_u32; 3], |sum, (colour, _)| [0, 1, 2].map(|c| sum[c] + u32::from(colour[c])));
+            sum.map(|s| (s / count) as u8)
+        };
         let opacity = layers.cloth_at(at).map_or(1.0, |(worn, _)| layers.model.garments[worn].colour.opacity());
         let alpha = (count as f32 / 9.0 * opacity * 256.0) as u32;
         out.iter_mut().zip(colour).for_each(|(to, c)| {

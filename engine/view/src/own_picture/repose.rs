@@ -63,14 +63,20 @@ pub struct Repose {
 }
 
 impl Repose {
-    /// From joints of the snapshot (m) to those that were seen; none where hips or shoulders were not.
+    /// From joints of the snapshot (m) to those that were seen; none where neither hip or neither shoulder was. From the side the
+    /// body hides one of each: that one is where the snapshot has it against the other.
     pub fn new(from: &[Vec3; JOINTS], seen: &Joints) -> Option<Self> {
         use Joint::{LeftHip, LeftShoulder, RightHip, RightShoulder};
         let own = |joint: Joint| from[joint.index()];
         let to = |joint: Joint| seen.believed(joint);
         let (hips, shoulders) = ([LeftHip, RightHip], [LeftShoulder, RightShoulder]);
-        let seen_hips = [to(LeftHip)?, to(RightHip)?];
-        let seen_shoulders = [to(LeftShoulder)?, to(RightShoulder)?];
+        let pair = |[left, right]: [Joint; 2]| match [to(left), to(right)] {
+            [Some(a), Some(b)] => Some([a, b]),
+            [Some(a), None] => Some([a, a + own(right) - own(left)]),
+            [None, Some(b)] => Some([b + own(left) - own(right), b]),
+            [None, None] => None,
+        };
+        let (seen_hips, seen_shoulders) = (pair(hips)?, pair(shoulders)?);
         let trunk = Trunk { hips: hips.map(own), shoulders: shoulders.map(own) };
         let seen_trunk = Trunk { hips: seen_hips, shoulders: seen_shoulders };
         let (below, above) = (

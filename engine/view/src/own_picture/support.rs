@@ -7,6 +7,7 @@ use toile_sensors::person_mask::PersonMask;
 
 /// Why the picture is shown plain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[repr(u8)]
 pub enum Plain {
     /// There is no picture: nothing has come yet, or it cannot be looked at.
     NoPicture,
@@ -20,6 +21,12 @@ pub enum Plain {
     Unsure,
     /// The scene that is dressed is another: it comes with the next picture.
     Changing,
+}
+
+impl Plain {
+    /// All of them, in their order.
+    pub const ALL: [Self; 6] =
+        [Self::NoPicture, Self::UnknownCamera, Self::Nobody, Self::OutOfPicture, Self::Unsure, Self::Changing];
 }
 
 /// Places that are looked at, at least.

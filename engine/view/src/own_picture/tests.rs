@@ -11,6 +11,7 @@ use toile_engine::cloth::Settings;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_sensors::colour_camera::ColourCamera;
 use toile_sensors::frame::{DepthFrame, Intrinsics, Joints};
+use toile_sensors::lens::BrownConrady;
 use toile_sensors::person_mask::PersonMask;
 use toile_sensors::source::live::ColourImage;
 
@@ -93,6 +94,19 @@ fn somebody_who_stands_there_wears_the_garment_and_the_rest_is_the_picture() {
 }
 
 #[test]
+fn whoever_hides_a_hip_and_a_shoulder_from_the_side_wears_the_garment_all_the_same() {
+    let (scene, mut mirror) = (scene(), OwnPicture::new());
+    assert_eq!(scene.draw(&mut mirror, &scene.input()), Ok(()));
+    let whole: Vec<bool> = mirror.shown().collect();
+    let hidden = scene.with(|j| {
+        [Joint::LeftHip, Joint::RightShoulder].iter().for_each(|joint| j.at_mut(*joint).confidence = 0.0);
+    });
+    assert_eq!(scene.draw(&mut mirror, &OwnPictureInput { joints: &hidden, ..scene.input() }), Ok(()));
+    let other = mirror.shown().zip(&whole).filter(|(now, then)| now != *then).count();
+    assert!(other < 60, "{other} pixels are other ones");
+}
+
+#[test]
 fn nobody_somebody_else_and_what_could_be_nobody_stay_plain() {
     let scene = scene();
     let absent = Joints::absent(1);
@@ -130,7 +144,8 @@ fn pictures_that_are_none_are_black_and_cameras_that_are_not_known_stay_plain() 
     }
     let input = OwnPictureInput { camera: None, ..scene.input() };
     assert_eq!(scene.draw(&mut mirror, &input), Err(Plain::UnknownCamera));
-    let broken = ColourCamera { distortion: [f32::NAN; 5], ..scene.camera };
+    let lens = BrownConrady { k: [f32::NAN; 6], p: [0.0; 2], centre: [0.0; 2], widest: 1.0 };
+    let broken = ColourCamera { lens: Some(lens), ..scene.camera };
     let input = OwnPictureInput { camera: Some(&broken), ..scene.input() };
     assert_eq!(scene.draw(&mut mirror, &input), Err(Plain::UnknownCamera));
     // Black, with somebody in it all the same: cloth in the dark is dark.

@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 use super::error::CameraError;
 use super::library::{Library, LibraryName, functions};
-use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourPlace, LiveCamera};
+use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourPlace, LiveCamera, is_of_moment};
 use crate::source::azure_calibration;
 use crate::source::camera::Camera;
 
@@ -95,11 +95,28 @@ functions! {
     }
 }
 
+/// How a recording was made.
+#[repr(C)]
+#[derive(Default)]
+struct RecordConfiguration {
+    colour_format: c_int,
+    colour_resolution: c_int,
+    depth_mode: c_int,
+    rate: c_int,
+    /// Whether it holds colour, depth, infrared and motion.
+    tracks: [bool; 4],
+    depth_delay_us: i32,
+    wired_sync_mode: c_int,
+    subordinate_delay_us: u32,
+    start_offset_us: u32,
+}
+
 functions! {
     /// What is called of libk4arecord.
     PlaybackApi {
         fn k4a_playback_open(*const c_char, *mut K4aHandle) -> c_int;
         fn k4a_playback_get_raw_calibration(K4aHandle, *mut u8, *mut usize) -> c_int;
+        fn k4a_playback_get_record_configuration(K4aHandle, *mut RecordConfiguration) -> c_int;
         fn k4a_playback_set_color_conversion(K4aHandle, c_int) -> c_int;
         fn k4a_playback_get_next_capture(K4aHandle, *mut K4aHandle) -> c_int;
         fn k4a_playback_close(K4aHandle);
@@ -163,6 +180,9 @@ impl K4a {
         let calibration = k4a.calibration()?;
         let camera = azure_calibration::read(&calibration, size).map_err(|problem| refused(&problem))?;
         k4a.info.camera = Camera { quarter_turns: options.quarter_turns, ..camera };
+        // One whose colour lens is not described shows the mannequin; its depth is as good as ever.
+        let colour = azure_calibration::read_colour(&calibration, k4a.colour_resolution());
+        k4a.info.colour = colour.map_or(ColourPlace::Unknown, ColourPlace::Beside);
         k4a.start()?;
         Ok(k4a)
     }
@@ -186,6 +206,16 @@ impl K4a {
             OK => Ok(()),
             _ => Err(refused("its cameras cannot be started; libdepthengine.so.2.0 must lie beside libk4a")),
         }
+    }
+
+    /// The mode of its colour camera, 0 where it is off.
+    fn colour_resolution(&self) -> usize {
+        let CaptureSource::Playback { api, handle, .. } = &self.source else { return COLOUR_720P as usize };
+        let mut made = RecordConfiguration::default();
+        // SAFETY: the recording is open, and `made` is a place for its configuration.
+        let status = unsafe { (api.k4a_playback_get_record_configuration)(*handle, &mut made) };
+        let has_colour = status == OK && made.tracks[0];
+        if has_colour { usize::try_from(made.colour_resolution).unwrap_or(0) } else { 0 }
     }
 
     /// The calibration as the camera holds it: JSON.
@@ -398,7 +428,10 @@ impl LiveCamera for K4a {
             let samples = rows.flat_map(|row| row.chunks_exact(2)).map(|b| u16::from_le_bytes([b[0], b[1]]));
             frame.depth.extend(samples);
         }
-        if let Some(image) = colour_of(&self.api, &capture).filter(|_| self.colour) {
+        let rate_hz = self.info.rate_hz;
+        let of_moment =
+            |image: &K4aImage| is_of_moment(frame.device_ns, image.time_us().saturating_mul(1_000), rate_hz);
+        if let Some(image) = colour_of(&self.api, &capture).filter(|_| self.colour).filter(of_moment) {
             // SAFETY: the image is valid.
             let format = unsafe { (self.api.k4a_image_get_format)(image.0) };
             let [w, h] = image.size();
@@ -436,5 +469,6 @@ mod tests {
     fn the_configuration_is_laid_out_as_in_the_header() {
         assert_eq!(size_of::<DeviceConfiguration>(), 36);
         assert_eq!(std::mem::offset_of!(DeviceConfiguration, depth_delay_us), 20);
+        assert_eq!(size_of::<RecordConfiguration>(), 36);
     }
 }

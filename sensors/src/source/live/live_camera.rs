@@ -11,6 +11,9 @@ use crate::frame::{Intrinsics, Joints};
 use crate::limits::MAX_VIEW_PEOPLE;
 use crate::source::camera::Camera;
 
+/// Stamps of one moment differ by so much, for clocks count in milliseconds (ns).
+const SLACK_NS: f32 = 1e6;
+
 /// How a camera is opened.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct CameraOptions {
@@ -69,6 +72,12 @@ impl CameraInfo {
             }
         }
     }
+}
+
+/// Whether a colour image was taken in the moment of a depth image, both by the device's clock (ns): at most half a frame apart. Whoever
+/// walks at 1 m/s is 17 mm away by then.
+pub(super) fn is_of_moment(depth_ns: u64, colour_ns: u64, rate_hz: f32) -> bool {
+    depth_ns.abs_diff(colour_ns) as f32 <= 0.5e9 / rate_hz.max(1.0) + SLACK_NS
 }
 
 /// A colour image; of no size where there is none.
@@ -134,4 +143,17 @@ pub trait LiveCamera: Send {
     /// # Errors
     /// Where the camera is gone and has to be opened again.
     fn read(&mut self, frame: &mut CameraFrame, patience: Duration) -> Result<Arrival, CameraError>;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colour_of_another_moment_is_none_of_the_depth() {
+        const MS: u64 = 1_000_000;
+        for (colour, is) in [(100, true), (116, true), (84, true), (119, false), (66, false), (0, false)] {
+            assert_eq!(is_of_moment(100 * MS, colour * MS, 30.0), is, "{colour}");
+        }
+    }
 }

@@ -30,8 +30,10 @@ mod live_colour;
 mod live_depth;
 mod open;
 mod openni;
+mod openni_colour;
 mod orbbec;
 mod realsense;
+mod realsense_lens;
 mod recorded;
 mod recorder;
 #[cfg(target_os = "linux")]

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use super::error::CameraError;
 use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourPlace, LiveCamera};
+use super::openni_colour::OpenNiColour;
 use crate::error::Fault;
 use crate::source::camera::Camera;
 use crate::source::openni_library::{LIBRARY, OpenNiLibrary, OpenNiStream};
@@ -13,7 +14,7 @@ use crate::source::openni_library::{LIBRARY, OpenNiLibrary, OpenNiStream};
 pub(super) struct OpenNi {
     info: CameraInfo,
     depth: OpenNiStream,
-    colour: Option<OpenNiStream>,
+    colour: Option<OpenNiColour>,
 }
 
 impl OpenNi {
@@ -38,13 +39,14 @@ impl OpenNi {
         })?;
         let pinhole = Camera::pinhole(depth.intrinsics(width, height).map_err(refused)?);
         let camera = Camera { mm_per_unit, quarter_turns: options.quarter_turns, ..pinhole };
-        let colour = if options.colour { device.colour().ok() } else { None };
+        let colour = if options.colour { device.colour().ok().map(OpenNiColour::new) } else { None };
+        if colour.is_some() {
+            device.synchronise();
+        }
+        let beside = colour.as_ref().and_then(|colour| colour.camera(&depth, &camera.intrinsics, mm_per_unit));
+        let place = beside.map_or(ColourPlace::Unknown, ColourPlace::Beside);
         let device = which.map_or_else(|| "OpenNI 2".to_owned(), |which| format!("OpenNI 2 {which}"));
-        Ok(Self {
-            info: CameraInfo { device, camera, rate_hz, placed: None, colour: ColourPlace::Unknown },
-            depth,
-            colour,
-        })
+        Ok(Self { info: CameraInfo { device, camera, rate_hz, placed: None, colour: place }, depth, colour })
     }
 }
 
@@ -72,9 +74,8 @@ impl LiveCamera for OpenNi {
         // One that is not whole stays empty, and is counted as half.
         let _ = image.depth(sensor.width, sensor.height, &mut frame.depth);
         drop(image);
-        let image = self.colour.as_mut().and_then(|stream| stream.next(0));
-        if let Some((w, h)) = image.and_then(|image| image.colour(&mut frame.colour.rgb)) {
-            (frame.colour.width, frame.colour.height) = (w, h);
+        if let Some(colour) = &mut self.colour {
+            colour.take(frame.device_ns, self.info.rate_hz, &mut frame.colour);
         }
         Ok(Arrival::Frame)
     }

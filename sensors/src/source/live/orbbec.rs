@@ -10,12 +10,15 @@ use std::path::Path;
 use std::ptr;
 use std::time::{Duration, Instant};
 
+use glam::{Mat3, Vec3};
+
 use super::error::CameraError;
 use super::library::{Library, LibraryName, functions};
-use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourPlace, LiveCamera};
+use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourPlace, LiveCamera, is_of_moment};
+use crate::colour_camera::ColourCamera;
 use crate::frame::Intrinsics;
+use crate::lens::BrownConrady;
 use crate::source::camera::Camera;
-use crate::source::lens::BrownConrady;
 
 pub(super) const LIBRARY: LibraryName = LibraryName {
     camera: NAME,
@@ -33,11 +36,16 @@ const FORMAT_RGB: c_int = 22;
 const ANY: u32 = 0;
 const SEVERITY_OFF: c_int = 5;
 
-/// Distortion models by Brown and Conrady, of which the first has no k4 to k6.
-const BROWN_CONRADY: [c_int; 2] = [3, 4];
+/// Distortion models by Brown and Conrady; the last alone has k4 to k6. The first two bend points sideways by their place after the
+/// radial part and not before it, which is a twentieth of a pixel.
+const BROWN_CONRADY: [c_int; 4] = [1, 2, 3, BROWN_CONRADY_K6];
+const BROWN_CONRADY_K6: c_int = 4;
 
 /// Longest that the first frame is waited for, by which the lens is known.
 const FIRST: Duration = Duration::from_secs(5);
+
+/// Longest that the first colour image is waited for behind that, where colour is wanted.
+const FIRST_COLOUR: Duration = Duration::from_secs(1);
 
 /// A recording that gives nothing for so long has ended.
 const END: Duration = Duration::from_millis(1_500);
@@ -62,6 +70,14 @@ struct ObDistortion {
     k: [f32; 6],
     p: [f32; 2],
     model: c_int,
+}
+
+/// From one stream's axes to another's: a matrix row by row, and mm.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+struct ObExtrinsic {
+    rotation: [f32; 9],
+    translation_mm: [f32; 3],
 }
 
 functions! {
@@ -94,6 +110,8 @@ functions! {
         fn ob_video_stream_profile_get_fps(ObHandle, *mut ObError) -> u32;
         fn ob_video_stream_profile_get_intrinsic(ObHandle, *mut ObError) -> ObIntrinsic;
         fn ob_video_stream_profile_get_distortion(ObHandle, *mut ObError) -> ObDistortion;
+        fn ob_stream_profile_get_extrinsic_to(ObHandle, ObHandle, *mut ObError) -> ObExtrinsic;
+        fn ob_pipeline_enable_frame_sync(ObHandle, *mut ObError);
         fn ob_depth_frame_get_value_scale(ObHandle, *mut ObError) -> f32;
         fn ob_frame_get_format(ObHandle, *mut ObError) -> c_int;
         fn ob_frame_get_timestamp_us(ObHandle, *mut ObError) -> u64;
@@ -127,6 +145,9 @@ struct Parts {
 
 /// Frames of one moment, or one frame, given back when dropped.
 struct ObFrame(ObHandle, OrbbecApi);
+
+/// What a frame's stream is, given back when dropped.
+struct ObProfile(ObHandle, OrbbecApi);
 
 // SAFETY: the library may be called from any thread; `&mut self` lets one at a time.
 unsafe impl Send for Orbbec {}
@@ -164,19 +185,13 @@ impl Orbbec {
         let mut parts = Parts { api, context: null, device: null, pipeline: null, config: null, started: false };
         parts.find(which, recording)?;
         parts.start(options.colour, recording.is_some())?;
-        let until = Instant::now() + FIRST;
-        let first = loop {
-            match parts.wait(FIRST)? {
-                Some(frames) if frames.depth().is_some() => break frames,
-                _ if Instant::now() < until => {}
-                _ => return Err(refused("no depth comes of it", String::new())),
-            }
-        };
+        let first = parts.first(options.colour && recording.is_none())?;
         let none = || refused("no depth comes of it", String::new());
         let (camera, rate_hz) = first.depth().ok_or_else(none)?.camera()?;
         let camera = Camera { quarter_turns: options.quarter_turns, ..camera };
+        let colour = first.colour_camera().map_or(ColourPlace::Unknown, ColourPlace::Beside);
         let device = which.map_or_else(|| "Orbbec".to_owned(), |which| format!("Orbbec {which}"));
-        let info = CameraInfo { device, camera, rate_hz, placed: None, colour: ColourPlace::Unknown };
+        let info = CameraInfo { device, camera, rate_hz, placed: None, colour };
         Ok(Self { parts, info, is_recording: recording.is_some(), heard: Instant::now(), first: Some(first) })
     }
 }
@@ -238,11 +253,31 @@ impl Parts {
             api.call("its colour cannot be chosen", |e| unsafe {
                 (api.ob_config_enable_video_stream)(self.config, STREAM_COLOUR, ANY, ANY, ANY, FORMAT_RGB, e);
             })?;
+            // A device that cannot take both at one time gives what it has; what is too far apart is passed over.
+            // SAFETY: the pipeline is valid.
+            let _ = api.call("", |e| unsafe { (api.ob_pipeline_enable_frame_sync)(self.pipeline, e) });
         }
         // SAFETY: both live.
         api.call(what, |e| unsafe { (api.ob_pipeline_start_with_config)(self.pipeline, self.config, e) })?;
         self.started = true;
         Ok(())
+    }
+
+    /// The first frames that hold depth, and colour where it is waited for and comes.
+    fn first(&mut self, colour: bool) -> Result<ObFrame, CameraError> {
+        let mut until = Instant::now() + FIRST;
+        let mut first = None;
+        while Instant::now() < until {
+            let Some(frames) = self.wait(FIRST)?.filter(|frames| frames.depth().is_some()) else { continue };
+            if !colour || frames.colour().is_some() {
+                return Ok(frames);
+            }
+            if first.is_none() {
+                until = Instant::now() + FIRST_COLOUR;
+            }
+            first = Some(frames);
+        }
+        first.ok_or_else(|| refused("no depth comes of it", String::new()))
     }
 
     /// The frames of the next moment; none in that time.
@@ -292,23 +327,55 @@ impl ObFrame {
     /// The camera of a depth frame, and its rate (Hz).
     fn camera(&self) -> Result<(Camera, f32), CameraError> {
         let (api, what) = (self.1, "its lens cannot be read");
-        // SAFETY: the frame is valid; the profile is a reference of our own, deleted below.
-        let profile = api.call(what, |e| unsafe { (api.ob_frame_get_stream_profile)(self.0, e) })?;
-        // SAFETY: the profile is valid, here and below.
-        let k = api.call(what, |e| unsafe { (api.ob_video_stream_profile_get_intrinsic)(profile, e) });
-        // SAFETY: as above.
-        let lens = api.call(what, |e| unsafe { (api.ob_video_stream_profile_get_distortion)(profile, e) });
-        // SAFETY: as above.
-        let rate = api.call(what, |e| unsafe { (api.ob_video_stream_profile_get_fps)(profile, e) });
-        // SAFETY: as above, for the last time.
-        let _ = api.call("", |e| unsafe { (api.ob_delete_stream_profile)(profile, e) });
+        let profile = self.profile().ok_or_else(|| refused(what, String::new()))?;
+        let (intrinsics, lens) = self.lens(&profile)?;
+        // SAFETY: the profile is valid.
+        let rate = api.call(what, |e| unsafe { (api.ob_video_stream_profile_get_fps)(profile.0, e) })?;
         // SAFETY: a depth frame that is valid.
         let scale = api.call(what, |e| unsafe { (api.ob_depth_frame_get_value_scale)(self.0, e) })?;
-        let (k, size) = (k?, self.size().ok_or_else(|| refused(what, String::new()))?);
-        let intrinsics = Intrinsics { width: size[0], height: size[1], fx: k.fx, fy: k.fy, cx: k.cx, cy: k.cy };
         let mm_per_unit = if scale > 0.0 { scale } else { 1.0 };
-        let camera = Camera { distortion: lens?.lens(), mm_per_unit, ..Camera::pinhole(intrinsics) };
-        Ok((camera, rate?.max(1) as f32))
+        let camera = Camera { distortion: lens.lens(), mm_per_unit, ..Camera::pinhole(intrinsics) };
+        Ok((camera, rate.max(1) as f32))
+    }
+
+    /// The colour camera of frames that hold colour, in the depth camera's axes; none where its lens is not known here.
+    fn colour_camera(&self) -> Option<ColourCamera> {
+        let api = self.1;
+        let (depth, colour) = (self.depth()?.profile()?, self.colour()?);
+        let profile = colour.profile()?;
+        let (intrinsics, lens) = colour.lens(&profile).ok()?;
+        // SAFETY: both profiles are valid.
+        let extrinsic = |e| unsafe { (api.ob_stream_profile_get_extrinsic_to)(depth.0, profile.0, e) };
+        let place = api.call("", extrinsic).ok()?;
+        lens.is_known().then(|| {
+            let rotation = Mat3::from_cols_array(&place.rotation).transpose();
+            ColourCamera::beside(intrinsics, lens.lens(), rotation, Vec3::from_array(place.translation_mm) * 1e-3)
+        })
+    }
+
+    fn profile(&self) -> Option<ObProfile> {
+        let api = self.1;
+        // SAFETY: the frame is valid; the profile is a reference of our own.
+        let profile = api.call("", |e| unsafe { (api.ob_frame_get_stream_profile)(self.0, e) }).ok()?;
+        (!profile.is_null()).then_some(ObProfile(profile, api))
+    }
+
+    /// The lens of a video frame of this profile.
+    fn lens(&self, profile: &ObProfile) -> Result<(Intrinsics, ObDistortion), CameraError> {
+        let (api, what) = (self.1, "its lens cannot be read");
+        // SAFETY: the profile is valid, here and below.
+        let k = api.call(what, |e| unsafe { (api.ob_video_stream_profile_get_intrinsic)(profile.0, e) })?;
+        // SAFETY: as above.
+        let lens = api.call(what, |e| unsafe { (api.ob_video_stream_profile_get_distortion)(profile.0, e) })?;
+        let [width, height] = self.size().ok_or_else(|| refused(what, String::new()))?;
+        Ok((Intrinsics { width, height, fx: k.fx, fy: k.fy, cx: k.cx, cy: k.cy }, lens))
+    }
+
+    fn time_ns(&self) -> Option<u64> {
+        let api = self.1;
+        // SAFETY: the frame is valid.
+        let us = api.call("", |e| unsafe { (api.ob_frame_get_timestamp_us)(self.0, e) }).ok()?;
+        Some(us.saturating_mul(1_000))
     }
 
     fn size(&self) -> Option<[u32; 2]> {
@@ -335,6 +402,14 @@ impl ObFrame {
     }
 }
 
+impl Drop for ObProfile {
+    fn drop(&mut self) {
+        let api = self.1;
+        // SAFETY: the profile is our own reference, given back once.
+        let _ = api.call("", |e| unsafe { (api.ob_delete_stream_profile)(self.0, e) });
+    }
+}
+
 impl Drop for ObFrame {
     fn drop(&mut self) {
         let api = self.1;
@@ -344,11 +419,17 @@ impl Drop for ObFrame {
 }
 
 impl ObDistortion {
+    /// Whether it is known how the lens bends: a fisheye's is not.
+    fn is_known(&self) -> bool {
+        let bends = self.k.iter().chain(&self.p).any(|c| *c != 0.0);
+        BROWN_CONRADY.contains(&self.model) || self.model == 0 || !bends
+    }
+
     /// The lens, where it bends by a model that is known here.
     fn lens(&self) -> Option<BrownConrady> {
         let bends = BROWN_CONRADY.contains(&self.model) && self.k.iter().chain(&self.p).any(|c| *c != 0.0);
         let mut k = self.k;
-        if self.model == BROWN_CONRADY[0] {
+        if self.model != BROWN_CONRADY_K6 {
             k[3..].fill(0.0);
         }
         bends.then_some(BrownConrady { k, p: self.p, centre: [0.0; 2], widest: f32::INFINITY })
@@ -372,13 +453,13 @@ impl LiveCamera for Orbbec {
         };
         self.heard = Instant::now();
         let api = self.parts.api;
-        // SAFETY: the frame is valid.
-        let us = api.call("", |e| unsafe { (api.ob_frame_get_timestamp_us)(depth.0, e) })?;
-        frame.device_ns = us.saturating_mul(1_000);
+        frame.device_ns = depth.time_ns().ok_or_else(|| refused("its stamps cannot be read", String::new()))?;
         if let Some(bytes) = depth.bytes(2) {
             frame.depth.extend(bytes.chunks_exact(2).map(|b| u16::from_le_bytes([b[0], b[1]])));
         }
-        if let Some(colour) = frames.as_ref().and_then(ObFrame::colour) {
+        let (depth_ns, rate_hz) = (frame.device_ns, self.info.rate_hz);
+        let of_moment = |colour: &ObFrame| colour.time_ns().is_some_and(|ns| is_of_moment(depth_ns, ns, rate_hz));
+        if let Some(colour) = frames.as_ref().and_then(ObFrame::colour).filter(of_moment) {
             // SAFETY: the frame is valid.
             let format = api.call("", |e| unsafe { (api.ob_frame_get_format)(colour.0, e) })?;
             if let (Some([w, h]), Some(bytes), FORMAT_RGB) = (colour.size(), colour.bytes(3), format) {
@@ -396,7 +477,17 @@ mod tests {
 
     #[test]
     fn the_layouts_are_those_of_the_headers() {
-        assert_eq!((size_of::<ObIntrinsic>(), size_of::<ObDistortion>()), (20, 36));
+        assert_eq!((size_of::<ObIntrinsic>(), size_of::<ObDistortion>(), size_of::<ObExtrinsic>()), (20, 36, 48));
+    }
+
+    #[test]
+    fn lenses_of_four_models_are_known_and_a_fisheyes_is_not() {
         assert!(ObDistortion { k: [0.0; 6], p: [0.0; 2], model: 4 }.lens().is_none());
+        for model in 0..=5 {
+            let lens = ObDistortion { k: [0.1; 6], p: [0.0; 2], model };
+            assert_eq!(lens.is_known(), model < 5, "{model}");
+            let rational = lens.lens().map(|lens| lens.k[3]);
+            assert_eq!(rational, [None, Some(0.0), Some(0.0), Some(0.0), Some(0.1), None][model as usize]);
+        }
     }
 }

@@ -12,10 +12,10 @@ use std::time::{Duration, Instant};
 
 use super::error::CameraError;
 use super::library::{Library, LibraryName, functions};
-use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourPlace, LiveCamera};
-use crate::frame::Intrinsics;
+use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourPlace, LiveCamera, is_of_moment};
+use super::realsense_lens::{RsExtrinsics, RsIntrinsics};
+use crate::colour_camera::ColourCamera;
 use crate::source::camera::Camera;
-use crate::source::lens::BrownConrady;
 
 pub(super) const LIBRARY: LibraryName = LibraryName {
     camera: NAME,
@@ -39,7 +39,6 @@ const STREAM_COLOUR: c_int = 2;
 const FORMAT_ANY: c_int = 0;
 const FORMAT_Z16: c_int = 1;
 const FORMAT_RGB8: c_int = 5;
-const DISTORTION_BROWN_CONRADY: c_int = 4;
 
 /// The mode that is asked of a camera (px, Hz): all of them have it.
 const MODE: [c_int; 3] = [640, 480, 30];
@@ -55,19 +54,6 @@ const LEAST_MS: u128 = 1;
 
 type RsHandle = *mut c_void;
 type RsError = *mut c_void;
-
-#[repr(C)]
-#[derive(Debug, Clone, Copy, Default)]
-struct RsIntrinsics {
-    width: c_int,
-    height: c_int,
-    ppx: f32,
-    ppy: f32,
-    fx: f32,
-    fy: f32,
-    model: c_int,
-    coefficients: [f32; 5],
-}
 
 functions! {
     /// What is called of librealsense.
@@ -88,6 +74,11 @@ functions! {
         fn rs2_pipeline_start_with_config(RsHandle, RsHandle, *mut RsError) -> RsHandle;
         fn rs2_pipeline_stop(RsHandle, *mut RsError);
         fn rs2_delete_pipeline_profile(RsHandle);
+        fn rs2_pipeline_profile_get_streams(RsHandle, *mut RsError) -> RsHandle;
+        fn rs2_get_stream_profiles_count(RsHandle, *mut RsError) -> c_int;
+        fn rs2_get_stream_profile(RsHandle, c_int, *mut RsError) -> RsHandle;
+        fn rs2_delete_stream_profiles_list(RsHandle);
+        fn rs2_get_extrinsics(RsHandle, RsHandle, *mut RsExtrinsics, *mut RsError);
         fn rs2_pipeline_try_wait_for_frames(RsHandle, *mut RsHandle, c_uint, *mut RsError) -> c_int;
         fn rs2_embedded_frames_count(RsHandle, *mut RsError) -> c_int;
         fn rs2_extract_frame(RsHandle, c_int, *mut RsError) -> RsHandle;
@@ -157,6 +148,18 @@ impl RealSenseApi {
         let cure = "plug it into a USB 3 port, and see that no other program has it and your user may use it";
         Err(CameraError::Refused { camera: NAME, what: what.to_owned(), said_by_library, cure })
     }
+
+    /// What a profile is of.
+    fn kind_of(&self, profile: RsHandle) -> Option<StreamKind> {
+        let (mut kind, mut index, mut id) = (StreamKind { stream: 0, format: 0, rate: 0 }, 0, 0);
+        let StreamKind { stream, format, rate } = &mut kind;
+        // SAFETY: the profile is valid, and five places for a number are handed over.
+        self.call("", |e| unsafe {
+            (self.rs2_get_stream_profile_data)(profile, stream, format, &mut index, &mut id, rate, e);
+        })
+        .ok()?;
+        Some(kind)
+    }
 }
 
 impl RealSense {
@@ -184,8 +187,9 @@ impl RealSense {
         };
         let (camera, rate_hz) = first.depth().ok_or_else(|| refused("no depth comes of it"))?.camera()?;
         let camera = Camera { quarter_turns: options.quarter_turns, ..camera };
+        let colour = pipeline.colour_camera().map_or(ColourPlace::Unknown, ColourPlace::Beside);
         let device = which.map_or_else(|| NAME.to_owned(), |which| format!("{NAME} {which}"));
-        let info = CameraInfo { device, camera, rate_hz, placed: None, colour: ColourPlace::Unknown };
+        let info = CameraInfo { device, camera, rate_hz, placed: None, colour };
         Ok(Self { pipeline, info, is_recording: recording.is_some(), heard: Instant::now(), first: Some(first) })
     }
 }
@@ -271,6 +275,38 @@ impl Pipeline {
         Ok(())
     }
 
+    /// The colour camera in the depth camera's axes; none where there is none, or its lens is not known here.
+    fn colour_camera(&self) -> Option<ColourCamera> {
+        let api = self.api;
+        // SAFETY: the profile was given by the start of the pipeline, and lives as long.
+        let list = api.call("", |e| unsafe { (api.rs2_pipeline_profile_get_streams)(self.profile, e) }).ok()?;
+        let found = self.colour_of(list);
+        // SAFETY: the list was made above, and is deleted once. What it holds belongs to the pipeline.
+        unsafe { (api.rs2_delete_stream_profiles_list)(list) };
+        found
+    }
+
+    fn colour_of(&self, list: RsHandle) -> Option<ColourCamera> {
+        let api = self.api;
+        // SAFETY: the list lives, here and below.
+        let count = api.call("", |e| unsafe { (api.rs2_get_stream_profiles_count)(list, e) }).ok()?;
+        let profile = |stream: c_int| {
+            (0..count).find_map(|i| {
+                // SAFETY: there are so many.
+                let profile = api.call("", |e| unsafe { (api.rs2_get_stream_profile)(list, i, e) }).ok()?;
+                let is = !profile.is_null() && api.kind_of(profile)?.stream == stream;
+                is.then_some(profile)
+            })
+        };
+        let (depth, colour) = (profile(STREAM_DEPTH)?, profile(STREAM_COLOUR)?);
+        let (mut k, mut place) = (RsIntrinsics::default(), RsExtrinsics::default());
+        // SAFETY: the profile is valid, and a place for the intrinsics is handed over.
+        api.call("", |e| unsafe { (api.rs2_get_video_stream_intrinsics)(colour, &mut k, e) }).ok()?;
+        // SAFETY: both are valid, and a place for the extrinsics is handed over.
+        api.call("", |e| unsafe { (api.rs2_get_extrinsics)(depth, colour, &mut place, e) }).ok()?;
+        k.beside(&place)
+    }
+
     /// The frames of the next moment; none in that time.
     fn wait(&mut self, patience: Duration) -> Result<Option<Frames>, CameraError> {
         let (api, pipeline) = (self.api, self.pipeline);
@@ -331,15 +367,7 @@ impl Frames {
     }
 
     fn kind(&self) -> Option<StreamKind> {
-        let (api, profile) = (self.1, self.profile()?);
-        let (mut kind, mut index, mut id) = (StreamKind { stream: 0, format: 0, rate: 0 }, 0, 0);
-        let StreamKind { stream, format, rate } = &mut kind;
-        // SAFETY: the profile is valid, and five places for a number are handed over.
-        api.call("", |e| unsafe {
-            (api.rs2_get_stream_profile_data)(profile, stream, format, &mut index, &mut id, rate, e);
-        })
-        .ok()?;
-        Some(kind)
+        self.1.kind_of(self.profile()?)
     }
 
     /// The camera of a depth frame, and its rate (Hz).
@@ -351,16 +379,8 @@ impl Frames {
         api.call(what, |e| unsafe { (api.rs2_get_video_stream_intrinsics)(profile, &mut k, e) })?;
         // SAFETY: a depth frame that is valid.
         let units = api.call(what, |e| unsafe { (api.rs2_depth_frame_get_units)(self.0, e) })?;
-        let intrinsics = Intrinsics {
-            width: u32::try_from(k.width).unwrap_or(0),
-            height: u32::try_from(k.height).unwrap_or(0),
-            fx: k.fx,
-            fy: k.fy,
-            cx: k.ppx,
-            cy: k.ppy,
-        };
         let mm_per_unit = if units > 0.0 { units * 1e3 } else { 1.0 };
-        Ok((Camera { distortion: k.lens(), mm_per_unit, ..Camera::pinhole(intrinsics) }, kind.rate.max(1) as f32))
+        Ok((Camera { distortion: k.lens(), mm_per_unit, ..Camera::pinhole(k.intrinsics()) }, kind.rate.max(1) as f32))
     }
 
     /// The rows of a video frame of so many bytes a pixel, with its width and height.
@@ -398,20 +418,6 @@ impl Drop for Frames {
     }
 }
 
-impl RsIntrinsics {
-    /// The lens, where it bends by a model that is known here. Depth of a stereo camera is rectified and has none.
-    fn lens(&self) -> Option<BrownConrady> {
-        let [k1, k2, p1, p2, k3] = self.coefficients;
-        let bends = self.model == DISTORTION_BROWN_CONRADY && self.coefficients.iter().any(|c| *c != 0.0);
-        bends.then_some(BrownConrady {
-            k: [k1, k2, k3, 0.0, 0.0, 0.0],
-            p: [p1, p2],
-            centre: [0.0; 2],
-            widest: f32::INFINITY,
-        })
-    }
-}
-
 impl LiveCamera for RealSense {
     fn info(&self) -> &CameraInfo {
         &self.info
@@ -434,21 +440,12 @@ impl LiveCamera for RealSense {
             frame.depth.extend(rows.flat_map(|row| row.chunks_exact(2)).map(|b| u16::from_le_bytes([b[0], b[1]])));
         }
         if let Some(colour) = frames.find(STREAM_COLOUR, FORMAT_RGB8)
+            && is_of_moment(frame.device_ns, colour.time_ns(), self.info.rate_hz)
             && let Some(([width, height], rows)) = colour.rows(3)
         {
             frame.colour.rgb.extend(rows.flatten());
             (frame.colour.width, frame.colour.height) = (width as u32, height as u32);
         }
         Ok(Arrival::Frame)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn intrinsics_are_laid_out_as_in_the_header() {
-        assert_eq!((size_of::<RsIntrinsics>(), std::mem::offset_of!(RsIntrinsics, coefficients)), (48, 28));
     }
 }

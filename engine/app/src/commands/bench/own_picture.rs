@@ -15,9 +15,10 @@ use crate::terminal::{self, Words};
 
 /// Measure how far the garment on a shopper's own picture is from where it would really be.
 ///
-/// Draws a woman who stands, walks across and crosses her arms, in colour and in depth with a Kinect's noise, with the garment and without. She is
-/// measured, dressed and followed as the mirror does it, by depth and, where the network that `toile doctor` names is fetched, by a webcam;
-/// reported are pixels between the garment's outline and the true one, at 1080 rows, and the time of a picture.
+/// Draws a woman who stands, walks across, crosses her arms and puts her hands behind her back, in colour and in depth with a Kinect's noise,
+/// with the garment and without. She is measured, dressed and followed as the mirror does it, by depth and, where the network that `toile
+/// doctor` names is fetched, by a webcam; reported are pixels between the garment's outline and the true one, at 1080 rows, and the time of
+/// a picture.
 #[derive(Debug, Clone, PartialEq, Eq, clap::Args)]
 #[command(
     after_help = "Example: the table of docs/own-picture.md, with pictures\n  toile bench own-picture --out look"

@@ -1,21 +1,7 @@
-//! A lens that bends straight lines (Brown 1971, with the rational radial part of Claus and Fitzgibbon 2005), and the
-//! table by which its images become those of a pinhole.
-//!
-//! With x, y the normalised image coordinates less the centre of distortion and r2 = x x + y y:
-//!
-//! ```text
-//! d  = (1 + k1 r2 + k2 r2^2 + k3 r2^3) / (1 + k4 r2 + k5 r2^2 + k6 r2^3)
-//! x' = x d + 2 p1 x y + p2 (r2 + 2 x x)
-//! y' = y d + 2 p2 x y + p1 (r2 + 2 y y)
-//! ```
+//! The table by which images of a lens that bends straight lines become those of a pinhole.
 
 use crate::frame::Intrinsics;
-
-/// Largest radius of the normalised image that is looked at: a view of 143 degrees.
-const WIDEST: f32 = 3.0;
-
-/// Steps in which the radius is followed.
-const STEPS: usize = 600;
+use crate::lens::BrownConrady;
 
 /// A straightened image is at most so much wider or higher than the bent one, or narrower or lower: more bends no lens.
 const LARGEST_GROWTH: f32 = 1.5;
@@ -23,69 +9,6 @@ const LARGEST_GROWTH: f32 = 1.5;
 /// Neighbours that differ by more than this fraction of their depth, and by more than [`EDGE_MM`], lie on two surfaces.
 const EDGE: f32 = 0.02;
 const EDGE_MM: f32 = 10.0;
-
-/// Brown and Conrady's distortion in normalised image coordinates.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct BrownConrady {
-    /// Radial: k1 .. k3 above, k4 .. k6 below the fraction.
-    pub k: [f32; 6],
-    /// Tangential: p1, p2.
-    pub p: [f32; 2],
-    /// Centre of distortion.
-    pub centre: [f32; 2],
-    /// Radius beyond which the model was never fitted; infinite where that is not known.
-    pub widest: f32,
-}
-
-impl BrownConrady {
-    fn scale(&self, r2: f32) -> f32 {
-        let [k1, k2, k3, k4, k5, k6] = self.k;
-        let poly = |a: f32, b: f32, c: f32| 1.0 + r2 * (a + r2 * (b + r2 * c));
-        poly(k1, k2, k3) / poly(k4, k5, k6)
-    }
-
-    /// Where a straight ray's image lies, bent.
-    fn bend(&self, [x, y]: [f32; 2]) -> [f32; 2] {
-        let (x, y) = (x - self.centre[0], y - self.centre[1]);
-        let [p1, p2] = self.p;
-        let r2 = x * x + y * y;
-        let d = self.scale(r2);
-        let bent =
-            [x * d + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x), y * d + 2.0 * p2 * x * y + p1 * (r2 + 2.0 * y * y)];
-        [bent[0] + self.centre[0], bent[1] + self.centre[1]]
-    }
-
-    /// Radius up to which a longer ray still lands farther out: beyond it the model folds the image over.
-    fn sound_radius(&self) -> f32 {
-        let mut last = 0.0;
-        let limit = self.widest.min(WIDEST);
-        for i in 1..=STEPS {
-            let r = limit * i as f32 / STEPS as f32;
-            let bent = r * self.scale(r * r);
-            // Not a number counts as folded too.
-            if !matches!(bent.partial_cmp(&last), Some(std::cmp::Ordering::Greater)) {
-                return limit * (i - 1) as f32 / STEPS as f32;
-            }
-            last = bent;
-        }
-        limit
-    }
-
-    /// The straight coordinate along one axis whose bent one is `wanted`, both from the middle, within the sound radius.
-    fn unbend(&self, axis: usize, wanted: f32, sound: f32) -> f32 {
-        let at = |t: f32| {
-            let mut p = [0.0; 2];
-            p[axis] = t;
-            self.bend(p)[axis]
-        };
-        let (mut low, mut high) = if wanted < 0.0 { (-sound, 0.0) } else { (0.0, sound) };
-        for _ in 0..40 {
-            let middle = 0.5 * (low + high);
-            if at(middle) < wanted { low = middle } else { high = middle }
-        }
-        0.5 * (low + high)
-    }
-}
 
 /// Turns images of a bent lens into those of a pinhole of the same focal lengths, a little larger so that the middle of
 /// each side stays in view.
@@ -107,7 +30,7 @@ impl Straighten {
             return None;
         }
         let side = |axis: usize, size: u32, f: f32, c: f32| {
-            let edge = |px: f32| lens.unbend(axis, (px - c) / f, sound) * f;
+            let edge = |px: f32| unbend(lens, axis, (px - c) / f, sound) * f;
             let (first, last) = (edge(0.0).floor(), edge(size as f32 - 1.0).ceil());
             let pixels = last - first + 1.0;
             let sane =
@@ -144,6 +67,21 @@ impl Straighten {
         let [p, q, r, s] = corners.map(f32::from);
         ((p + (q - p) * a) * (1.0 - b) + (r + (s - r) * a) * b).round() as u16
     }
+}
+
+/// The straight coordinate along one axis whose bent one is `wanted`, both from the middle, within the sound radius.
+fn unbend(lens: &BrownConrady, axis: usize, wanted: f32, sound: f32) -> f32 {
+    let at = |t: f32| {
+        let mut p = [0.0; 2];
+        p[axis] = t;
+        lens.bend(p)[axis]
+    };
+    let (mut low, mut high) = if wanted < 0.0 { (-sound, 0.0) } else { (0.0, sound) };
+    for _ in 0..40 {
+        let middle = 0.5 * (low + high);
+        if at(middle) < wanted { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
 }
 
 fn table(bent: &Intrinsics, straight: &Intrinsics, lens: &BrownConrady, sound: f32) -> Box<[[f32; 2]]> {
