@@ -27,6 +27,9 @@ def place(repository: Path, pages: Path, home: Path, link: str) -> str:
         return join(name.removeprefix("docs/").removeprefix("site/"), fragment)
     if name in MOVED:
         return join(name, fragment)
+    if name.endswith(".md"):
+        # No page of the site: a text, which mdBook leaves as it is.
+        name = name.removesuffix(".md") + ".txt"
     return join(copy(found, pages / "files" / name, name), fragment)
 
 
