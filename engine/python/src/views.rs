@@ -73,7 +73,7 @@ where
     // it; the array holds the owner. It is handed out only once it cannot be written, for which there is a flag of its own.
     let array = unsafe { PyArray::borrow_from_array(&view, owner.into_any()) };
     // SAFETY: the array was made above and nobody else has it yet.
-    unsafe { (*array.as_array_ptr()).flags &= !NPY_ARRAY_WRITEABLE };
+    unsafe { (*array.as_array_ptr()).fields.flags &= !NPY_ARRAY_WRITEABLE };
     Ok(array)
 }
 

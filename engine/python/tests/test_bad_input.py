@@ -240,7 +240,7 @@ def test_recordings(tmp_path):
     refused(INPUT, lambda: toile.measure(embedded, toile.Shopper(by_tape={"chest": 92})), "centimetres")
     refused(INPUT, lambda: toile.measure(embedded, toile.Shopper(by_tape={"chest": NAN})), "chest")
     refused(USAGE, lambda: toile.measure(embedded, toile.Shopper(by_tape={"chest": "wide"})), "number")
-    refused(USAGE, lambda: embedded.depth_frame(0), "no depth image 0")
+    refused(USAGE, lambda: embedded.depth_frame(10**6), "no depth image 1000000", "counted from 0")
     refused(USAGE, lambda: embedded.depth_frame(-1), "-1")
     refused(TypeError, lambda: embedded.track(None))
     refused(USAGE, lambda: toile.try_on(embedded, None), "garment")

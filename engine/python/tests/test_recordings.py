@@ -58,9 +58,14 @@ def test_measures_have_their_errors(recording, measured):
     assert body.measure("stature") == pytest.approx(stature.mm, abs=30)
 
 
-def test_joints_that_come_back_are_the_same_recording(recording, measured):
-    joints = recording.joints
-    again = toile.Recording.from_frames(joints=toile.Track(joints.times, joints.joints), name="again")
+def test_arrays_that_come_back_are_the_same_recording(recording, measured):
+    joints, depth = recording.joints, []
+    for frame in map(recording.depth_frame, range(recording.depth_count)):
+        fx, fy, cx, cy = frame.intrinsics
+        camera = {"fx": fx, "fy": fy, "cx": cx, "cy": cy, "camera_to_world": frame.camera_to_world}
+        depth.append(toile.DepthFrame(frame.depth, time=frame.time, **camera))
+    assert len(depth) == len(joints)
+    again = toile.Recording.from_frames(depth, toile.Track(joints.times, joints.joints), name="again")
     assert (again.joints.joints == joints.joints).all() and again.name == "again"
     ours = toile.measure(again).measures
     assert {n: m.mm for n, m in ours.items()} == {n: m.mm for n, m in measured.measures.items()}

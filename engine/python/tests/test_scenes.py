@@ -1,6 +1,7 @@
 """Scenes: arrays that show their memory, steps without the interpreter's lock, the engine's own bits."""
 
 import gc
+import json
 import multiprocessing
 import os
 import pathlib
@@ -109,30 +110,20 @@ def test_other_threads_run_during_a_step(curtain):
 
 
 def test_a_call_that_comes_during_a_step_is_refused(curtain):
-    started, refused = threading.Event(), []
-
-    def step():
-        started.set()
-        curtain.step(120)
-
-    thread = threading.Thread(target=step)
+    refused = []
+    thread = threading.Thread(target=curtain.step, args=(400,))
     thread.start()
-    started.wait()
-    while thread.is_alive():
+    while not refused and thread.is_alive():
         try:
             curtain.positions()
         except toile.UsageError as error:
             refused.append(str(error))
-        for call in (curtain.close, curtain.step):
-            try:
-                call(0) if call == curtain.step else call()
-            except toile.UsageError as error:
-                refused.append(str(error))
-            else:
-                break
-        break
+    for call in (curtain.close, curtain.step, curtain.snapshot, lambda: curtain.steps):
+        with pytest.raises(toile.UsageError, match="another call is at work"):
+            call()
     thread.join()
-    assert refused and all("another call is at work" in sentence for sentence in refused), refused
+    assert "another call is at work" in refused[0]
+    assert curtain.steps == 400 and curtain.positions().shape == (3600, 3)
 
 
 def test_two_scenes_step_at_once():
@@ -184,6 +175,26 @@ def test_a_scene_does_not_go_through_a_fork(cloth):
     cloth.step()
 
 
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="processes do not fork here")
+@pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
+def test_a_forked_scene_is_dropped_without_waiting_for_its_threads():
+    scene = toile.Scene.parse(GRID)
+    scene.step()
+    child = os.fork()
+    if child == 0:
+        del scene
+        gc.collect()
+        os._exit(17)
+    ends = time.monotonic() + 20
+    while (ended := os.waitpid(child, os.WNOHANG)) == (0, 0) and time.monotonic() < ends:
+        time.sleep(0.01)
+    if ended == (0, 0):
+        os.kill(child, signal.SIGKILL)
+        os.waitpid(child, 0)
+    assert ended[0] == child and os.waitstatus_to_exitcode(ended[1]) == 17
+    scene.step()
+
+
 def program():
     """The program `toile`, where it was built."""
     found = os.environ.get("TOILE_PROGRAM") or str(ROOT / "target/release/toile")
@@ -192,8 +203,6 @@ def program():
 
 @pytest.mark.skipif(program() is None, reason="the program is not built: cargo build --release -p toile")
 def test_a_scene_file_gives_the_programs_bits(tmp_path):
-    import json
-
     path = tmp_path / "curtain.toml"
     path.write_text(GRID)
     line = [program(), "run", str(path), "--frames", "40", "--json", "--dump", str(tmp_path / "out")]
@@ -203,14 +212,14 @@ def test_a_scene_file_gives_the_programs_bits(tmp_path):
         scene.step(40)
         state = said["state_hash"]
         assert state in (scene.state_hash, f"{scene.state_hash:016x}", f"0x{scene.state_hash:016x}")
-        dumped = np.loadtxt(tmp_path / "out" / "cloth-1-000040.csv", delimiter=",", skiprows=1, dtype=np.float64)
+        last = (tmp_path / "out" / "index.csv").read_text().splitlines()[-1].split(",")
+        assert int(last[1]) == 40
+        dumped = np.loadtxt(tmp_path / "out" / last[-1], delimiter=",", skiprows=1, dtype=np.float64)
         assert (dumped[:, 1:].astype(np.float32) == scene.positions()).all()
 
 
 @pytest.mark.skipif(program() is None, reason="the program is not built: cargo build --release -p toile")
 def test_a_try_on_gives_the_programs_bits(tmp_path):
-    import json
-
     line = [program(), "try-on", "--garment", "t-shirt", "--json", "--quiet", "--out", str(tmp_path / "out")]
     said = json.loads(subprocess.run(line, check=True, capture_output=True, text=True).stdout)
     tried = toile.try_on(toile.Recording.embedded(), toile.Garment("t-shirt"), picture=(64, 96))

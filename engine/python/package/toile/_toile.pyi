@@ -1,6 +1,5 @@
 from os import PathLike
-from types import TracebackType
-from typing import Literal, Mapping, Optional, Sequence, Tuple, Type, Union, final
+from typing import Literal, Mapping, Optional, Sequence, Tuple, Union, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -191,9 +190,4 @@ class Scene:
     def warnings(self) -> Tuple[str, ...]: ...
     def close(self) -> None: ...
     def __enter__(self) -> Self: ...
-    def __exit__(
-        self,
-        kind: Optional[Type[BaseException]] = None,
-        error: Optional[BaseException] = None,
-        trace: Optional[TracebackType] = None,
-    ) -> None: ...
+    def __exit__(self, *_error: object) -> None: ...
