@@ -18,6 +18,7 @@ pub const FLOORS: &[(&str, &str)] = &[
     ("engine/fitting", "toile-fitting"),
     ("engine/sdk", "toile-sdk"),
     ("engine/c", "toile-c"),
+    ("engine/python", "toile-python"),
     ("engine/kiosk", "toile-kiosk"),
     ("perf", "toile-perf"),
     ("engine/app", "toile"),

@@ -22,7 +22,7 @@ pub enum DrapeError {
         panel: String,
     },
     /// A pattern without seams: its panels would fall off.
-    #[error("the pattern has no seams, so that nothing would hold its panels together; give a seam file (--seams)")]
+    #[error("the pattern has no seams, so that nothing would hold its panels together; give a seam file")]
     NoSeams,
     /// A seam that does not close.
     #[error(

@@ -10,7 +10,7 @@ use crate::toml_keys;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SceneError {
     /// The scene file itself cannot be read.
-    #[error("scene {}: {reason}; give the path of a readable TOML file, or `--example NAME`", path.display())]
+    #[error("scene {}: {reason}; give the path of a readable TOML file", path.display())]
     Read {
         /// The file's path as the user gave it.
         path: PathBuf,

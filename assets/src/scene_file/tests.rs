@@ -382,7 +382,7 @@ fn a_missing_file_is_told_where_it_was_looked_for() {
         "{error}"
     );
     let error = SceneFile::read(&folder.join("not-there.toml")).unwrap_err().to_string();
-    assert!(error.contains("not-there.toml") && error.contains("--example"), "{error}");
+    assert!(error.contains("not-there.toml") && error.contains("give the path"), "{error}");
 }
 
 #[test]

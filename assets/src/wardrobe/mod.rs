@@ -55,7 +55,7 @@ pub enum WardrobeError {
         reason: String,
     },
     /// A size given for a mesh that has none.
-    #[error("{name} is a mesh in one size, so it has no size {size}; leave out --size")]
+    #[error("{name} is a mesh in one size, so it has no size {size}; leave the size out")]
     NoSizes {
         /// Name of the garment or file.
         name: String,

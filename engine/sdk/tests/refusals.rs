@@ -131,7 +131,7 @@ fn scene_files_say_where_and_what_helps() {
     refused(of("[garment]\nmesh = \"/etc/hostname.obj\"\n"), Input, &["given along"]);
     refused(Scene::open("there-is-no-such.toml"), Input, &["there-is-no-such.toml", "give the path"]);
     let mut scene = of(grid).unwrap();
-    refused(scene.body(), Usage, &["no body", "Scene::dress"]);
+    refused(scene.body(), Usage, &["no body", "dress a body"]);
     refused(scene.fit_map(0), Usage, &["no body"]);
     refused(scene.step_to(&Joints::absent(0)), Usage, &["no body"]);
     refused(scene.pictures(&[View::Front], [32, 32], Look::FitMap), Usage, &["fit map"]);
@@ -183,5 +183,5 @@ fn what_follows_a_track_is_not_moved_by_hand() {
     let (first, body) = (track[0], measured.body().unwrap());
     let options = DressOptions { motion: Motion::Track(track), ..DressOptions::default() };
     let mut scene = Scene::dress_with(&body, &[], &options).unwrap();
-    refused(scene.step_to(&first), Usage, &["follows a track", "Motion::Joints"]);
+    refused(scene.step_to(&first), Usage, &["follows a track", "in joints"]);
 }

@@ -9,8 +9,8 @@ mod dump;
 use clap::builder::PossibleValuesParser;
 use clap::value_parser;
 use std::path::{Path, PathBuf};
-use toile_assets::scene_file::SceneFile;
 use toile_assets::scene_file::examples;
+use toile_assets::scene_file::{SceneError, SceneFile};
 use toile_engine::cloth::Cloth;
 use toile_engine::cloth::program::METERED_STAGES;
 use toile_fitting::heap::HeapProbe;
@@ -52,7 +52,10 @@ impl RunScene {
             Self::File(path) => SceneFile::read(path),
             Self::Example(name) => SceneFile::example(name),
         };
-        scene.map_err(AppError::input)
+        scene.map_err(|error| match error {
+            SceneError::Read { .. } => AppError::input(format!("{error}, or `--example NAME`")),
+            error => AppError::input(error),
+        })
     }
 
     /// The scene that these arguments name, if they name one.

@@ -91,7 +91,7 @@ impl ClothScene {
     pub fn pictures(&self, views: &[View], size: [u32; 2], look: Look) -> Result<Vec<Picture>> {
         let size = picture::checked_size(size)?;
         if look != Look::Fabric {
-            return Err(no_body("a fit map"));
+            return Err(no_body("fit map"));
         }
         let mut meshes = Vec::new();
         for (garment, triangles) in self.triangles.iter().enumerate() {

@@ -97,7 +97,7 @@ impl DressedScene {
     pub fn step_to(&mut self, joints: &Joints) -> Result<()> {
         let Mover::Still(at) = &mut self.mover else {
             return Err(Error::usage(
-                "this scene follows a track; dress it with Motion::Joints to move the body by step_to",
+                "this scene follows a track; dress the body in joints, and not in a track, to move it by step_to",
             ));
         };
         **at = *checked(joints)?;

@@ -149,7 +149,7 @@ impl Scene {
     pub fn step_to(&mut self, joints: &Joints) -> Result<()> {
         match &mut self.kind {
             SceneKind::Dressed(scene) => scene.step_to(joints),
-            SceneKind::Cloth(_) => Err(no_body("step_to")),
+            SceneKind::Cloth(_) => Err(no_body("body to move")),
         }
     }
 
@@ -279,7 +279,7 @@ impl Scene {
     pub fn body(&mut self) -> Result<(Vec<Vec3>, Vec<Vec3>)> {
         match &mut self.kind {
             SceneKind::Dressed(scene) => Ok(scene.skin()),
-            SceneKind::Cloth(_) => Err(no_body("a body")),
+            SceneKind::Cloth(_) => Err(no_body("body to show")),
         }
     }
 
@@ -290,7 +290,7 @@ impl Scene {
     pub fn body_faces(&self) -> Result<&[[u32; 3]]> {
         match &self.kind {
             SceneKind::Dressed(scene) => Ok(&scene.body().mesh.triangles),
-            SceneKind::Cloth(_) => Err(no_body("a body")),
+            SceneKind::Cloth(_) => Err(no_body("body to show")),
         }
     }
 
@@ -318,7 +318,7 @@ impl Scene {
         self.known(garment)?;
         match &self.kind {
             SceneKind::Dressed(scene) => Ok(scene.fit_map(garment)),
-            SceneKind::Cloth(_) => Err(no_body("a fit map")),
+            SceneKind::Cloth(_) => Err(no_body("fit map")),
         }
     }
 

@@ -56,5 +56,5 @@ impl GarmentStats {
 
 /// That a scene file has nobody in it.
 pub(super) fn no_body(what: &str) -> Error {
-    Error::usage(format!("a scene file has no body, so that there is no {what}; make the scene by Scene::dress"))
+    Error::usage(format!("there is no {what}, because a scene file has no body; dress a body to have one"))
 }

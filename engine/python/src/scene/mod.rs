@@ -1,0 +1,13 @@
+//! Scenes in motion.
+//!
+//! Reads: bodies, garments, scene files, arrays. Writes: steps, arrays that show the scene's memory, plain answers.
+//! Budget: below 5 us a call beside what `toile-sdk` takes.
+//! Thread: one call at a time, of any thread; steps, dressing and pictures run without the interpreter's lock.
+
+mod class;
+mod moments;
+mod options;
+mod state;
+
+pub use class::Scene;
+pub use options::strings;
