@@ -227,6 +227,16 @@ impl RingTensor {
         }
     }
 
+    /// How much better a triple has to be than one before it. Of a twist all cells around a vertex are as good but for rounding, and
+    /// each is to be measured as often as the others: a vertex takes the first of its ring. Where rounding chose, every other cell of
+    /// some was free to twist, and cloth had two thirds of its stiffness.
+    fn tie(self) -> f64 {
+        match self {
+            Self::Along(_) => 1e-9,
+            Self::Twist => 1e-4,
+        }
+    }
+
     /// The tensor itself.
     fn exact(self) -> DMat2 {
         match self {
@@ -298,7 +308,7 @@ impl Ring {
                 // With three points in a row a fourth has no weight, so that two neighbours need a third to stand by.
                 for k in j + 1..n {
                     let Some((cost, found)) = self.dependence([i, j, k], wanted) else { continue };
-                    if best.as_ref().is_none_or(|(least, _)| cost < least - 1e-9) {
+                    if best.as_ref().is_none_or(|(least, _)| cost < least - wanted.tie()) {
                         best = Some((cost, found));
                     }
                 }

@@ -224,6 +224,21 @@ fn a_plate_has_its_rigidity_along_the_bias_where_its_mesh_lies_so() {
 }
 
 #[test]
+fn every_cell_of_a_grid_is_kept_from_twisting() {
+    let (columns, rows) = (12, 9);
+    let found = stencils_of(&sheet(columns, rows, 0.031, 0.027), &fabric(Some(20.0)));
+    let mut cells = std::collections::BTreeMap::new();
+    for stencil in found.iter().filter(|s| s.direction == Direction::Bias) {
+        let mut corners = stencil.v.clone();
+        corners.sort_unstable();
+        *cells.entry(corners).or_insert(0.0f32) += stencil.k;
+    }
+    assert_eq!(cells.len() as u32, (columns - 1) * (rows - 1));
+    let mean = cells.values().sum::<f32>() / cells.len() as f32;
+    assert!(cells.values().all(|k| *k > 0.2 * mean && *k < 2.6 * mean), "{cells:?}");
+}
+
+#[test]
 fn a_rod_one_cell_wide_is_as_stiff_as_it_should_be() {
     for columns in [2, 3] {
         let mesh = sheet(columns, 81, 0.0125, 0.0125);
