@@ -119,13 +119,7 @@ mod tests {
     use super::*;
 
     fn law() -> LinkLaw {
-        LinkLaw {
-            knees: [-0.004, 0.02],
-            behind: [0.01, 12.0],
-            half_width: 1.2,
-            stuck: 0.003,
-            ..LinkLaw::plain(300.0)
-        }
+        LinkLaw { knees: [-0.004, 0.02], behind: [0.01, 12.0], half_width: 1.2, stuck: 0.003, ..LinkLaw::plain(300.0) }
     }
 
     #[test]

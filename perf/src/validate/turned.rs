@@ -120,9 +120,9 @@ impl TurnedStrip {
         let mut points = Vec::new();
         for row in -BEHIND..=rows {
             let odd = row.rem_euclid(2);
-            points.extend((0..=across - odd).map(|k| {
-                DVec2::new(row as f64 * half, (2 * k + odd - across) as f64 * half)
-            }));
+            points.extend(
+                (0..=across - odd).map(|k| DVec2::new(row as f64 * half, (2 * k + odd - across) as f64 * half)),
+            );
         }
         self.laid(held(points, lattice_faces([-BEHIND, rows], across, number)))
     }

@@ -352,7 +352,8 @@ impl Ring {
         let lever = 0.5 * scale / along.abs();
         let cost = off + LEVER_COST * lever;
         let shares = [0, 1, 2].map(|k| 0.5 * weights[k] * wanted.of_point([p, q, r][k]));
-        (off < MOST_OFF && lever < MOST_LEVER).then(|| (cost, RingMeasure { off, ..self.tidied(triple, weights, shares, found) }))
+        (off < MOST_OFF && lever < MOST_LEVER)
+            .then(|| (cost, RingMeasure { off, ..self.tidied(triple, weights, shares, found) }))
     }
 
     /// Leaves out a point without weight.
