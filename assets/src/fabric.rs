@@ -176,7 +176,7 @@ pub enum FabricError {
 }
 
 /// The fabrics that are built in.
-const BUILT_IN: [&str; 32] = [
+const BUILT_IN: [&str; 39] = [
     include_str!("../data/fabrics/cotton-lawn.toml"),
     include_str!("../data/fabrics/cotton-jersey.toml"),
     include_str!("../data/fabrics/linen-twill.toml"),
@@ -209,6 +209,13 @@ const BUILT_IN: [&str; 32] = [
     include_str!("../data/fabrics/scarf-tartan.toml"),
     include_str!("../data/fabrics/scarf-college.toml"),
     include_str!("../data/fabrics/scarf-camel.toml"),
+    include_str!("../data/fabrics/fine-lawn.toml"),
+    include_str!("../data/fabrics/silk-chiffon.toml"),
+    include_str!("../data/fabrics/silk-crepe.toml"),
+    include_str!("../data/fabrics/silk-satin.toml"),
+    include_str!("../data/fabrics/linen-plain.toml"),
+    include_str!("../data/fabrics/wool-flannel.toml"),
+    include_str!("../data/fabrics/wool-gabardine.toml"),
 ];
 
 /// The name in the text of a built-in fabric, whose file has it in a line of its own.

@@ -4,8 +4,8 @@
 //! keeps at most HB of moment a width keeps HB A of it, which over the root of the stiffness, within which the layout has its
 //! coefficients, is (HB / B) b sqrt(k): the curvature at which the cloth stays, times what the stencil is.
 //!
-//! A diagonal sees half of a curvature along warp or weft, and its friction does not get less with it, so diagonals have half of
-//! the limit: warp and weft keep the loops that were measured, the bias what comes of it.
+//! The twist between warp and weft does not rub: of a bend along the bias warp and weft see half each and hold half of their limits, so
+//! that the loop there has the mean width of both.
 
 use super::bending::{self, Stencil};
 use super::fibers::{Direction, Edge};
@@ -13,9 +13,6 @@ use super::order::ParticleOrder;
 use crate::fabric::Fabric;
 use crate::garment::Shape;
 use crate::garment::bend_friction::{BendFriction, FrictionSlot};
-
-/// Share of the limit that a stencil along the bias has.
-const BIAS_SHARE: f32 = 0.5;
 
 /// The friction of a garment's stencils.
 pub fn lay_out(
@@ -32,7 +29,7 @@ pub fn lay_out(
     let kept = |direction| match direction {
         Direction::Warp => warp,
         Direction::Weft => weft,
-        Direction::Bias => BIAS_SHARE * 0.5 * (warp + weft),
+        Direction::Bias => 0.0,
     };
     let chords = bending::chords(shape, edges);
     let particle = |v: u32| order.particle[v as usize];

@@ -154,7 +154,10 @@ impl MeasuredSheet {
             SheetKind::Fast => self.fast(&mut out),
             SheetKind::Cusick => {}
         }
+        let of = |key| out.iter().find(|f: &&FileFigure| f.key == key).map(|f| f.value);
+        let bias = of("bend_warp_un_m").zip(of("bend_weft_un_m")).and_then(|(warp, weft)| usual_bias([warp, weft]));
         let mut add = |key, value: Option<f64>, from| out.extend(value.map(|value| FileFigure { key, value, from }));
+        add("bend_bias_un_m", bias, "not on the sheet: what cloth of such a B usually has at 45 degrees");
         add("drape_percent", self.mean("DC"), "DC");
         out
     }
@@ -269,6 +272,15 @@ impl MeasuredSheet {
     }
 }
 
+/// Bending rigidity at 45 degrees that cloth of a rigidity along warp and weft usually has: 1 / sqrt(B) is the mean of both, which is Peirce's
+/// rule (1930, "The handle of cloth as a measurable quantity"). Of the 251 distinct fabrics of Feng et al. 2022 the median is .99 of
+/// it, and half lie between .70 and 1.37; of threads that know nothing of each other, (B_warp + B_weft) / 4, it is 1.8.
+pub fn usual_bias(rigidities: [f64; 2]) -> Option<f64> {
+    let [warp, weft] = rigidities.map(|b| b.sqrt().recip());
+    let bias = 4.0 / (warp + weft).powi(2);
+    (bias > 0.0 && bias.is_finite()).then_some(bias)
+}
+
 /// A figure with what it is made of: five digits, and its point, without which TOML takes it for no f64.
 fn line(figure: &FileFigure, key: &str) -> String {
     let digits = (5 - figure.value.abs().max(1e-9).log10().ceil() as i32).clamp(1, 9) as usize;
@@ -314,6 +326,20 @@ mod tests {
         assert!((figure(&sheet, "stretch_warp_n_m") - 3922.66).abs() < 0.1);
         let fabric = Fabric::parse("sheet", &sheet.file("wool", "Wool", "wool-suiting", "report")).unwrap();
         assert_eq!(fabric.hysteresis, Default::default());
+    }
+
+    #[test]
+    fn along_the_bias_a_sheet_gives_what_is_usual() {
+        assert!((usual_bias([20.0, 20.0]).unwrap() - 20.0).abs() < 1e-12);
+        // Between both, nearer to the softer.
+        let between = usual_bias([20.0, 5.0]).unwrap();
+        assert!(between > 5.0 && between < 10.0, "{between}");
+        assert_eq!(usual_bias([0.0, 5.0]), None);
+        let sheet = MeasuredSheet::parse(KES_SHEET).unwrap();
+        let fabric = Fabric::parse("sheet", &sheet.file("broad", "Broad", "cotton-lawn", "own")).unwrap();
+        let bias = fabric.bend_bias_un_m.unwrap();
+        assert!(bias > fabric.bend_weft_un_m && bias < fabric.bend_warp_un_m, "{bias}");
+        assert_eq!(MeasuredSheet::parse("DC 60").unwrap().figures().len(), 1);
     }
 
     #[test]

@@ -8,6 +8,7 @@ use glam::DVec3;
 use super::energy::friction::Friction;
 use super::energy::load::Load;
 use super::error::OracleError;
+use super::law;
 use super::options::Step;
 use super::problem::Problem;
 use super::settle::{Oracle, SolveTask, weight};
@@ -66,6 +67,7 @@ impl Oracle {
             held: [weight / shortest(problem), weight / CONTACT_M],
             stiffer: STATICS_STIFFER,
             shift: FIRST_SHIFT,
+            laws: law::from_state(&problem.links, &problem.laws, start),
         };
         let grip = || {
             let both = [solids.shapes(), solids.shapes()];

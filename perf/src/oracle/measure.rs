@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::energy::bends;
+use super::law;
 use super::problem::Problem;
 use super::solution::State;
 
@@ -11,7 +12,7 @@ use super::solution::State;
 pub struct Energies {
     /// Of motion, of the free particles.
     pub kinetic_j: f64,
-    /// Of stretch and shear: (1/2) C^2 / compliance. Inextensible links hold none; see [`strain`] for what they are off.
+    /// Of stretch and shear: (1/2) C^2 / compliance, or what its law says. Inextensible links hold none; see [`strain`] for what they are off.
     pub stretch_j: f64,
     /// Of bending (J).
     pub bending_j: f64,
@@ -38,8 +39,13 @@ pub struct LinkStrain {
 /// Energies of a state.
 pub fn energies(problem: &Problem, state: &State) -> Energies {
     let moving = problem.mass.iter().zip(&state.v).map(|(m, v)| 0.5 * m * v.length_squared());
-    let soft = problem.links.iter().filter(|l| l.compliance > 0.0);
-    let stretch = soft.map(|l| (strain_of(l.ends, l.rest, &state.x) * l.rest).powi(2) * 0.5 / l.compliance);
+    let stretch = problem.links.iter().enumerate().filter(|(_, l)| l.compliance > 0.0).map(|(e, l)| {
+        let strain = strain_of(l.ends, l.rest, &state.x);
+        match problem.laws.get(e) {
+            Some(of) => l.rest * law::energy(of, strain),
+            None => (strain * l.rest).powi(2) * 0.5 / l.compliance,
+        }
+    });
     let height = problem.mass.iter().zip(&state.x).map(|(m, x)| -m * problem.gravity.dot(*x));
     Energies {
         kinetic_j: moving.sum(),

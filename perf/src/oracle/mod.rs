@@ -35,6 +35,7 @@ mod cholesky;
 mod energy;
 mod equilibrium;
 mod error;
+mod law;
 mod leap;
 pub mod measure;
 mod newton;

@@ -1,8 +1,10 @@
 //! The discretisation in f64: particles, links, bending stencils; plain data, or what a baked garment holds.
 
 use glam::DVec3;
+use toile_assets::fabric::link_law::LinkLaw;
 use toile_assets::garment::Garment;
 use toile_assets::garment::layout::{Bends, ENDED, FiberLists, Fibers, Hubs, Links};
+use toile_assets::garment::link_laws::LawTable;
 
 use super::error::OracleError;
 
@@ -35,6 +37,9 @@ pub struct Problem {
     pub start: Vec<DVec3>,
     /// Stretch links of the garment.
     pub links: Vec<Link>,
+    /// What each link does beyond one slope, and where its friction sticks: strain (1) and force (N), in place of its compliance `[links]`;
+    /// empty where one slope is all that any has.
+    pub laws: Vec<LinkLaw>,
     /// Bending stencils of the garment.
     pub bends: Vec<Bend>,
     /// Acceleration of gravity (m/s2).
@@ -53,13 +58,16 @@ impl Problem {
     /// Which limb's colliders a particle can meet is left open: set [`Self::reach`] where the garment has parts.
     pub fn of(garment: &Garment) -> Self {
         let layout = garment.layout();
-        let mut links = Vec::new();
-        tuples(&layout.shear, &mut links);
-        tuples(&layout.weft, &mut links);
-        let bias = &layout.diagonals;
-        bias.for_each(|at, [a, b]| links.extend(link(a, b, bias.rest[at], bias.compliance[at])));
-        fibers(&layout.fibers, &mut links);
-        lists(&layout.crossing, &mut links);
+        let [of_bias, of_shear, of_weft, of_fibers, of_lists] = layout.laws.tables();
+        let mut found = LinkCollector::default();
+        tuples(&layout.shear, &mut found.of(of_shear));
+        tuples(&layout.weft, &mut found.of(of_weft));
+        let (bias, mut add) = (&layout.diagonals, found.of(of_bias));
+        bias.for_each(|at, ends| add(at, ends, bias.rest[at], bias.compliance[at]));
+        drop(add);
+        fibers(&layout.fibers, &mut found.of(of_fibers));
+        lists(&layout.crossing, &mut found.of(of_lists));
+        let LinkCollector { links, laws } = found;
         let mut stencils = Vec::new();
         bends(&layout.bends, &mut stencils);
         bends(&layout.skewed, &mut stencils);
@@ -69,6 +77,7 @@ impl Problem {
             mass: garment.inverse_mass.iter().map(mass).collect(),
             start: garment.start.iter().map(|p| p.as_dvec3()).collect(),
             links,
+            laws: if layout.laws.acts() { laws } else { Vec::new() },
             bends: stencils,
             gravity: DVec3::new(0.0, -9.81, 0.0),
             offset_m: f64::from(garment.fabric.contact_offset_mm) * 1e-3,
@@ -110,6 +119,14 @@ impl Problem {
             let figures = l.rest.is_finite() && l.rest > 0.0 && l.compliance.is_finite() && l.compliance >= 0.0;
             sound(figures && a != b && a < n && b < n, "link", at)?;
         }
+        if !self.laws.is_empty() {
+            expect("laws", self.laws.len(), self.links.len())?;
+        }
+        for (at, l) in self.laws.iter().enumerate() {
+            let slopes = l.slope > 0.0 && l.slope.is_finite() && l.behind.iter().all(|s| *s > 0.0 && s.is_finite());
+            let knees = l.knees[0] <= 0.0 && l.knees[1] >= 0.0 && l.stuck.is_finite();
+            sound(slopes && knees && l.half_width >= 0.0 && l.half_width.is_finite(), "law", at)?;
+        }
         for (at, b) in self.bends.iter().enumerate() {
             let within = b.particles.iter().all(|&i| (i as usize) < n);
             sound(within && b.coefficients.iter().all(|c| c.is_finite()), "bend", at)?;
@@ -123,35 +140,64 @@ pub(super) fn expect(what: &'static str, got: usize, expected: usize) -> Result<
     if got == expected { Ok(()) } else { Err(OracleError::Length { what, got, expected }) }
 }
 
-fn link(a: u32, b: u32, rest: f32, compliance: f32) -> Option<Link> {
-    let there = compliance < ENDED && rest > 0.0;
-    there.then(|| Link { ends: [a, b], rest: rest.into(), compliance: compliance.into() })
+/// Links as they are found, each with its law.
+#[derive(Default)]
+struct LinkCollector {
+    links: Vec<Link>,
+    laws: Vec<LinkLaw>,
 }
 
-fn tuples(from: &Links, to: &mut Vec<Link>) {
-    from.tuples.for_each(|at, [a, b]| to.extend(link(a, b, from.rest[at], from.compliance[at])));
+impl LinkCollector {
+    /// Takes links of one kind: a place of their parameters, their ends, rest length and compliance.
+    fn of<'a>(&'a mut self, table: &'a LawTable) -> impl FnMut(usize, [u32; 2], f32, f32) + 'a {
+        move |at, ends, rest, compliance| {
+            if compliance >= ENDED || rest <= 0.0 {
+                return;
+            }
+            let (rest, compliance) = (f64::from(rest), f64::from(compliance));
+            self.links.push(Link { ends, rest, compliance });
+            self.laws.push(law(table, at, rest / compliance));
+        }
+    }
 }
 
-fn fibers(from: &Fibers, to: &mut Vec<Link>) {
+/// The law of a place, of so much force for a strain of 1 (N).
+fn law(table: &LawTable, at: usize, slope: f64) -> LinkLaw {
+    if table.is_empty() || !slope.is_finite() {
+        return LinkLaw::plain(slope.min(HARD_N));
+    }
+    let [lower, below, upper, above, friction] =
+        [&table.lower, &table.lower_slope, &table.upper, &table.upper_slope, &table.friction].map(|c| c[at].into());
+    LinkLaw { slope, knees: [lower, upper], behind: [below, above], half_width: friction * slope, stuck: 0.0 }
+}
+
+/// Force for a strain of 1 of what does not stretch, beside links with laws (N).
+const HARD_N: f64 = 1e9;
+
+fn tuples(from: &Links, add: &mut impl FnMut(usize, [u32; 2], f32, f32)) {
+    from.tuples.for_each(|at, ends| add(at, ends, from.rest[at], from.compliance[at]));
+}
+
+fn fibers(from: &Fibers, add: &mut impl FnMut(usize, [u32; 2], f32, f32)) {
     for bundle in &from.bundles {
         let rows = &from.rows[bundle.rows.start as usize..bundle.rows.end as usize];
         for (step, pair) in rows.windows(2).enumerate() {
             for lane in 0..pair[1].lanes {
                 let apart = step as u32 * bundle.lanes + lane;
                 let at = (bundle.at + if bundle.alike { step as u32 } else { apart }) as usize;
-                to.extend(link(pair[0].first + lane, pair[1].first + lane, from.rest[at], from.compliance[at]));
+                add(at, [pair[0].first + lane, pair[1].first + lane], from.rest[at], from.compliance[at]);
             }
         }
     }
 }
 
-fn lists(from: &FiberLists, to: &mut Vec<Link>) {
+fn lists(from: &FiberLists, add: &mut impl FnMut(usize, [u32; 2], f32, f32)) {
     for list in &from.lists {
         for step in 0..list.links() {
             for lane in 0..list.lanes {
                 let particle = |row: u32| from.index[(list.first + row % list.rows * list.lanes + lane) as usize];
                 let at = (list.at + step * list.lanes + lane) as usize;
-                to.extend(link(particle(step), particle(step + 1), from.rest[at], from.compliance[at]));
+                add(at, [particle(step), particle(step + 1)], from.rest[at], from.compliance[at]);
             }
         }
     }

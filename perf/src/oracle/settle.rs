@@ -1,6 +1,7 @@
 //! The solver: rounds of the method of multipliers around Newton's method, and one step of implicit Euler by it.
 
 use glam::DVec3;
+use toile_assets::fabric::link_law::LinkLaw;
 
 use super::energy::TotalEnergy;
 use super::energy::contact::Contact;
@@ -8,6 +9,7 @@ use super::energy::friction::Friction;
 use super::energy::links::Springs;
 use super::energy::load::Load;
 use super::error::OracleError;
+use super::law;
 use super::leap::Leaps;
 use super::newton::{self, NewtonState, StopRule};
 use super::options::{OracleOptions, Step};
@@ -56,6 +58,8 @@ pub(super) struct SolveTask {
     pub stiffer: [f64; 2],
     /// First shift of the Hessian (1/s2).
     pub shift: f64,
+    /// Laws of the links as they act in it `[links]`, or empty.
+    pub laws: Vec<LinkLaw>,
 }
 
 impl Oracle {
@@ -81,7 +85,8 @@ impl Oracle {
         self.pressure.clear();
     }
 
-    /// x* of one implicit Euler step from a state: what the engine's substep approximates.
+    /// x* of one implicit Euler step from a state: what the engine's substep approximates. Where links rub, they stick from then on
+    /// where the step has left them.
     ///
     /// # Errors
     /// Where the figures cannot be used, or no solution is found.
@@ -98,13 +103,16 @@ impl Oracle {
         let mut from = state.x.clone();
         (0..p.particles()).filter(|i| p.pinned(*i)).for_each(|i| from[i] = target[i]);
         let held = [heaviest_link(p) * per_dt2, p.mass.iter().copied().fold(0.0, f64::max) * per_dt2];
-        let task = SolveTask { load: Load::Inertia { target, per_dt2 }, from, held, stiffer: STEP_STIFFER, shift: 0.0 };
+        let laws = law::from_state(&p.links, &p.laws, &state.x);
+        let load = Load::Inertia { target, per_dt2 };
+        let task = SolveTask { load, from, held, stiffer: STEP_STIFFER, shift: 0.0, laws };
         let slip_m = self.options.creep_m_s * dt;
         let both = || [step.solids[0].shapes(), step.solids[1].shapes()];
         let friction = (p.friction > 0.0).then(|| Friction::new(p.friction, slip_m, &state.x, both()));
         let mut solved = self.solve(task, &step.solids[1], friction)?;
         let v = solved.state.x.iter().zip(&state.x).map(|(after, before)| (*after - *before) / dt).collect();
         solved.state.v = v;
+        law::follow(&self.problem.links, &mut self.problem.laws, &solved.state.x);
         Ok(solved)
     }
 
@@ -164,7 +172,7 @@ impl Oracle {
         let mut landscape = TotalEnergy {
             problem: &self.problem,
             load: task.load,
-            springs: Springs::new(&self.problem.links, rho[0], std::mem::take(&mut self.tension)),
+            springs: Springs::new(&self.problem.links, task.laws, rho[0], std::mem::take(&mut self.tension)),
             contact: Contact::new(&self.problem, solids.shapes(), rho[1], std::mem::take(&mut self.pressure)),
             friction,
         };

@@ -2,6 +2,7 @@
 
 mod derivatives;
 mod exact;
+mod laws;
 mod sliding;
 
 use glam::DVec3;

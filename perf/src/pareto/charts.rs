@@ -1,7 +1,8 @@
 //! The charts of a report.
 
 use super::front;
-use super::report::{Drape, Fate, ParetoReport, Point, SceneReport, Survival};
+use super::models::MODELS;
+use super::report::{Drape, Fate, ModelPoint, ParetoReport, Point, SceneReport, Survival};
 use crate::plot::axis::Axis;
 use crate::plot::chart::{Chart, Series, SeriesStyle};
 use crate::plot::tiles::{Cell, Tiles};
@@ -51,6 +52,9 @@ pub fn figures(report: &ParetoReport) -> Vec<NamedDrawing> {
     }
     if let Some(survival) = &report.survival {
         add("survival".into(), map(survival).draw());
+    }
+    if !report.models.is_empty() {
+        add("models".into(), models(&report.models).draw());
     }
     if let Some(drape) = &report.drape {
         add("drape".into(), samplings(drape).draw());
@@ -175,6 +179,25 @@ fn map(survival: &Survival) -> Tiles {
             (FATES[2], "rolled back: at least one step was not finite".into()),
         ],
     }
+}
+
+/// Error against time of each model: joined where the skirt is stepped with it, dashed where without.
+fn models(points: &[ModelPoint]) -> Chart {
+    let mut series = Vec::new();
+    for (k, model) in MODELS.into_iter().enumerate() {
+        for with in [true, false] {
+            let of = points.iter().filter(|p| p.model == model && p.with == with);
+            let mut points: Vec<[f64; 2]> = of.map(|p| [p.step_us, p.error_mm]).collect();
+            points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+            let name = if with { model.into() } else { format!("without {model}") };
+            let style = SeriesStyle { dashed: !with, ..SeriesStyle::joined(SERIES_COLOURS[k]) };
+            series.push(Series { name, points, style });
+        }
+    }
+    let own = points.iter().filter(|p| p.default).map(|p| [p.step_us, p.error_mm]).collect();
+    series.push(Series { name: "shop's own substeps".into(), points: own, style: SeriesStyle::rings(BLACK) });
+    let title = "the walking skirt with each model and without, error against time".into();
+    framed(title, [("median time of a step (us)", true), ERROR], series)
 }
 
 fn samplings(drape: &Drape) -> Chart {

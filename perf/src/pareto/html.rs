@@ -2,10 +2,12 @@
 
 use super::charts::NamedDrawing;
 use super::front;
-use super::report::{Drape, ParetoReport, Point, SceneReport};
+use super::report::{Drape, ModelPoint, ParetoReport, Point, SceneReport};
 use crate::plot::page::{Entry, Page};
 
 const FRONT: [&str; 7] = ["front, one thread", "substeps", "iterations", "step us", "mean mm", "max mm", "strain %"];
+
+const MODELS: [&str; 7] = ["fabric with", "stepped", "substeps", "step us", "mean mm", "max mm", "strain %"];
 
 const SAMPLINGS: [&str; 6] = ["sampling", "particles", "mean cm", "max cm", "published cm", "step us"];
 
@@ -24,6 +26,14 @@ pub fn page(report: &ParetoReport, figures: &[NamedDrawing]) -> String {
         section(&mut page, report, scene, figures);
     }
     draw(&mut page, figures, |name| name == "survival");
+    if !report.models.is_empty() {
+        page.section("Models").paragraph(
+            "The walking skirt in a fabric with numbers for one model, stepped with it and without it from the same \
+             moments. x* has the model.",
+        );
+        page.table(&MODELS, report.models.iter().map(model_row));
+        draw(&mut page, figures, |name| name == "models");
+    }
     if let Some(drape) = &report.drape {
         table_cloth(&mut page, drape);
         draw(&mut page, figures, |name| name == "drape");
@@ -55,6 +65,18 @@ fn row(p: &Point) -> Vec<Entry> {
         Entry::Figure(format!("{:.3}", p.error_mm)),
         Entry::Figure(format!("{:.2}", p.max_mm)),
         Entry::Figure(format!("{:.3}", 100.0 * p.strain_mean)),
+    ]
+}
+
+fn model_row(p: &ModelPoint) -> Vec<Entry> {
+    vec![
+        Entry::words(p.model),
+        Entry::words(if p.with { "with it" } else { "without it" }),
+        Entry::figure(p.substeps),
+        Entry::Figure(format!("{:.0}", p.step_us)),
+        Entry::Figure(format!("{:.3}", p.error_mm)),
+        Entry::Figure(format!("{:.2}", p.max_mm)),
+        Entry::Figure(format!("{:.3}", 100.0 * p.strain[0])),
     ]
 }
 

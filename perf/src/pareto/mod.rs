@@ -15,6 +15,7 @@ mod error;
 mod front;
 mod html;
 mod meshed_scene;
+mod models;
 mod play;
 mod reference;
 mod report;
@@ -24,7 +25,7 @@ mod survival;
 mod sweep;
 
 pub use error::ParetoError;
-pub use report::{Drape, ParetoReport, Point, ReportFile, Sampling, SceneReport, Survival};
+pub use report::{Drape, ModelPoint, ParetoReport, Point, ReportFile, Sampling, SceneReport, Survival};
 pub use run::{ParetoOptions, files, run};
 pub use scenes::SCENES;
 

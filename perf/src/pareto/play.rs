@@ -56,6 +56,8 @@ pub struct WindowStart {
     tick: u64,
     /// Position (m) and velocity (m/s) by vertex.
     state: Vec<[Vec3A; 2]>,
+    /// What friction remembers; none where nothing rubs.
+    memory: Option<Box<Cloth>>,
 }
 
 /// Steps of a window: three pictures of a screen at 60 Hz. What one state becomes in it is one answer; a second later the
@@ -109,6 +111,9 @@ impl<'a> SteppedCloth<'a> {
             let [at, velocity] = moment.state[vertex as usize];
             self.cloth.disturb(particle, at, velocity);
         }
+        if let Some(memory) = &moment.memory {
+            self.cloth.remember(memory);
+        }
     }
 
     fn moment(&self, tick: u64) -> WindowStart {
@@ -116,7 +121,8 @@ impl<'a> SteppedCloth<'a> {
         for (particle, &vertex) in self.garment.source.iter().enumerate() {
             state[vertex as usize] = [self.cloth.positions[particle], self.cloth.velocity(particle)];
         }
-        WindowStart { tick, state }
+        let rubs = !self.cloth.sticks().is_empty() || self.cloth.link_sticks().next().is_some();
+        WindowStart { tick, state, memory: rubs.then(|| Box::new(self.cloth.clone())) }
     }
 }
 

@@ -44,6 +44,33 @@ pub struct Point {
     pub on_front: bool,
 }
 
+/// The walking skirt in a fabric with one model of cloth beyond one slope, stepped with it or without.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct ModelPoint {
+    /// Name of the model that the fabric has numbers for.
+    pub model: &'static str,
+    /// Whether it was stepped with it.
+    pub with: bool,
+    /// What is solved in a substep.
+    pub quality: &'static str,
+    /// Substeps of a step.
+    pub substeps: u32,
+    /// Whether garment and quality ask for these substeps themselves.
+    pub default: bool,
+    /// Median time of a step (us).
+    pub step_us: f64,
+    /// Mean distance of the free particles to x*, which has the model (mm).
+    pub error_mm: f64,
+    /// Largest distance of any of them (mm).
+    pub max_mm: f64,
+    /// Mean |length / rest - 1| of warp and weft edges, and its 99th percentile.
+    pub strain: [f64; 2],
+    /// How far x* may itself be off (mm).
+    pub reference_gap_mm: f64,
+    /// Steps that were not finite and were rolled back.
+    pub rolled_back: u64,
+}
+
 /// Energy by frame under one setting.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct EnergyRun {
@@ -142,6 +169,8 @@ pub struct ParetoReport {
     pub scenes: Vec<SceneReport>,
     /// The map of what the skirt survives; none where it was not run.
     pub survival: Option<Survival>,
+    /// The skirt with and without each model; empty where it was not run.
+    pub models: Vec<ModelPoint>,
     /// The tablecloth by its sampling; none where it was not run.
     pub drape: Option<Drape>,
 }
@@ -153,6 +182,23 @@ pub struct ReportFile {
     pub name: String,
     /// Content of the file.
     pub bytes: Vec<u8>,
+}
+
+/// The points of the models as a table of comma-separated values, a head line first.
+pub fn models_csv(points: &[ModelPoint]) -> String {
+    let mut text = String::from(
+        "model,with,quality,substeps,default,step_us,error_mm,max_mm,strain_mean,strain_p99,reference_gap_mm,rolled_back\n",
+    );
+    for p in points {
+        let ModelPoint { model, with, quality, substeps, default, step_us, error_mm, max_mm, .. } = p;
+        let ([mean, p99], gap, rolled_back) = (p.strain, p.reference_gap_mm, p.rolled_back);
+        put_line!(
+            text,
+            "{model},{with},{quality},{substeps},{default},{step_us:.2},{error_mm:.6},{max_mm:.6},{mean:.6e},{p99:.6e},\
+             {gap:.6},{rolled_back}"
+        );
+    }
+    text
 }
 
 /// All points as a table of comma-separated values, a head line first.

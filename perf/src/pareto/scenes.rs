@@ -1,6 +1,7 @@
 //! The scenes: the cantilever in four meshes, the skirt in three and meshed irregularly, the garments of the wardrobe on an average mannequin.
 
 use glam::DVec3;
+use toile_assets::fabric::Fabric;
 use toile_assets::garment::Shape;
 use toile_assets::scene::shopper;
 use toile_assets::scene::skirt::{self, Motion, Stretch};
@@ -12,7 +13,8 @@ use crate::validate::mesh::{CaseFabric, EndSupport, MeshStyle, Strip};
 use crate::worn::AverageBody;
 
 /// Names of all scenes, in the order in which they are run.
-pub const SCENES: [&str; 7] = ["cantilever", "skirt", IRREGULAR, "sun-dress", "t-shirt", "wide-trousers", "drape"];
+pub const SCENES: [&str; 8] =
+    ["cantilever", "skirt", IRREGULAR, "sun-dress", "t-shirt", "wide-trousers", "models", "drape"];
 
 /// The skirt as meshes are that nobody laid out in rows.
 const IRREGULAR: &str = "skirt-irregular";
@@ -51,6 +53,15 @@ pub fn subjects(name: &str, quick: bool) -> Result<Vec<MeshedScene>, ParetoError
         }
         garment => Ok(vec![worn(garment, quick)?]),
     }
+}
+
+/// The walking skirt in a fabric that gives, with `change` made to it.
+pub fn changed_skirt(quick: bool, change: impl FnOnce(&mut Fabric)) -> Result<MeshedScene, ParetoError> {
+    let side = if quick { 24 } else { 64 };
+    let mut scene = walk(("skirt", format!("grid {side} x {side}"), skirt::shape(side)), true, quick)?;
+    scene.fabric = skirt::fabric(&scene.shape, Stretch::Physical);
+    change(&mut scene.fabric);
+    Ok(scene)
 }
 
 fn cantilever(rows: usize, main: bool) -> Result<MeshedScene, ParetoError> {

@@ -61,6 +61,26 @@ fn more_substeps_come_nearer_to_x_star() {
 }
 
 #[test]
+fn a_model_that_is_left_out_costs_less_and_ends_farther_off() {
+    let options = ParetoOptions { scene: Some("models".into()), quick: true };
+    let report = run(&options, &|_| {}).unwrap();
+    for model in models::MODELS {
+        let of = |with: bool| {
+            let mine = report.models.iter().filter(move |p| p.model == model && p.with == with);
+            mine.max_by_key(|p| p.substeps).unwrap()
+        };
+        let [with, without] = [true, false].map(of);
+        assert!(with.error_mm.is_finite() && with.rolled_back == 0 && with.step_us > 0.0, "{with:?}");
+        // Shear that hardly ever comes to its lock is worth little.
+        if model != "shear lock" {
+            assert!(without.error_mm > with.error_mm, "{model}: {without:?} and {with:?}");
+        }
+    }
+    let files = files(&report).unwrap();
+    assert!(files.iter().any(|f| f.name == "models.csv") && files.iter().any(|f| f.name == "models.png"));
+}
+
+#[test]
 fn the_survival_map_knows_a_light_hem_at_a_short_step_as_stable() {
     let map = survival::map(true).unwrap();
     assert_eq!(map.fate[0][0], Fate::Stable, "{:?}", map.strain_p99);

@@ -200,6 +200,10 @@ fn known(row: &ValidationRow) -> Option<&'static str> {
         ("layer-capstan", _) => Some(
             "pairs of cloths that are near and do not touch take a share of what holds those that do: what sticks creeps",
         ),
+        ("bias", _) => Some(
+            "threads that know nothing of each other let a strip along the bias curl across for next to nothing: a fabric's \
+             file may have its rigidity there",
+        ),
         ("euler", _) => Some(
             "bending taken as a plain force rings a little, and the stretch solves of a pressed column feed it (suspected)",
         ),

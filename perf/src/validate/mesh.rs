@@ -240,6 +240,8 @@ pub struct CaseFabric {
     pub shear: f64,
     /// Bending rigidity along warp and weft (N m).
     pub bend: f64,
+    /// Bending rigidity along the weft (N m), where it is another.
+    pub weft: Option<f64>,
     /// Bending rigidity along the bias (N m), where the case twists.
     pub bias: Option<f64>,
     /// Width of the loop of its bending, 2HB (N).
@@ -265,6 +267,7 @@ impl CaseFabric {
         stretch: 6_000.0,
         shear: 60.0,
         bend: 0.0,
+        weft: None,
         bias: None,
         hysteresis: 0.0,
         curve: None,
@@ -287,7 +290,7 @@ impl CaseFabric {
             stretch_weft_n_m: self.stretch as f32,
             shear_n_m: self.shear as f32,
             bend_warp_un_m: micro(self.bend),
-            bend_weft_un_m: micro(self.bend),
+            bend_weft_un_m: micro(self.weft.unwrap_or(self.bend)),
             bend_bias_un_m: self.bias.map(micro),
             friction: self.friction as f32,
             damping_per_s: self.damping as f32,

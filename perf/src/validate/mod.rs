@@ -11,6 +11,7 @@ pub mod layered;
 pub mod mesh;
 pub mod run;
 pub mod specimen;
+pub mod turned;
 
 use toile_engine::cloth::Quality;
 use toile_gpu::backend::Backends;

@@ -63,10 +63,11 @@ impl ValidationReport {
 const STACK_BYTES: usize = 32 << 20;
 
 /// The names of all cases, in the order of the table: known without working out what is exact, which takes seconds.
-pub const NAMES: [&str; 27] = [
+pub const NAMES: [&str; 28] = [
     "cantilever",
     "peirce",
     "elastica",
+    "bias",
     "residual",
     "creep",
     "greenhill",

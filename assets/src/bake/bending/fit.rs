@@ -23,13 +23,20 @@ impl QuadraticForm {
         Self(DMat3::from_cols(m * m.x, m * m.y, m * m.z))
     }
 
-    /// A plate of stencils along warp, weft and both diagonals, with rigidities (N m).
-    pub fn plate([warp, weft, diagonal]: [f64; 3]) -> Self {
-        let dyad = |turns: f64| {
-            let d = glam::DVec2::from_angle(std::f64::consts::FRAC_PI_4 * turns);
-            Self::square(DMat2::from_cols(d * d.x, d * d.y)).0
-        };
-        Self(dyad(0.0) * warp + dyad(2.0) * weft + (dyad(1.0) + dyad(3.0)) * diagonal)
+    /// A plate of stencils along warp and weft and of the twist, with rigidities (N m).
+    pub fn plate([warp, weft, twist]: [f64; 3]) -> Self {
+        Self(Self::dyad(0.0) * warp + Self::dyad(2.0) * weft + DMat3::from_diagonal(DVec3::Z) * twist)
+    }
+
+    /// The square of the curvature along a direction, in eighths of a turn from the warp.
+    fn dyad(eighths: f64) -> DMat3 {
+        let d = glam::DVec2::from_angle(std::f64::consts::FRAC_PI_4 * eighths);
+        Self::square(DMat2::from_cols(d * d.x, d * d.y)).0
+    }
+
+    /// Along both diagonals: what stands in the place of the twist where cloth has none, whose rigidities come out as they always did.
+    fn diagonals() -> Self {
+        Self(Self::dyad(1.0) + Self::dyad(3.0))
     }
 
     fn dot(&self, other: &Self) -> f64 {
@@ -64,12 +71,19 @@ pub struct Patches(Vec<Patch>);
 impl Patches {
     /// Sums up what each vertex measures, all that there is where its `whole` ring does, and spreads it among neighbours so that nothing is lost. A vertex on the rim
     /// stands for itself: beyond it nothing bends.
-    pub fn new(rings: &Rings, measures: &[Vec<(Direction, RingMeasure)>], whole: impl Fn(usize) -> bool) -> Self {
+    pub fn new(
+        rings: &Rings,
+        measures: &[Vec<(Direction, RingMeasure)>],
+        wanted: [f64; 3],
+        whole: impl Fn(usize) -> bool,
+    ) -> Self {
+        let of_one = |b: [f64; 3]| QuadraticForm::plate(b);
+        let third = if wanted[2] > 0.0 { of_one([0.0, 0.0, 1.0]) } else { QuadraticForm::diagonals() };
+        let units = [of_one([1.0, 0.0, 0.0]), of_one([0.0, 1.0, 0.0]), third];
         let one = |(v, around): (usize, &Vec<(Direction, RingMeasure)>)| {
             let mut patch = Patch { forms: [QuadraticForm::NONE; 3], area: rings.area[v] };
             if whole(v) {
-                patch.forms = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
-                    .map(|b| QuadraticForm(QuadraticForm::plate(b).0 * patch.area));
+                patch.forms = units.map(|unit| QuadraticForm(unit.0 * patch.area));
                 return patch;
             }
             for (direction, measure) in around {

@@ -1,7 +1,7 @@
 //! The ring of neighbours around a vertex, laid flat, and what four points of it can measure.
 
 use std::collections::BTreeMap;
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2, TAU};
 
 use glam::{DMat2, DVec2, Vec3};
 
@@ -209,6 +209,51 @@ pub struct Ring {
     pub rim: bool,
 }
 
+/// What of the curvature tensor a measure is to be, as a tensor of length 1.
+#[derive(Debug, Clone, Copy)]
+pub enum RingTensor {
+    /// The curvature along a direction (unit).
+    Along(DVec2),
+    /// The twist between warp and weft, sqrt2 k12.
+    Twist,
+}
+
+impl RingTensor {
+    /// How much of it another tensor is.
+    fn part(self, other: DMat2) -> f64 {
+        match self {
+            Self::Along(d) => d.dot(other * d),
+            Self::Twist => FRAC_1_SQRT_2 * (other.x_axis.y + other.y_axis.x),
+        }
+    }
+
+    /// How much better a triple has to be than one before it. Of a twist all cells around a vertex are as good but for rounding, and
+    /// each is to be measured as often as the others: a vertex takes the first of its ring. Where rounding chose, every other cell of
+    /// some was free to twist, and cloth had two thirds of its stiffness.
+    fn tie(self) -> f64 {
+        match self {
+            Self::Along(_) => 1e-9,
+            Self::Twist => 1e-4,
+        }
+    }
+
+    /// The tensor itself.
+    fn exact(self) -> DMat2 {
+        match self {
+            Self::Along(d) => DMat2::from_cols(d * d.x, d * d.y),
+            Self::Twist => DMat2::from_cols(DVec2::Y, DVec2::X) * FRAC_1_SQRT_2,
+        }
+    }
+
+    /// How much of it a point's dyad is (m2).
+    fn of_point(self, x: DVec2) -> f64 {
+        match self {
+            Self::Along(d) => d.dot(x).powi(2),
+            Self::Twist => SQRT_2 * x.x * x.y,
+        }
+    }
+}
+
 /// An affine dependence of points around a vertex.
 #[derive(Debug, Clone, Copy)]
 pub struct RingMeasure {
@@ -220,6 +265,8 @@ pub struct RingMeasure {
     shares: [f64; 3],
     /// What it measures of the curvature tensor: 1 along its direction.
     pub tensor: DMat2,
+    /// How far that is from what it is to measure (1, Frobenius norm).
+    pub off: f64,
 }
 
 impl RingMeasure {
@@ -252,17 +299,16 @@ impl RingMeasure {
 }
 
 impl Ring {
-    /// The three points that with the vertex measure the curvature at an angle to the warp (rad) best.
-    pub fn measure(&self, angle: f64) -> Option<RingMeasure> {
-        let direction = DVec2::from_angle(angle);
+    /// The three points that with the vertex measure a part of the curvature tensor best.
+    pub fn measure(&self, wanted: RingTensor) -> Option<RingMeasure> {
         let n = self.points.len();
         let mut best: Option<(f64, RingMeasure)> = None;
         for i in 0..n {
             for j in i + 1..n {
                 // With three points in a row a fourth has no weight, so that two neighbours need a third to stand by.
                 for k in j + 1..n {
-                    let Some((cost, found)) = self.dependence([i, j, k], direction) else { continue };
-                    if best.as_ref().is_none_or(|(least, _)| cost < least - 1e-9) {
+                    let Some((cost, found)) = self.dependence([i, j, k], wanted) else { continue };
+                    if best.as_ref().is_none_or(|(least, _)| cost < least - wanted.tie()) {
                         best = Some((cost, found));
                     }
                 }
@@ -286,8 +332,8 @@ impl Ring {
         (sine > LEAST_SINE).then_some([a.0, b.0, c.0, d.0])
     }
 
-    /// The affine dependence of the vertex and three points, normalised to measure 1 along a direction; and how bad it is.
-    fn dependence(&self, triple: [usize; 3], direction: DVec2) -> Option<(f64, RingMeasure)> {
+    /// The affine dependence of the vertex and three points, normalised to measure 1 of what is wanted; and how bad it is.
+    fn dependence(&self, triple: [usize; 3], wanted: RingTensor) -> Option<(f64, RingMeasure)> {
         let [p, q, r] = triple.map(|k| self.points[k].1);
         // Barycentric, with the vertex in the origin: w_p p + w_q q + w_r r = 0.
         let raw = [q.perp_dot(r), r.perp_dot(p), p.perp_dot(q)];
@@ -295,19 +341,19 @@ impl Ring {
             let outer = |w: f64, x: DVec2| DMat2::from_cols(x * x.x, x * x.y) * (0.5 * w);
             outer(w[0], p) + outer(w[1], q) + outer(w[2], r)
         };
-        let along = direction.dot(tensor(raw) * direction);
+        let along = wanted.part(tensor(raw));
         let scale = raw.iter().zip([p, q, r]).map(|(w, x)| w.abs() * x.length_squared()).sum::<f64>();
         if along.abs() < 1e-6 * scale || scale == 0.0 {
             return None;
         }
         let weights = raw.map(|w| w / along);
         let found = tensor(weights);
-        let exact = DMat2::from_cols(direction * direction.x, direction * direction.y);
-        let off = (found - exact).to_cols_array().iter().map(|x| x * x).sum::<f64>().sqrt();
+        let off = (found - wanted.exact()).to_cols_array().iter().map(|x| x * x).sum::<f64>().sqrt();
         let lever = 0.5 * scale / along.abs();
         let cost = off + LEVER_COST * lever;
-        let shares = [0, 1, 2].map(|k| 0.5 * weights[k] * direction.dot([p, q, r][k]).powi(2));
-        (off < MOST_OFF && lever < MOST_LEVER).then(|| (cost, self.tidied(triple, weights, shares, found)))
+        let shares = [0, 1, 2].map(|k| 0.5 * weights[k] * wanted.of_point([p, q, r][k]));
+        (off < MOST_OFF && lever < MOST_LEVER)
+            .then(|| (cost, RingMeasure { off, ..self.tidied(triple, weights, shares, found) }))
     }
 
     /// Leaves out a point without weight.
@@ -320,6 +366,6 @@ impl Ring {
             v[place + 1] = self.points[triple[k]].0;
             (kept[place], kept_shares[place]) = (weights[k], shares[k]);
         }
-        RingMeasure { v, weights: kept, shares: kept_shares, tensor }
+        RingMeasure { v, weights: kept, shares: kept_shares, tensor, off: 0.0 }
     }
 }

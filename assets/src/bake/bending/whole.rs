@@ -37,6 +37,9 @@ const STRAIGHT: f64 = 0.7;
 /// A rigidity below this share of the plate's comes from rounding.
 const LEAST_SHARE: f64 = 1e-6;
 
+/// Least sum of the weights of the twist from which on a ring measures it; that of whole cells is sqrt2.
+const LEAST_TWIST: f64 = 0.1;
+
 /// A part of the curvature energy: rigidity (N m) times the square of a sum.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CurvatureTerm {
@@ -140,6 +143,11 @@ impl RingCurvature {
             });
         }
         parts
+    }
+
+    /// Whether its points lie so that they can tell a twist at all: those on two threads that cross cannot.
+    pub fn measures_twist(&self) -> bool {
+        self.weights.iter().map(|w| w.z.abs()).sum::<f64>() > LEAST_TWIST
     }
 
     /// How far weights of some of its points are from the integral along warp (0) or weft (1), over that itself.

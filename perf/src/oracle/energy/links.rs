@@ -6,11 +6,16 @@
 //! changes, T = k (C + o) is C / compliance, or for an inextensible link C = 0, whatever rho is; so rho can be small
 //! enough for the Hessian to stay well conditioned.
 //!
+//! A link of several slopes, or one that rubs ([`law`]), has T(C) in place of C / compliance, and o and k of the line that
+//! it is on.
+//!
 //! Gradient: T n. Hessian of the difference b - a: k n n^T + (T / l) (I - n n^T). Its eigenvalues are k > 0 along the
 //! link and, twice, T / l across it, negative where the link is compressed: the projection leaves those out.
 
 use glam::{DMat3, DVec3};
+use toile_assets::fabric::link_law::LinkLaw;
 
+use super::super::law;
 use super::super::problem::Link;
 use super::super::solids::outer;
 use super::super::system::System;
@@ -19,38 +24,64 @@ use super::super::system::System;
 #[derive(Debug)]
 pub struct Springs<'a> {
     links: &'a [Link],
+    /// Laws of links with more than one slope `[links]`; empty where none has.
+    laws: Vec<LinkLaw>,
     /// 1 / rho of each (m/N), 0 where the link is soft enough.
     give: Vec<f64>,
     /// Tension of the round before (N).
     pub multiplier: Vec<f64>,
 }
 
+/// A link as it lies.
+struct Pull {
+    /// Unit vector from its first end to its second.
+    n: DVec3,
+    length: f64,
+    /// Growth of the tension with the length (N/m).
+    k: f64,
+    tension: f64,
+    /// What the link itself is longer by under that tension (m).
+    longer: f64,
+}
+
 impl<'a> Springs<'a> {
     /// Links with those stiffer than `rho` (N/m) solved by multipliers, which start at `multiplier`.
-    pub fn new(links: &'a [Link], rho: f64, multiplier: Vec<f64>) -> Self {
-        let give = links.iter().map(|l| if l.compliance * rho < 1.0 { rho.recip() } else { 0.0 }).collect();
-        Self { links, give, multiplier }
+    pub fn new(links: &'a [Link], laws: Vec<LinkLaw>, rho: f64, multiplier: Vec<f64>) -> Self {
+        let softest = |(e, l): (usize, &Link)| laws.get(e).map_or(l.compliance, |law| l.rest / law::steepest(law));
+        let give = links.iter().enumerate().map(|l| if softest(l) * rho < 1.0 { rho.recip() } else { 0.0 }).collect();
+        Self { links, laws, give, multiplier }
     }
 
-    /// Direction, length, stiffness and tension of a link.
-    fn pull(&self, e: usize, x: &[DVec3]) -> (DVec3, f64, f64, f64) {
+    fn pull(&self, e: usize, x: &[DVec3]) -> Pull {
         let link = &self.links[e];
         let gap = x[link.ends[1] as usize] - x[link.ends[0] as usize];
         let length = gap.length().max(1e-9 * link.rest);
+        let n = gap / length;
+        let whole = length - link.rest + self.multiplier[e] * self.give[e];
+        if let Some(law) = self.laws.get(e) {
+            let found = law::answer(law, whole / link.rest, self.give[e] / link.rest);
+            let (k, longer) = (found.slope / link.rest, found.strain * link.rest);
+            return Pull { n, length, k, tension: found.force, longer };
+        }
         let k = (link.compliance + self.give[e]).recip();
-        (gap / length, length, k, k * (length - link.rest + self.multiplier[e] * self.give[e]))
+        let tension = k * whole;
+        Pull { n, length, k, tension, longer: link.compliance * tension }
     }
 
     /// Tension of each link (N), positive where it pulls.
     pub fn tensions(&self, x: &[DVec3]) -> Vec<f64> {
-        (0..self.links.len()).map(|e| self.pull(e, x).3).collect()
+        (0..self.links.len()).map(|e| self.pull(e, x).tension).collect()
     }
 
     /// Energy (J), with what the multipliers add.
     pub fn value(&self, x: &[DVec3]) -> f64 {
-        let one = |e| {
-            let (_, _, k, tension) = self.pull(e, x);
-            0.5 * tension * tension / k
+        let one = |e: usize| {
+            let Pull { k, tension, longer, .. } = self.pull(e, x);
+            let rest = self.links[e].rest;
+            match self.laws.get(e) {
+                Some(law) => rest * law::energy(law, longer / rest) + 0.5 * self.give[e] * tension * tension,
+                None => 0.5 * tension * tension / k,
+            }
         };
         (0..self.links.len()).map(one).sum()
     }
@@ -58,7 +89,7 @@ impl<'a> Springs<'a> {
     /// Adds the gradient (N).
     pub fn gradient(&self, x: &[DVec3], to: &mut [DVec3]) {
         for (e, link) in self.links.iter().enumerate() {
-            let (n, _, _, tension) = self.pull(e, x);
+            let Pull { n, tension, .. } = self.pull(e, x);
             to[link.ends[0] as usize] -= n * tension;
             to[link.ends[1] as usize] += n * tension;
         }
@@ -68,7 +99,7 @@ impl<'a> Springs<'a> {
     /// `x`: k (|b' - a'| - |b - a| - n . (d_b - d_a)) n.
     pub fn bulge(&self, x: &[DVec3], by: &[DVec3], to: &mut [DVec3]) {
         for (e, link) in self.links.iter().enumerate() {
-            let (n, length, k, _) = self.pull(e, x);
+            let Pull { n, length, k, .. } = self.pull(e, x);
             let [a, b] = link.ends.map(|i| i as usize);
             let moved = by[b] - by[a];
             let force = n * (k * ((n * length + moved).length() - length - n.dot(moved)));
@@ -80,7 +111,7 @@ impl<'a> Springs<'a> {
     /// Adds the Hessian (N/m), or where it is not to be `exact` what of it is positive.
     pub fn hessian(&self, x: &[DVec3], exact: bool, to: &mut System) {
         for (e, link) in self.links.iter().enumerate() {
-            let (n, length, k, tension) = self.pull(e, x);
+            let Pull { n, length, k, tension, .. } = self.pull(e, x);
             let across = if exact { tension } else { tension.max(0.0) } / length;
             let along = outer(n, n);
             let block = along * k + (DMat3::IDENTITY - along) * across;
@@ -93,16 +124,16 @@ impl<'a> Springs<'a> {
 
     /// What each multiplier is off its tension at `x` (N) `[links]`: 0 where a link has none.
     pub fn lag(&self, x: &[DVec3]) -> Vec<f64> {
-        let one = |e: usize| if self.give[e] > 0.0 { self.pull(e, x).3 - self.multiplier[e] } else { 0.0 };
+        let one = |e: usize| if self.give[e] > 0.0 { self.pull(e, x).tension - self.multiplier[e] } else { 0.0 };
         (0..self.links.len()).map(one).collect()
     }
 
     /// The largest strain by which a link with a multiplier is off the length that its tension asks for (1).
     pub fn strain_off(&self, x: &[DVec3]) -> f64 {
         let one = |e: usize| {
-            let (_, length, _, tension) = self.pull(e, x);
-            let link = &self.links[e];
-            (length - link.rest - link.compliance * tension).abs() / link.rest
+            let Pull { length, longer, .. } = self.pull(e, x);
+            let rest = self.links[e].rest;
+            (length - rest - longer).abs() / rest
         };
         (0..self.links.len()).filter(|&e| self.give[e] > 0.0).map(one).fold(0.0, f64::max)
     }
@@ -113,7 +144,7 @@ impl<'a> Springs<'a> {
         let mut push = vec![DVec3::ZERO; x.len()];
         let stiff = || (0..self.links.len()).filter(|&e| self.give[e] > 0.0);
         for e in stiff() {
-            let (n, _, k, _) = self.pull(e, x);
+            let Pull { n, k, .. } = self.pull(e, x);
             let force = n * (k * self.give[e] * change[e]);
             let [a, b] = self.links[e].ends.map(|i| i as usize);
             push[a] -= force;
@@ -122,7 +153,7 @@ impl<'a> Springs<'a> {
         let moved = system.solve(&push)?;
         let mut out = vec![0.0; change.len()];
         for e in stiff() {
-            let (n, _, k, _) = self.pull(e, x);
+            let Pull { n, k, .. } = self.pull(e, x);
             let [a, b] = self.links[e].ends.map(|i| i as usize);
             let d = k * self.give[e];
             out[e] = (1.0 - d) * change[e] - k * n.dot(moved[b] - moved[a]);
@@ -134,7 +165,7 @@ impl<'a> Springs<'a> {
     pub fn update(&mut self, x: &[DVec3]) {
         for e in 0..self.links.len() {
             if self.give[e] > 0.0 {
-                self.multiplier[e] = self.pull(e, x).3;
+                self.multiplier[e] = self.pull(e, x).tension;
             }
         }
     }

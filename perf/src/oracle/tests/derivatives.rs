@@ -1,6 +1,7 @@
 //! Gradients against differences of values, Hessians against differences of gradients.
 
 use glam::DVec3;
+use toile_assets::fabric::link_law::LinkLaw;
 
 use super::super::energy::TotalEnergy;
 use super::super::energy::contact::Contact;
@@ -9,7 +10,7 @@ use super::super::energy::links::Springs;
 use super::super::energy::load::Load;
 use super::super::solids::SolidSurface;
 use super::super::system::System;
-use super::{Ball, Plane, Problem, Random, Solids, State, furniture, square};
+use super::{Ball, Link, Plane, Problem, Random, Solids, State, furniture, square};
 
 /// Step of the central differences (m); their error is of the order of its square.
 const H: f64 = 1e-6;
@@ -31,10 +32,21 @@ fn landscape<'a>(problem: &'a Problem, start: &'a [DVec3], random: &mut Random, 
     TotalEnergy {
         problem,
         load,
-        springs: Springs::new(&problem.links, 200.0, multiplier),
+        springs: Springs::new(&problem.links, problem.laws.clone(), 200.0, multiplier),
         contact,
         friction: Some(friction),
     }
+}
+
+/// The square with links that have knees and rub.
+fn lawful() -> Problem {
+    let mut problem = square(6);
+    let law = |l: &Link| {
+        let slope = if l.compliance > 0.0 { l.rest / l.compliance } else { 4e3 };
+        LinkLaw { knees: [-0.02, 0.015], behind: [0.05, 6.0], half_width: 0.01 * slope, ..LinkLaw::plain(slope) }
+    };
+    problem.laws = problem.links.iter().map(law).collect();
+    problem
 }
 
 fn inertia(problem: &Problem) -> Load {
@@ -60,8 +72,7 @@ fn direction(problem: &Problem, random: &mut Random) -> Vec<DVec3> {
 
 #[test]
 fn gradients_are_the_differences_of_values() {
-    let problem = square(6);
-    for load in [inertia, weight] {
+    for (problem, load) in [inertia, weight].into_iter().flat_map(|load| [(square(6), load), (lawful(), load)]) {
         let mut random = Random::new(1);
         let start = crumpled(&problem, &mut random);
         let x = crumpled(&problem, &mut random);

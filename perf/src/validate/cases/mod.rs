@@ -5,6 +5,7 @@
 //! Thread: any.
 
 mod bending;
+mod bias;
 mod buckling;
 mod contact;
 mod hysteresis;
@@ -22,6 +23,7 @@ use super::case::ValidationCase;
 pub fn all() -> Vec<ValidationCase> {
     let rooms = [
         bending::cases,
+        bias::cases,
         hysteresis::cases,
         buckling::cases,
         strings::cases,
