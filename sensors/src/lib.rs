@@ -17,6 +17,7 @@ pub mod pictures;
 
 pub mod colour_camera;
 pub mod filter;
+pub mod masks;
 pub mod person_mask;
 pub mod sample;
 pub mod segment;

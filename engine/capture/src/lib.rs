@@ -20,6 +20,7 @@ pub mod flow;
 pub mod pose;
 pub mod render;
 
+pub mod body;
 pub mod recording;
 
 #[cfg(test)]
