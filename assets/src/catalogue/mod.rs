@@ -5,6 +5,7 @@
 //! Budget: 1 ms a package at load; [`limits`] bound what each may hold.
 //! Thread: the loading thread.
 
+mod collage;
 mod error;
 mod font;
 pub mod limits;
@@ -16,6 +17,7 @@ pub mod price;
 mod shop;
 mod theme;
 
+pub use collage::{CollageGarment, CollagePictures, CollageView, LAYERS, WearingLayer};
 pub use error::CatalogueError;
 pub use manifest::{GarmentManifest, ManifestColour, Words, word};
 pub use package::GarmentPackage;

@@ -34,7 +34,7 @@ pub enum FittingLevel {
 
 impl FittingLevel {
     /// Its height on a body (m).
-    fn height(self, levels: &Levels) -> f32 {
+    pub fn height(self, levels: &Levels) -> f32 {
         match self {
             Self::Neck => levels.neck,
             Self::Shoulders => levels.shoulder,
@@ -97,34 +97,74 @@ const ROW_STRETCH: f32 = 1.12;
 /// A texel counts as garment from this opacity on.
 const OPAQUE: u8 = 128;
 
+/// Checks two points of a picture at its level and how far apart they are (mm); `table` is where they stand.
+///
+/// # Errors
+/// What is wrong, and the cure.
+pub(super) fn check_registration(points: &[[f32; 2]; 2], distance_mm: f32, table: &str) -> Result<(), String> {
+    let apart = Vec2::from(points[0]).distance(Vec2::from(points[1]));
+    if !points.as_flattened().iter().all(|p| p.is_finite() && *p >= 0.0) || apart.is_nan() || apart < LEAST_PIXELS {
+        return Err(format!(
+            "{table}.points must be two pixels of the picture, {LEAST_PIXELS} apart at least; mark them again"
+        ));
+    }
+    if !DISTANCE_MM.contains(&distance_mm) {
+        let [low, high] = [DISTANCE_MM.start(), DISTANCE_MM.end()];
+        return Err(format!(
+            "{table}.distance_mm must lie from {low} to {high}; measure it on the garment, in millimetres"
+        ));
+    }
+    Ok(())
+}
+
+impl StretchLimits {
+    /// Checks the girths; `table` is where they stand.
+    ///
+    /// # Errors
+    /// What is wrong, and the cure.
+    pub(super) fn check(&self, table: &str) -> Result<(), String> {
+        for (name, limits) in [("chest", self.chest), ("waist", self.waist), ("hip", self.hip)] {
+            if limits.is_some_and(|[from, to]| !(from > 0.0 && to >= from && to < 4_000.0)) {
+                return Err(format!(
+                    "{table}.stretches.{name} must be two girths in mm, the smaller first; correct it"
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a body can wear what has these limits.
+    ///
+    /// # Errors
+    /// The girth that is outside of them.
+    pub fn hold(&self, body: &Measures) -> Result<(), String> {
+        for (name, limits, girth) in [
+            ("chest", self.chest, body.chest_girth),
+            ("waist", self.waist, body.waist_girth),
+            ("hip", self.hip, body.hip_girth),
+        ] {
+            let mm = girth * 1e3;
+            if let Some([from, to]) = limits.filter(|[from, to]| !(*from..=*to).contains(&mm)) {
+                return Err(format!("its {name} is for girths of {from} to {to} mm, and this one is {mm:.0} mm"));
+            }
+        }
+        Ok(())
+    }
+
+    /// How much wider than its narrowest a garment may be, by the widest of the limits; none without limits.
+    pub fn most(&self) -> Option<f32> {
+        [self.chest, self.waist, self.hip].into_iter().flatten().map(|[from, to]| to / from).reduce(f32::max)
+    }
+}
+
 impl PhotographedGarment {
     /// Checks what can be checked without the pictures.
     ///
     /// # Errors
     /// What is wrong, and the cure.
     pub fn check(&self) -> Result<(), String> {
-        let apart = Vec2::from(self.points[0]).distance(Vec2::from(self.points[1]));
-        if !self.points.as_flattened().iter().all(|p| p.is_finite() && *p >= 0.0)
-            || apart.is_nan()
-            || apart < LEAST_PIXELS
-        {
-            return Err(format!(
-                "image.points must be two pixels of the front, {LEAST_PIXELS} apart at least; mark them again"
-            ));
-        }
-        if !DISTANCE_MM.contains(&self.distance_mm) {
-            let [low, high] = [DISTANCE_MM.start(), DISTANCE_MM.end()];
-            return Err(format!(
-                "image.distance_mm must lie from {low} to {high}; measure it on the garment, in millimetres"
-            ));
-        }
-        let StretchLimits { chest, waist, hip } = self.stretches;
-        for (name, limits) in [("chest", chest), ("waist", waist), ("hip", hip)] {
-            if limits.is_some_and(|[from, to]| !(from > 0.0 && to >= from && to < 4_000.0)) {
-                return Err(format!("image.stretches.{name} must be two girths in mm, the smaller first; correct it"));
-            }
-        }
-        Ok(())
+        check_registration(&self.points, self.distance_mm, "image")?;
+        self.stretches.check("image")
     }
 
     /// The pictures that it names.
@@ -137,16 +177,7 @@ impl PhotographedGarment {
     /// # Errors
     /// The girth that is outside of what it stretches to.
     pub fn worn_by(&self, body: &Measures) -> Result<(), String> {
-        let StretchLimits { chest, waist, hip } = self.stretches;
-        for (name, limits, girth) in
-            [("chest", chest, body.chest_girth), ("waist", waist, body.waist_girth), ("hip", hip, body.hip_girth)]
-        {
-            let mm = girth * 1e3;
-            if let Some([from, to]) = limits.filter(|[from, to]| !(*from..=*to).contains(&mm)) {
-                return Err(format!("its {name} is for girths of {from} to {to} mm, and this one is {mm:.0} mm"));
-            }
-        }
-        Ok(())
+        self.stretches.hold(body)
     }
 
     /// Its pictures, read: the front's size in pixels before it was fitted, and both as textures.
