@@ -16,6 +16,7 @@ pub mod lens;
 pub mod pictures;
 
 pub mod colour_camera;
+pub mod face_points;
 pub mod filter;
 pub mod masks;
 pub mod person_mask;

@@ -122,6 +122,15 @@ impl PictureSequence {
     }
 }
 
+/// Reads one picture, PNG or JPEG.
+///
+/// # Errors
+/// One sentence where it cannot be read or is no picture.
+pub fn read_picture(path: &Path) -> Result<RgbImage, SourceError> {
+    let bytes = file::read(path, &PICTURE)?;
+    decode(&bytes).map_err(|fault| fault.at(&path.display().to_string()))
+}
+
 fn decode(bytes: &[u8]) -> Result<RgbImage, Fault> {
     Ok(decode_any(bytes)?.into_rgb8())
 }

@@ -21,6 +21,7 @@ pub mod pose;
 pub mod render;
 
 pub mod body;
+pub mod face;
 pub mod recording;
 
 #[cfg(test)]
