@@ -11,10 +11,11 @@ use crate::exit::AppError;
 pub(crate) mod body;
 pub(crate) mod compare;
 mod fabric_scene;
+pub(crate) mod face;
 pub(crate) mod flow;
 pub(crate) mod pose;
 
-/// Turn the pictures of several calibrated cameras into motion, a pose or a body.
+/// Turn the pictures of several calibrated cameras into motion, a pose, a body or a face.
 #[derive(Debug, Clone, PartialEq, Subcommand)]
 #[command(
     after_help = "Example: a cloth that was filmed by four cameras, followed from its mesh in the first frame\n  toile capture flow \
@@ -25,6 +26,7 @@ pub(crate) enum CaptureCommand {
     Pose(pose::PoseArgs),
     Compare(compare::CompareArgs),
     Body(body::BodyCaptureArgs),
+    Face(face::FaceArgs),
 }
 
 /// Runs `toile capture`.
@@ -37,5 +39,6 @@ pub(crate) fn run(command: &CaptureCommand) -> Result<(), AppError> {
         CaptureCommand::Pose(args) => pose::run(args),
         CaptureCommand::Compare(args) => compare::run(args),
         CaptureCommand::Body(args) => body::run(args),
+        CaptureCommand::Face(args) => face::run(args),
     }
 }

@@ -11,12 +11,14 @@
 
 mod adapt;
 mod landmarks;
+mod obj;
 mod prior;
 mod texture;
 
 pub use adapt::{AdaptedHead, FaceView, adapt, assumed_camera};
 pub use landmarks::{FaceLandmarks, SurfacePoint};
-pub use texture::{HeadTexture, texture};
+pub use obj::{MTL, obj};
+pub use texture::{HeadTexture, png, texture};
 
 #[cfg(test)]
 pub(crate) mod tests;

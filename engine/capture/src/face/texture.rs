@@ -4,8 +4,10 @@
 //! and the line of sight, so that seams between them are feathered, and where none looks square on, the skin's own colour fades in: the
 //! median of what was seen well. All of the atlas that is not the head has that colour, which carries it to the body.
 
+use std::io::Cursor;
+
 use glam::{DVec2, DVec3};
-use image::{Rgb, RgbImage};
+use image::{ImageFormat, Rgb, RgbImage};
 use toile_assets::body::shape::Shapes;
 use toile_assets::numeric::statistics::median_of;
 
@@ -81,6 +83,16 @@ pub fn texture(head: &AdaptedHead, views: &[FaceView], photographs: &[RgbImage])
     spread(&mut picture, &mut filled);
     let seen = sums.iter().filter(|s| s.1 > WELL).count() as f64 / sums.len().max(1) as f64;
     HeadTexture { picture, skin: shown, seen }
+}
+
+/// The atlas as a PNG file.
+///
+/// # Errors
+/// What the encoder says.
+pub fn png(texture: &HeadTexture) -> Result<Vec<u8>, image::ImageError> {
+    let mut bytes = Cursor::new(Vec::new());
+    texture.picture.write_to(&mut bytes, ImageFormat::Png)?;
+    Ok(bytes.into_inner())
 }
 
 /// The texels of the head's triangles.

@@ -62,13 +62,20 @@ pub struct SweepBinding {
     /// Section before it.
     section: u8,
     /// Share of the way to the next one.
-    between: f32,
+    pub between: f32,
     /// How much the sweep moves it, 0 to 1; the rest is the skinned surface.
     pub share: f32,
     /// The place along the limb (m).
     pub along: f32,
     /// Rest position (m) and normal.
     rest: [Vec3A; 2],
+}
+
+impl SweepBinding {
+    /// Places along the limb of the two sections that move the vertex (m).
+    pub fn sections(&self, limb: &SweptLimb) -> [f32; 2] {
+        [0, 1].map(|k| limb.place_of(usize::from(self.section) + k))
+    }
 }
 
 /// A skin's swept limbs, bound at load. Running it cannot fail and allocates nothing.
