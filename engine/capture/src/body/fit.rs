@@ -39,6 +39,9 @@ const RESHAPED: f64 = 0.01;
 const ROUNDS: usize = 3;
 const RIM_WORTH: f32 = 3.0;
 
+/// Farthest that an outline lies from the fitted body and is its skin's (m).
+const SKIN: f64 = 0.03;
+
 /// Views and joints, and one sex's body between them.
 pub(super) struct BodyFitter<'a> {
     pub views: &'a [View],
@@ -224,8 +227,9 @@ impl<'a> BodyFitter<'a> {
             let positions = self.pose(&state);
             let mut seen = SeenSurface::new(self.model.samples.len());
             for m in self.matches(&positions, FINE[FINE.len() - 1].0) {
-                // What points sideways tells little of how far the surface lies out.
-                if self.posed.normals[m.face].dot(m.normal.as_vec3()) > 0.8 {
+                // What points sideways tells little of how far the surface lies out, and what lies far off is another part.
+                let along = self.posed.normals[m.face].dot(m.normal.as_vec3()) > 0.8;
+                if m.by_outline && along && m.outside.abs() < SKIN {
                     seen.add_rim(m.face, -m.outside as f32, RIM_WORTH);
                 }
             }

@@ -33,6 +33,8 @@ pub(super) struct RimMatch {
     pub outside: f64,
     /// The plane's normal.
     pub normal: DVec3,
+    /// Whether the outline found the place; else the place found the outline, which may be another part's.
+    pub by_outline: bool,
 }
 
 /// A body's surface as it is drawn.
@@ -100,10 +102,11 @@ pub(super) fn matches(view: &View, rim: &[RimPoint], gate: f64) -> Vec<RimMatch>
     let focal = view.camera.focal().x;
     let mut found = Vec::new();
     let mut taken = vec![false; rim.len()];
-    let outside = |point: &RimPoint, plane: &TangentPlane| RimMatch {
+    let outside = |point: &RimPoint, plane: &TangentPlane, by_outline: bool| RimMatch {
         face: point.face,
         outside: plane.normal.dot(point.place - view.from),
         normal: plane.normal,
+        by_outline,
     };
     for plane in &view.planes {
         let mut best: Option<(f64, usize)> = None;
@@ -115,7 +118,7 @@ pub(super) fn matches(view: &View, rim: &[RimPoint], gate: f64) -> Vec<RimMatch>
         }
         if let Some((_, i)) = best.filter(|(off, i)| off.sqrt() * rim[*i].depth < gate * focal) {
             taken[i] = true;
-            found.push(outside(&rim[i], plane));
+            found.push(outside(&rim[i], plane, true));
         }
     }
     // A place a stretch: a finger has as many faces as a thigh.
@@ -131,7 +134,7 @@ pub(super) fn matches(view: &View, rim: &[RimPoint], gate: f64) -> Vec<RimMatch>
         if let Some((off, plane)) = near
             && off.sqrt() * p.depth < gate * focal
         {
-            found.push(outside(p, plane));
+            found.push(outside(p, plane, false));
         }
     }
     found

@@ -114,7 +114,7 @@ fn table(studies: &[SilhouetteStudy]) -> String {
             s.girths_mm,
             s.chi_square
         );
-        for m in &s.measures {
+        for m in s.measures.iter().filter(|m| m.people > 0) {
             text += &format!(
                 "| {} | {:+.1} | {:.1} | {:.1} | {:.1} | {:.2} | {:.0}, {:.0} % | {:.1} |\n",
                 m.measure.replace('_', " "),
