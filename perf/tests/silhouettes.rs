@@ -13,7 +13,7 @@ fn people_of_another_family_are_found_and_measured_by_their_silhouettes() {
     let surveys = [file("ANSUR_II_FEMALE.csv"), file("ANSUR_II_MALE.csv")];
     let options =
         SilhouetteStudyOptions { makehuman: Some(folder.join("body/makehuman-hm08")), people: 1, cameras: 4, seed: 99 };
-    let found = study(&surveys, &options, &mut || ()).expect("a study");
+    let found = study(&surveys, &options, &mut |_| ()).expect("a study");
     println!("{found:?}");
     assert_eq!((found.people, found.lost, found.measures.len()), (2, 0, 11));
     // Of two people: half as much again as over the many of docs/capture.md.

@@ -12,7 +12,7 @@ use thiserror::Error;
 use toile_assets::body::Sex;
 use toile_assets::numeric::random::SplitMix64;
 use toile_assets::numeric::statistics::quantile;
-use toile_capture::body::{SilhouetteBody, SilhouetteOptions, SilhouetteView, measure};
+use toile_capture::body::{SilhouetteBody, SilhouetteOptions, SilhouetteView, measure, overlay_png};
 use toile_capture::depth_buffer::DepthBuffer;
 use toile_capture::error::CaptureError;
 use toile_sensors::calibration::{CalibratedCamera, CameraParameters};
@@ -50,6 +50,8 @@ pub struct SilhouetteStudyOptions {
     pub cameras: usize,
     /// Which people, and how they stand.
     pub seed: u64,
+    /// Whether each person's silhouettes are drawn with the body that was found.
+    pub pictures: bool,
 }
 
 /// Why a study cannot be made.
@@ -122,20 +124,21 @@ struct Case {
     seconds: f64,
 }
 
-/// Measures people of each survey's sex; `progress` is called after each.
+/// Measures people of each survey's sex; `progress` is called after each, with a PNG file where pictures are asked for.
 ///
 /// # Errors
 /// A file that is no survey, files that are not MakeHuman's, a person outside of all ranges.
 pub fn study(
     surveys: &[Survey],
     options: &SilhouetteStudyOptions,
-    progress: &mut dyn FnMut(),
+    progress: &mut dyn FnMut(Option<Vec<u8>>),
 ) -> Result<SilhouetteStudy, SilhouetteStudyError> {
     let mut cases = Vec::new();
     for survey in surveys {
         for (person, mut rng) in people(survey, options)? {
-            cases.push(seen(&person, options.cameras, &mut rng));
-            progress();
+            let (case, picture) = seen(&person, options, &mut rng);
+            cases.push(case);
+            progress(picture);
         }
     }
     Ok(summed(&cases, options))
@@ -170,14 +173,17 @@ fn people(
 }
 
 /// The person of a study, seen and measured.
-fn seen(person: &StudyPerson, cameras: usize, rng: &mut SplitMix64) -> Case {
-    let rig = rig(cameras, rng);
+fn seen(person: &StudyPerson, options: &SilhouetteStudyOptions, rng: &mut SplitMix64) -> (Case, Option<Vec<u8>>) {
+    let rig = rig(options.cameras, rng);
     let masks = masks(person, &rig, rng);
     let views: Vec<SilhouetteView> =
         rig.iter().zip(&masks).map(|((said, _), mask)| SilhouetteView { camera: said, mask }).collect();
     let begun = std::time::Instant::now();
     let found = measure(&views, &SilhouetteOptions::default()).ok();
-    Case { truth: person.truth, sex: person.sex, found, seconds: begun.elapsed().as_secs_f64() }
+    let seconds = begun.elapsed().as_secs_f64();
+    let shown = found.as_ref().filter(|_| options.pictures);
+    let picture = shown.and_then(|f| overlay_png(&views, &f.standing, &f.body.body.mesh.triangles).ok());
+    (Case { truth: person.truth, sex: person.sex, found, seconds }, picture)
 }
 
 /// Cameras all round, each as it is said to be and as it is.

@@ -10,6 +10,7 @@ use toile_perf::capture::silhouettes::{
 
 use crate::arguments::{Printing, count};
 use crate::exit::AppError;
+use crate::output::OutputFolder;
 use crate::report::Document;
 use crate::terminal;
 
@@ -40,6 +41,9 @@ pub struct SilhouettesArgs {
     /// Which people, and how they stand
     #[arg(long, value_name = "S", default_value = "4242")]
     seed: u64,
+    /// Folder for a picture of each person: the silhouettes, and the body that was found
+    #[arg(long, value_name = "DIR")]
+    pictures: Option<PathBuf>,
     #[command(flatten)]
     printing: Printing,
 }
@@ -65,12 +69,26 @@ pub fn run(args: &SilhouettesArgs) -> Result<(), AppError> {
         .printing
         .words()
         .bar((families.len() * args.cameras.len() * surveys.len() * args.people) as u64, "measuring people");
+    let mut folder = args.pictures.as_deref().map(OutputFolder::prepare).transpose()?;
+    let mut drawn: Vec<(String, Vec<u8>)> = Vec::new();
     let mut studies = Vec::new();
     for makehuman in families {
         for &cameras in &args.cameras {
-            let options =
-                SilhouetteStudyOptions { makehuman: makehuman.clone(), people: args.people, cameras, seed: args.seed };
-            let found = study(&surveys, &options, &mut || bar.inc(1)).map_err(|e| match e {
+            let family = if makehuman.is_some() { "makehuman" } else { "survey" };
+            let options = SilhouetteStudyOptions {
+                makehuman: makehuman.clone(),
+                people: args.people,
+                cameras,
+                seed: args.seed,
+                pictures: folder.is_some(),
+            };
+            let mut count = 0;
+            let mut progress = |picture: Option<Vec<u8>>| {
+                bar.inc(1);
+                count += 1;
+                drawn.extend(picture.map(|png| (format!("{family}-{cameras}-{count}.png"), png)));
+            };
+            let found = study(&surveys, &options, &mut progress).map_err(|e| match e {
                 SilhouetteStudyError::Capture(_) => AppError::internal(e),
                 _ => AppError::input(e),
             })?;
@@ -78,6 +96,14 @@ pub fn run(args: &SilhouettesArgs) -> Result<(), AppError> {
         }
     }
     bar.finish_and_clear();
+    if let Some(folder) = &mut folder {
+        for (name, png) in &drawn {
+            folder.write(name, png)?;
+        }
+    }
+    if let Some(folder) = folder {
+        folder.commit()?;
+    }
     let missed: Vec<String> = studies
         .iter()
         .filter(|s| s.family == "makehuman" && s.girths_mm > GIRTH_MM)
