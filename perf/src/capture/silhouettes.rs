@@ -117,7 +117,7 @@ pub struct SilhouetteStudy {
 }
 
 /// One person who was measured: truth and what was found.
-struct Case {
+struct SilhouetteCase {
     truth: TapeMeasures,
     sex: Sex,
     found: Option<SilhouetteBody>,
@@ -173,7 +173,11 @@ fn people(
 }
 
 /// The person of a study, seen and measured.
-fn seen(person: &StudyPerson, options: &SilhouetteStudyOptions, rng: &mut SplitMix64) -> (Case, Option<Vec<u8>>) {
+fn seen(
+    person: &StudyPerson,
+    options: &SilhouetteStudyOptions,
+    rng: &mut SplitMix64,
+) -> (SilhouetteCase, Option<Vec<u8>>) {
     let rig = rig(options.cameras, rng);
     let masks = masks(person, &rig, rng);
     let views: Vec<SilhouetteView> =
@@ -183,7 +187,7 @@ fn seen(person: &StudyPerson, options: &SilhouetteStudyOptions, rng: &mut SplitM
     let seconds = begun.elapsed().as_secs_f64();
     let shown = found.as_ref().filter(|_| options.pictures);
     let picture = shown.and_then(|f| overlay_png(&views, &f.standing, &f.body.body.mesh.triangles).ok());
-    (Case { truth: person.truth, sex: person.sex, found, seconds }, picture)
+    (SilhouetteCase { truth: person.truth, sex: person.sex, found, seconds }, picture)
 }
 
 /// Cameras all round, each as it is said to be and as it is.
@@ -247,8 +251,9 @@ fn masks(person: &StudyPerson, rig: &[(CalibratedCamera, CalibratedCamera)], rng
     rig.iter().map(&mut take).collect()
 }
 
-fn summed(cases: &[Case], options: &SilhouetteStudyOptions) -> SilhouetteStudy {
-    let found: Vec<(&Case, &SilhouetteBody)> = cases.iter().filter_map(|c| Some((c, c.found.as_ref()?))).collect();
+fn summed(cases: &[SilhouetteCase], options: &SilhouetteStudyOptions) -> SilhouetteStudy {
+    let found: Vec<(&SilhouetteCase, &SilhouetteBody)> =
+        cases.iter().filter_map(|c| Some((c, c.found.as_ref()?))).collect();
     let count = found.len().max(1) as f64;
     let measures: Vec<SilhouetteAgreement> =
         MEASURES.iter().enumerate().map(|(i, m)| agreement(m.0, i, &found)).collect();
@@ -272,7 +277,7 @@ fn summed(cases: &[Case], options: &SilhouetteStudyOptions) -> SilhouetteStudy {
     }
 }
 
-fn agreement(measure: &'static str, i: usize, found: &[(&Case, &SilhouetteBody)]) -> SilhouetteAgreement {
+fn agreement(measure: &'static str, i: usize, found: &[(&SilhouetteCase, &SilhouetteBody)]) -> SilhouetteAgreement {
     // Error, stated deviation, and the fit's own (mm).
     let rows: Vec<[f64; 3]> = (found.iter())
         .filter_map(|(c, f)| {

@@ -83,7 +83,7 @@ impl BodyLayers {
             t.iter().all(|v| matches!(of(*v), Some(Region::LeftArm | Region::RightArm)))
         };
         let limbs: Vec<bool> = figure.triangles.iter().map(is_arm).collect();
-        let seen = Seen::of(&view, size, &figure.rest, &figure.triangles, &limbs);
+        let seen = CoveredSamples::of(&view, size, &figure.rest, &figure.triangles, &limbs);
         let per_metre = size.height as f32 / (tall / FILL);
         let (arms, trunk) = seen.layers();
         Self { picture, arms, trunk, per_metre, floor: 0.5 * size.height as f32 + 0.5 * tall * per_metre }
@@ -105,7 +105,7 @@ impl BodyLayers {
 }
 
 /// What each sample of a picture sees: nothing, trunk and legs, or an arm; and, whatever lies before them, where trunk and legs are.
-struct Seen {
+struct CoveredSamples {
     size: Size,
     /// First surface of each sample: 0 nothing, 1 trunk, 2 arm.
     first: Vec<u8>,
@@ -113,7 +113,7 @@ struct Seen {
     trunk: Vec<bool>,
 }
 
-impl Seen {
+impl CoveredSamples {
     fn of(view: &CameraFrame, size: Size, positions: &[Vec3], triangles: &[[u32; 3]], limbs: &[bool]) -> Self {
         let (w, h) = (size.width as usize * SAMPLES, size.height as usize * SAMPLES);
         let mut depth = vec![f32::INFINITY; w * h];

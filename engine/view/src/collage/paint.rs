@@ -129,8 +129,11 @@ fn stretches(
     let most = garment.stretches.most().unwrap_or(STRETCH).max(1.0);
     let ease = EASE * layers.per_metre;
     let wanted = |y: usize| -> Option<[f32; 2]> {
-        let from =
-            (((y as f32 + 0.5 - top) / scale) as isize).try_into().ok().filter(|r: &usize| *r < beside.height)?;
+        let from = (y as f32 + 0.5 - top) / scale;
+        if from < 0.0 || from >= beside.height as f32 {
+            return None;
+        }
+        let from = from as usize;
         let row = &beside.pixels[from * beside.width..][..beside.width];
         let first = row.iter().position(|p| p[3] >= OPAQUE)? as f32;
         let last = row.iter().rposition(|p| p[3] >= OPAQUE)? as f32 + 1.0;
