@@ -116,7 +116,7 @@ pub fn adapt(views: &[FaceView], sex: Sex) -> Result<AdaptedHead, CaptureError> 
         pose = pose_step(views, &at, pose);
     }
     let (residual, points, relative) = residual(views, &at, pose);
-    if !(relative < LARGEST_RESIDUAL) {
+    if relative.is_nan() || relative >= LARGEST_RESIDUAL {
         let problem = format!("they lie {residual:.1} px from those of any head that stands before these cameras");
         let cure = "check their order, left and right (the wearer's right is point 0), and the cameras' names";
         return Err(CaptureError::unfit("the points", problem, cure));
