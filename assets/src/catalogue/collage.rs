@@ -3,9 +3,9 @@
 
 use serde::Deserialize;
 
+use super::fitting::{FittingLevel, StretchLimits, check_registration};
 use super::limits::MAX_PIXELS;
 use super::package::is_plain;
-use super::photographed::{FittingLevel, StretchLimits, check_registration};
 use super::picture::Picture;
 
 crate::named! {

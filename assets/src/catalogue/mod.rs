@@ -7,6 +7,7 @@
 
 mod collage;
 mod error;
+mod fitting;
 mod font;
 pub mod limits;
 pub mod manifest;
@@ -19,9 +20,10 @@ mod theme;
 
 pub use collage::{CollageGarment, CollagePictures, CollageView, LAYERS, WearingLayer};
 pub use error::CatalogueError;
+pub use fitting::{FittingLevel, StretchLimits};
 pub use manifest::{GarmentManifest, ManifestColour, Words, word};
 pub use package::GarmentPackage;
-pub use photographed::{FittingLevel, GarmentPhotographs, PhotographedGarment, StretchLimits};
+pub use photographed::{GarmentPhotographs, PhotographedGarment};
 pub use picture::Picture;
 pub use price::Price;
 pub use shop::{Catalogue, CatalogueItem, FILE, RefusedPackage, ShopFile};

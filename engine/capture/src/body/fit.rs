@@ -13,7 +13,7 @@ use toile_track::fit::{
     add_priors, limit_step,
 };
 
-use super::measured::JointPoint;
+use super::joint_point::JointPoint;
 use super::rim::{DrawnSurface, RimMatch, matches, overlap, rim};
 use super::view::View;
 use crate::depth_buffer::DepthBuffer;

@@ -4,10 +4,9 @@ use glam::{DMat3, DQuat, DVec3, Quat, Vec3};
 use toile_assets::body::shape::Shapes;
 use toile_assets::body::{En, Fitted, Measures, Sex};
 use toile_assets::mesh::vertex_normals;
-use toile_assets::skeleton::{Joint, Pose};
+use toile_assets::skeleton::Pose;
 use toile_sensors::calibration::CalibratedCamera;
 use toile_sensors::masks::Mask;
-use toile_sensors::source::openpose::Point;
 use toile_track::correlated::Correlated;
 use toile_track::estimate::Estimate;
 use toile_track::fit::FitState;
@@ -15,6 +14,7 @@ use toile_track::fit::measuring::{MEASURES, covariance_of};
 
 use super::fit::{BodyFitter, FINE};
 use super::hull::{HullShape, carve};
+use super::joint_point::JointPoint;
 use super::start::start;
 use super::view::View;
 use crate::error::CaptureError;
@@ -42,17 +42,6 @@ const MODEL_ERROR: [f32; MEASURES.len()] =
 
 /// How much of that error the girths of the trunk have in common.
 const TOGETHER: f32 = 0.4;
-
-/// A joint that was found in pictures.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct JointPoint {
-    /// Which.
-    pub joint: Joint,
-    /// Where (m): in the cameras' world as it is given, in the upright one while it is fitted.
-    pub place: DVec3,
-    /// How sure it is, 0 to 1.
-    pub confidence: f32,
-}
 
 /// One camera with what it saw.
 #[derive(Debug, Clone, Copy)]
@@ -101,31 +90,6 @@ pub struct SilhouetteBody {
     pub hull: [f64; 2],
     /// One sentence for each thing that a user should know.
     pub notes: Vec<String>,
-}
-
-/// The keypoints of BODY_25B that are joints of the body.
-const KEYPOINTS: [(usize, Joint); 12] = [
-    (5, Joint::LeftShoulder),
-    (6, Joint::RightShoulder),
-    (7, Joint::LeftElbow),
-    (8, Joint::RightElbow),
-    (9, Joint::LeftWrist),
-    (10, Joint::RightWrist),
-    (11, Joint::LeftHip),
-    (12, Joint::RightHip),
-    (13, Joint::LeftKnee),
-    (14, Joint::RightKnee),
-    (15, Joint::LeftAnkle),
-    (16, Joint::RightAnkle),
-];
-
-/// The joints among the triangulated keypoints of BODY_25B.
-pub fn joint_points(points: &[Point]) -> Vec<JointPoint> {
-    let point = |(k, joint): &(usize, Joint)| {
-        let p = points.get(*k).filter(|p| p.confidence > 0.0)?;
-        Some(JointPoint { joint: *joint, place: p.position, confidence: p.confidence })
-    };
-    KEYPOINTS.iter().filter_map(point).collect()
 }
 
 /// Measures the person whom these cameras see.

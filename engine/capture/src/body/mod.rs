@@ -7,6 +7,7 @@
 mod distance_field;
 mod fit;
 mod hull;
+mod joint_point;
 mod measured;
 mod outline;
 mod overlay;
@@ -14,7 +15,8 @@ mod rim;
 mod start;
 mod view;
 
-pub use measured::{JointPoint, SilhouetteBody, SilhouetteOptions, SilhouetteView, joint_points, measure};
+pub use joint_point::{JointPoint, joint_points};
+pub use measured::{SilhouetteBody, SilhouetteOptions, SilhouetteView, measure};
 pub use overlay::overlay_png;
 
 #[cfg(test)]
