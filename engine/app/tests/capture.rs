@@ -31,13 +31,15 @@ fn silhouettes_of_nobody_are_one_sentence() {
     fs::write(scratch.path().join("cams.toml"), CAMERAS).unwrap();
     let small = |x: u32, y: u32| (27..33).contains(&x) && (36..43).contains(&y);
     let tall = |x: u32, y: u32| (20..40).contains(&x) && (15..63).contains(&y);
-    for (folder, size, white) in [
-        ("black", [60, 80], &(|_, _| false) as &dyn Fn(u32, u32) -> bool),
+    type White<'a> = &'a dyn Fn(u32, u32) -> bool;
+    let all: [(&str, [u32; 2], White); 5] = [
+        ("black", [60, 80], &|_, _| false),
         ("white", [60, 80], &|_, _| true),
         ("other", [30, 40], &small),
         ("small", [60, 80], &small),
         ("box", [60, 80], &tall),
-    ] {
+    ];
+    for (folder, size, white) in all {
         for camera in ["a.png", "b.png"] {
             png(&scratch, &format!("{folder}/{camera}"), size, white);
         }

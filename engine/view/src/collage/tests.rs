@@ -109,7 +109,8 @@ fn outer_layers_cover_inner_ones_arms_cover_both_and_sleeves_the_arms() {
     let on_arm =
         (0..SIZE.width).find(|x| layers.arms[(row * SIZE.width + x) as usize] > 0.99).expect("the arm hangs there");
     assert_eq!(worn(&[(&shirt, &sleeve)]).pixel(on_arm, row), Some([0, 255, 0]));
-    let none = WornPhotographs { garment: &shirt, pictures: &[None, None, None] };
+    let nothing = [None, None, None];
+    let none = WornPhotographs { garment: &shirt, pictures: &nothing };
     let refused = collage(&body, &layers, CollageSide::Side, &[none]).unwrap_err();
     assert_eq!(refused, CollageError::Unseen(CollageSide::Side));
 }
