@@ -58,7 +58,7 @@ pub struct CollageArgs {
     pub sides: Vec<CollageSide>,
     /// Rows of a picture
     #[arg(long, value_name = "N", value_parser = count(200..=2160), default_value = "800")]
-    pub rows: u32,
+    pub rows: usize,
     #[command(flatten)]
     look: AppearanceArgs,
     /// Folder for the pictures; it is made if missing
@@ -110,7 +110,8 @@ pub fn run(args: &CollageArgs) -> Result<(), AppError> {
         true => CollageSide::ALL.into_iter().filter(there).collect(),
         false => args.sides.clone(),
     };
-    let size = Size::new(args.rows * 3 / 5, args.rows);
+    let rows = args.rows as u32;
+    let size = Size::new(rows * 3 / 5, rows);
     let mut images = Vec::new();
     for side in &sides {
         let layers = BodyLayers::new(&body, args.look.appearance(), *side, size);
