@@ -16,7 +16,9 @@ pub mod lens;
 pub mod pictures;
 
 pub mod colour_camera;
+pub mod face_points;
 pub mod filter;
+pub mod masks;
 pub mod person_mask;
 pub mod sample;
 pub mod segment;

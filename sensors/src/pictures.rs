@@ -7,14 +7,14 @@ use std::collections::BTreeMap;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-use image::{ImageReader, Limits, RgbImage};
+use image::{DynamicImage, ImageReader, Limits, RgbImage};
 use toile_assets::file::{self, FileKind};
 
 use crate::error::{Fault, Place, SourceError};
 use crate::limits::{MAX_CAMERAS, MAX_SIDE};
 
 /// Largest file of one picture.
-const PICTURE: FileKind =
+pub(crate) const PICTURE: FileKind =
     FileKind { name: "a picture", max_bytes: 128 << 20, cure: "save it as a PNG or JPEG of ordinary size" };
 
 /// Most frames of a sequence: an hour at 30 Hz.
@@ -122,7 +122,21 @@ impl PictureSequence {
     }
 }
 
+/// Reads one picture, PNG or JPEG.
+///
+/// # Errors
+/// One sentence where it cannot be read or is no picture.
+pub fn read_picture(path: &Path) -> Result<RgbImage, SourceError> {
+    let bytes = file::read(path, &PICTURE)?;
+    decode(&bytes).map_err(|fault| fault.at(&path.display().to_string()))
+}
+
 fn decode(bytes: &[u8]) -> Result<RgbImage, Fault> {
+    Ok(decode_any(bytes)?.into_rgb8())
+}
+
+/// Decodes a PNG or JPEG of any kind of pixels.
+pub(crate) fn decode_any(bytes: &[u8]) -> Result<DynamicImage, Fault> {
     let fault = |e: &dyn std::fmt::Display| {
         Fault::new(Place::Whole, format!("it is no picture in PNG or JPEG ({e})"), "save it again")
     };
@@ -131,7 +145,7 @@ fn decode(bytes: &[u8]) -> Result<RgbImage, Fault> {
     (limits.max_image_width, limits.max_image_height) = (Some(MAX_SIDE), Some(MAX_SIDE));
     limits.max_alloc = Some(MAX_DECODED_BYTES);
     reader.limits(limits);
-    Ok(reader.decode().map_err(|e| fault(&e))?.into_rgb8())
+    reader.decode().map_err(|e| fault(&e))
 }
 
 fn entries(folder: &Path) -> Result<Vec<PathBuf>, SourceError> {

@@ -5,7 +5,9 @@
 //! Budget: 1 ms a package at load; [`limits`] bound what each may hold.
 //! Thread: the loading thread.
 
+mod collage;
 mod error;
+mod fitting;
 mod font;
 pub mod limits;
 pub mod manifest;
@@ -16,10 +18,12 @@ pub mod price;
 mod shop;
 mod theme;
 
+pub use collage::{CollageGarment, CollagePictures, CollageView, LAYERS, WearingLayer};
 pub use error::CatalogueError;
+pub use fitting::{FittingLevel, StretchLimits};
 pub use manifest::{GarmentManifest, ManifestColour, Words, word};
 pub use package::GarmentPackage;
-pub use photographed::{FittingLevel, GarmentPhotographs, PhotographedGarment, StretchLimits};
+pub use photographed::{GarmentPhotographs, PhotographedGarment};
 pub use picture::Picture;
 pub use price::Price;
 pub use shop::{Catalogue, CatalogueItem, FILE, RefusedPackage, ShopFile};

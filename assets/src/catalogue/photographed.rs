@@ -6,58 +6,12 @@ use std::sync::Arc;
 use glam::{Vec2, Vec3};
 use serde::Deserialize;
 
-use crate::body::{Body, Levels, Measures};
+use super::fitting::{FittingLevel, StretchLimits, check_registration};
+use crate::body::{Body, Measures};
 use crate::garment::Garment;
 use crate::garment::look::MeshPicture;
 use crate::numeric::statistics;
 use crate::texture::{Atlas, Texture};
-
-/// Where a garment stays in place on the body while the rest of it stretches.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum FittingLevel {
-    /// The neck.
-    Neck,
-    /// The tips of the shoulders.
-    Shoulders,
-    /// The bust.
-    Bust,
-    /// Below the bust.
-    UnderBust,
-    /// The waist.
-    Waist,
-    /// Between the legs.
-    Crotch,
-    /// The floor.
-    Feet,
-}
-
-impl FittingLevel {
-    /// Its height on a body (m).
-    fn height(self, levels: &Levels) -> f32 {
-        match self {
-            Self::Neck => levels.neck,
-            Self::Shoulders => levels.shoulder,
-            Self::Bust => levels.chest,
-            Self::UnderBust => levels.underbust,
-            Self::Waist => levels.waist,
-            Self::Crotch => levels.crotch,
-            Self::Feet => 0.0,
-        }
-    }
-}
-
-/// Girths of the bodies that a garment stretches to (mm), from and to.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct StretchLimits {
-    /// Around the chest.
-    pub chest: Option<[f32; 2]>,
-    /// Around the waist.
-    pub waist: Option<[f32; 2]>,
-    /// Around the hip.
-    pub hip: Option<[f32; 2]>,
-}
 
 /// What a manifest says of a garment's photographs.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -78,12 +32,6 @@ pub struct PhotographedGarment {
     pub stretches: StretchLimits,
 }
 
-/// Distances between two points that are believed (mm).
-const DISTANCE_MM: std::ops::RangeInclusive<f32> = 20.0..=2_000.0;
-
-/// Least distance of the points in the picture (pixels): a registration by fewer is off by percents.
-const LEAST_PIXELS: f32 = 16.0;
-
 /// How much longer or shorter than its cut a garment may be in its photograph, from the level down (1).
 const OTHER_CUT: f32 = 0.3;
 
@@ -103,28 +51,8 @@ impl PhotographedGarment {
     /// # Errors
     /// What is wrong, and the cure.
     pub fn check(&self) -> Result<(), String> {
-        let apart = Vec2::from(self.points[0]).distance(Vec2::from(self.points[1]));
-        if !self.points.as_flattened().iter().all(|p| p.is_finite() && *p >= 0.0)
-            || apart.is_nan()
-            || apart < LEAST_PIXELS
-        {
-            return Err(format!(
-                "image.points must be two pixels of the front, {LEAST_PIXELS} apart at least; mark them again"
-            ));
-        }
-        if !DISTANCE_MM.contains(&self.distance_mm) {
-            let [low, high] = [DISTANCE_MM.start(), DISTANCE_MM.end()];
-            return Err(format!(
-                "image.distance_mm must lie from {low} to {high}; measure it on the garment, in millimetres"
-            ));
-        }
-        let StretchLimits { chest, waist, hip } = self.stretches;
-        for (name, limits) in [("chest", chest), ("waist", waist), ("hip", hip)] {
-            if limits.is_some_and(|[from, to]| !(from > 0.0 && to >= from && to < 4_000.0)) {
-                return Err(format!("image.stretches.{name} must be two girths in mm, the smaller first; correct it"));
-            }
-        }
-        Ok(())
+        check_registration(&self.points, self.distance_mm, "image")?;
+        self.stretches.check("image")
     }
 
     /// The pictures that it names.
@@ -137,16 +65,7 @@ impl PhotographedGarment {
     /// # Errors
     /// The girth that is outside of what it stretches to.
     pub fn worn_by(&self, body: &Measures) -> Result<(), String> {
-        let StretchLimits { chest, waist, hip } = self.stretches;
-        for (name, limits, girth) in
-            [("chest", chest, body.chest_girth), ("waist", waist, body.waist_girth), ("hip", hip, body.hip_girth)]
-        {
-            let mm = girth * 1e3;
-            if let Some([from, to]) = limits.filter(|[from, to]| !(*from..=*to).contains(&mm)) {
-                return Err(format!("its {name} is for girths of {from} to {to} mm, and this one is {mm:.0} mm"));
-            }
-        }
-        Ok(())
+        self.stretches.hold(body)
     }
 
     /// Its pictures, read: the front's size in pixels before it was fitted, and both as textures.

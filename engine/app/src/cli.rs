@@ -12,6 +12,7 @@ use crate::commands::bench::BenchCommand;
 use crate::commands::body::BodyArgs;
 use crate::commands::capture::CaptureCommand;
 use crate::commands::catalogue::CatalogueCommand;
+use crate::commands::collage::CollageArgs;
 use crate::commands::completions::CompletionsArgs;
 use crate::commands::convert::ConvertArgs;
 use crate::commands::doctor::DoctorArgs;
@@ -64,6 +65,7 @@ pub(crate) enum Command {
     Catalogue(CatalogueCommand),
     #[command(subcommand)]
     Fabric(FabricCommand),
+    Collage(CollageArgs),
     Body(BodyArgs),
     #[command(subcommand)]
     Capture(CaptureCommand),

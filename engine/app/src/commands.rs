@@ -9,6 +9,7 @@ pub(crate) mod bench;
 pub mod body;
 pub(crate) mod capture;
 pub(crate) mod catalogue;
+pub mod collage;
 pub mod colliders;
 pub mod completions;
 pub mod convert;

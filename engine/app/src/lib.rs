@@ -71,6 +71,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Tailor(args) => commands::tailor::run(args),
         Command::Catalogue(command) => commands::catalogue::run(command),
         Command::Fabric(command) => commands::fabric::run(command),
+        Command::Collage(args) => commands::collage::run(args),
         Command::Body(args) if args.colliders => commands::colliders::run(args),
         Command::Body(args) => commands::body::run(args),
         Command::Run(args) => commands::run::run(args),

@@ -20,6 +20,8 @@ pub mod flow;
 pub mod pose;
 pub mod render;
 
+pub mod body;
+pub mod face;
 pub mod recording;
 
 #[cfg(test)]

@@ -44,4 +44,5 @@ mod shadow_filter;
 
 pub mod trace;
 
+pub mod collage;
 pub mod drawn_frame;

@@ -7,3 +7,4 @@
 pub mod cloth;
 pub mod flow;
 pub mod sheet;
+pub mod silhouettes;

@@ -9,6 +9,7 @@ mod oracle;
 mod picture;
 mod shapes;
 mod solid;
+mod sweep;
 pub mod table;
 
 use std::hint::black_box;
@@ -28,6 +29,7 @@ pub use error::SkinningError;
 pub use oracle::SurfaceErrors;
 pub use picture::twist_picture;
 pub use shapes::{BentJoint, BlendDistance, Shapes, TwistVolume, shapes};
+pub use sweep::{SweepTiming, sweep_timing};
 
 /// Rounds of a measurement: yardstick and kernels in turn, so that both see the machine as it is. An odd number.
 const ROUNDS: usize = 5;

@@ -8,7 +8,7 @@ use toile_assets::mesh::{Influences, SkinWeights, WideWeights};
 use toile_assets::scene;
 use toile_assets::skeleton::{self, BONES, Joint, Pose};
 use toile_engine::body::{JointFrames, palette};
-use toile_engine::skin::{Blend, SkinningJob};
+use toile_engine::skin::{Blend, SkinningJob, SweptSkin};
 
 use super::error::SkinningError;
 use super::solid::ClosedSurface;
@@ -33,7 +33,7 @@ pub struct TwistVolume {
     pub dual_split: f64,
 }
 
-/// What a bent joint of the shopper looks like, linear and dual.
+/// What a bent joint of the shopper looks like: linear, dual, and swept over dual.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BentJoint {
     /// Name of the joint.
@@ -41,13 +41,13 @@ pub struct BentJoint {
     /// Angle of the bend (degrees).
     pub degrees: f64,
     /// Volume within 12 cm of the joint over that at rest.
-    pub volume: [f64; 2],
+    pub volume: [f64; 3],
     /// Largest distance of the skin from the bones over that at rest, less 1: the bulge.
-    pub bulge: [f64; 2],
+    pub bulge: [f64; 3],
     /// The same in millimetres.
-    pub bulge_mm: [f64; 2],
+    pub bulge_mm: [f64; 3],
     /// Least distance of the skin from the bones over that at rest, on the outer side, less 1.
-    pub thinnest: [f64; 2],
+    pub thinnest: [f64; 3],
 }
 
 /// How far apart the two blends put the shopper's skin in the scene's ten seconds.
@@ -257,11 +257,12 @@ fn hinge(body: &Body, of: &'static str, joint: Joint, bends: Vec3, degrees: f64)
     let near: Vec<usize> = (0..points.len()).filter(|&v| points[v].distance(rest[1]) < NEAR_M).collect();
     let solid = ClosedSurface::cut(&body.mesh.triangles, |v| points[v as usize].distance(rest[1]) < NEAR_M);
     let mut found =
-        BentJoint { of, degrees, volume: [0.0; 2], bulge: [0.0; 2], bulge_mm: [0.0; 2], thinnest: [0.0; 2] };
+        BentJoint { of, degrees, volume: [0.0; 3], bulge: [0.0; 3], bulge_mm: [0.0; 3], thinnest: [0.0; 3] };
     // Away from the inner side of the bend, where flesh meets flesh.
     let outwards = ((bent[1] - bent[0]).normalize() - (bent[2] - bent[1]).normalize()).normalize();
-    for (k, blend) in Blend::ALL.into_iter().enumerate() {
-        let moved = posed(points, &body.weights, &bones, blend)?;
+    let [linear, dual] = Blend::ALL.map(|blend| posed(points, &body.weights, &bones, blend));
+    let ways = [linear?, dual?, swept(body, &bones)?];
+    for (k, moved) in ways.into_iter().enumerate() {
         found.volume[k] = solid.volume(&moved) / solid.volume(points);
         let (mut most, mut most_mm, mut least) = (0.0f64, 0.0f64, f64::MAX);
         for &v in near.iter().filter(|&&v| (moved[v] - bent[1]).dot(outwards) > 0.0) {
@@ -273,6 +274,16 @@ fn hinge(body: &Body, of: &'static str, joint: Joint, bends: Vec3, degrees: f64)
         (found.bulge[k], found.bulge_mm[k], found.thinnest[k]) = (most - 1.0, most_mm, least - 1.0);
     }
     Ok(found)
+}
+
+/// Positions of the body's vertices, skinned by dual quaternions and swept around elbows and knees (m).
+pub(super) fn swept(body: &Body, palette: &[Affine3A; BONES]) -> Result<Vec<Vec3>, SkinningError> {
+    let job = SkinningJob::new(&body.mesh.positions, &body.normals, &body.weights)?;
+    let mut posed = job.posed_mesh();
+    job.run_mesh(Blend::Dual, palette, &mut posed);
+    let sweep = SweptSkin::new(&body.skeleton, &body.mesh.positions, &body.normals, &body.weights);
+    sweep.run(palette, &mut posed);
+    Ok(posed.vertices().iter().map(|v| Vec3::from(v.position)).collect())
 }
 
 /// Moments of the scene that are looked at: ten a second.
@@ -348,10 +359,12 @@ mod tests {
     #[test]
     fn bent_joints_thin_under_linear_blending_and_bulge_under_dual_quaternions() {
         for h in shapes().unwrap().hinges {
-            let [linear, dual] = h.bulge;
+            let [linear, dual, _] = h.bulge;
             assert!(dual > linear, "{h:?}");
-            let [linear, dual] = h.thinnest;
+            let [linear, dual, _] = h.thinnest;
             assert!(linear < dual, "{h:?}");
+            let [linear, dual, swept] = h.volume.map(|v| (v - 1.0).abs());
+            assert!(swept < dual && dual < linear, "{h:?}");
         }
     }
 }

@@ -6,7 +6,10 @@ use toile_engine::lanes::Width;
 use toile_engine::skin::Padding;
 use toile_fitting::scene::yardstick;
 
-use super::{Shapes, Skinning, SkinningError, SkinningOptions, SkinningSubject, Timing, measure, shapes};
+use super::{
+    Shapes, Skinning, SkinningError, SkinningOptions, SkinningSubject, SweepTiming, Timing, measure, shapes,
+    sweep_timing,
+};
 
 /// Most of the yardstick that a thread may take for as many vertices: linear, dual.
 pub const TARGETS: [f64; 2] = [0.12, 0.2];
@@ -69,6 +72,8 @@ pub struct SkinningTable {
     /// Volumes and bulges.
     #[serde(flatten)]
     pub shapes: Shapes,
+    /// The sweep around elbows and knees: its time and its errors.
+    pub sweep: SweepTiming,
 }
 
 /// Measures all rows; `progress` is given what is being run.
@@ -94,7 +99,8 @@ pub fn run(progress: &mut dyn FnMut(&str)) -> Result<SkinningTable, SkinningErro
     for width in Width::ALL.into_iter().rev().skip(1).filter(|w| w.available()) {
         add(SkinningOptions { lanes: Some(width), ..SkinningOptions::default() })?;
     }
-    Ok(SkinningTable { rows, shapes: shapes()? })
+    progress("the sweep of the body's elbows and knees");
+    Ok(SkinningTable { rows, shapes: shapes()?, sweep: sweep_timing()? })
 }
 
 impl SkinningTable {
@@ -162,24 +168,40 @@ impl SkinningTable {
                 t.dual_split,
             );
         }
-        put_line!(text, "\n| bent joint | volume: linear, dual | bulge: linear, dual | thinnest place: linear, dual |");
+        put_line!(text, "\n| bent joint: linear, dual, swept | volume | bulge | thinnest place |");
         put_line!(text, "|---|---|---|---|");
         for h in &self.shapes.hinges {
+            let bulge = |k: usize| format!("{:+.1} % ({:.1} mm)", h.bulge[k] * 100.0, h.bulge_mm[k]);
+            let thin = |k: usize| format!("{:+.1} %", h.thinnest[k] * 100.0);
             put_line!(
                 text,
-                "| {} {:.0} degrees | {:.3}, {:.3} | {:+.1} % ({:.1} mm), {:+.1} % ({:.1} mm) | {:+.1} %, {:+.1} % |",
+                "| {} {:.0} degrees | {:.3}, {:.3}, {:.3} | {}, {}, {} | {}, {}, {} |",
                 h.of,
                 h.degrees,
                 h.volume[0],
                 h.volume[1],
-                h.bulge[0] * 100.0,
-                h.bulge_mm[0],
-                h.bulge[1] * 100.0,
-                h.bulge_mm[1],
-                h.thinnest[0] * 100.0,
-                h.thinnest[1] * 100.0,
+                h.volume[2],
+                bulge(0),
+                bulge(1),
+                bulge(2),
+                thin(0),
+                thin(1),
+                thin(2),
             );
         }
+        let s = &self.sweep;
+        put_line!(
+            text,
+            "\n| sweep over dual quaternions, {} of {} vertices | {:.1} us on top of {:.1} us | {:.2} Y | error {:.2} um by the sections in f64, \
+             {:.1} um by exact sections |",
+            s.swept,
+            s.verts,
+            s.us,
+            s.dual_us,
+            s.y_ratio,
+            s.max_error_m * 1e6,
+            s.section_error_m * 1e6
+        );
         put_line!(
             text,
             "\n| linear and dual apart, the scene's ten seconds | mean | largest | least volume of the body: linear, dual |"

@@ -96,6 +96,12 @@ impl CalibratedCamera {
         Self { distortion: [0.0; 5], ..self.clone() }
     }
 
+    /// The same camera in a world that is turned: what was at X is at `by X`.
+    #[must_use]
+    pub fn in_turned_world(&self, by: DMat3) -> Self {
+        Self { rotation: self.rotation * by.transpose(), ..self.clone() }
+    }
+
     /// A pixel without distortion, as x/z and y/z in camera axes.
     pub fn ray(&self, pixel: DVec2) -> DVec2 {
         let seen = (pixel - self.centre) / self.focal;

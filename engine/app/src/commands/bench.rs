@@ -19,6 +19,7 @@ mod gestures;
 mod gestures_report;
 mod measure;
 mod own_picture;
+mod silhouettes;
 mod skinning;
 mod skinning_report;
 mod skirt;
@@ -44,6 +45,7 @@ pub(crate) enum BenchCommand {
     Drape(drape::DrapeArgs),
     Tablecloth(tablecloth::TableclothArgs),
     Capture(capture::CaptureBenchArgs),
+    Silhouettes(silhouettes::SilhouettesArgs),
 }
 
 /// Runs `toile bench`.
@@ -65,5 +67,6 @@ pub(crate) fn run(command: &BenchCommand) -> Result<(), AppError> {
         BenchCommand::Drape(args) => drape::run(args),
         BenchCommand::Tablecloth(args) => tablecloth::run(args),
         BenchCommand::Capture(args) => capture::run(args),
+        BenchCommand::Silhouettes(args) => silhouettes::run(args),
     }
 }

@@ -1,4 +1,4 @@
-//! `toile capture`: what several calibrated cameras saw becomes a surface that moves.
+//! `toile capture`: what several calibrated cameras saw becomes a surface that moves, a pose or a body.
 //!
 //! Reads: calibrations, pictures, meshes, keypoints. Writes: meshes, joints, reports into an output folder; figures on stdout.
 //! Budget: offline: about a second a frame.
@@ -8,12 +8,14 @@ use clap::Subcommand;
 
 use crate::exit::AppError;
 
+pub(crate) mod body;
 pub(crate) mod compare;
 mod fabric_scene;
+pub(crate) mod face;
 pub(crate) mod flow;
 pub(crate) mod pose;
 
-/// Turn the pictures of several calibrated cameras into motion.
+/// Turn the pictures of several calibrated cameras into motion, a pose, a body or a face.
 #[derive(Debug, Clone, PartialEq, Subcommand)]
 #[command(
     after_help = "Example: a cloth that was filmed by four cameras, followed from its mesh in the first frame\n  toile capture flow \
@@ -23,6 +25,8 @@ pub(crate) enum CaptureCommand {
     Flow(flow::FlowArgs),
     Pose(pose::PoseArgs),
     Compare(compare::CompareArgs),
+    Body(body::BodyCaptureArgs),
+    Face(face::FaceArgs),
 }
 
 /// Runs `toile capture`.
@@ -34,5 +38,7 @@ pub(crate) fn run(command: &CaptureCommand) -> Result<(), AppError> {
         CaptureCommand::Flow(args) => flow::run(args),
         CaptureCommand::Pose(args) => pose::run(args),
         CaptureCommand::Compare(args) => compare::run(args),
+        CaptureCommand::Body(args) => body::run(args),
+        CaptureCommand::Face(args) => face::run(args),
     }
 }

@@ -5,7 +5,7 @@
 
 mod drafts;
 mod pictures;
-mod wearer;
+pub(super) mod wearer;
 
 use std::fmt::Write;
 use std::path::PathBuf;

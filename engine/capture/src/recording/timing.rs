@@ -81,10 +81,6 @@ pub fn in_step(changes: &[Vec<f64>]) -> Option<OutOfStep> {
         order.sort_by_key(|s| s.abs());
         let best = order.into_iter().map(|s| (s, at(s))).fold((0, none), |b, c| if c.1 > b.1 + 1e-9 { c } else { b });
         let (late, shifted) = best;
-        println!(
-            "DEBUG {camera} {late} {none} {shifted} {:?}",
-            own.iter().map(|v| (v * 100.0).round() / 100.0).collect::<Vec<_>>()
-        );
         if shifted > LEAST && shifted > none + BETTER {
             let found = OutOfStep { camera, late, agreement: [none, shifted] };
             let gain = |o: &OutOfStep| o.agreement[1] - o.agreement[0];

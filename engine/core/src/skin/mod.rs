@@ -12,6 +12,7 @@ mod layout;
 mod posed;
 mod posed_mesh;
 mod prune;
+mod sweep;
 #[cfg(test)]
 mod tests;
 
@@ -31,6 +32,7 @@ pub use layout::Padding;
 pub use posed::Posed;
 pub use posed_mesh::{PosedMesh, PosedVertex};
 pub use prune::{Pruning, pruning};
+pub use sweep::{SweepBinding, SweptLimb, SweptSkin};
 
 use kernel::{BlockOutput, Dual, Linear, MeshOutput, SkinOutput, SkinSurface};
 use layout::SkinLayout;

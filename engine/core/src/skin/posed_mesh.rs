@@ -43,4 +43,8 @@ impl PosedMesh {
     pub fn vertices(&self) -> &[PosedVertex] {
         &bytemuck::cast_slice(self.records.as_slice())[..self.vertices]
     }
+
+    pub(super) fn vertices_mut(&mut self) -> &mut [PosedVertex] {
+        &mut bytemuck::cast_slice_mut(self.records.as_mut())[..self.vertices]
+    }
 }

@@ -2,6 +2,7 @@
 
 mod layout;
 mod shapes;
+mod sweep;
 mod twins;
 
 use glam::{Affine3A, Quat, Vec3};

@@ -25,7 +25,7 @@ const HIPS: [f32; 2] = [0.44, 0.60];
 /// A candidate pose of an arm (rad): angle from the vertical, bend of the elbow, rotation of the whole arm about the
 /// vertical (inwards positive) and about itself (forearm upwards positive).
 #[derive(Debug, Clone, Copy)]
-pub(super) struct ArmPose {
+pub struct ArmPose {
     out: f32,
     bend: f32,
     inwards: f32,
@@ -38,7 +38,7 @@ const fn arm(out: f32, bend: f32, inwards: f32, twist: f32) -> ArmPose {
 
 /// Hanging a little out, well out, a hand on the hip, a hand before the chest, stretched aside, a forearm ahead, a
 /// forearm hanging from a raised elbow, one upright above it, a hand beside the shoulder, an arm raised, one that points ahead.
-pub(super) const ARMS: [ArmPose; 11] = [
+pub const ARMS: [ArmPose; 11] = [
     arm(0.25, 0.1, 0.0, 0.0),
     arm(0.7, 0.1, 0.0, 0.0),
     arm(0.6, 1.6, 1.2, 0.0),
@@ -53,7 +53,7 @@ pub(super) const ARMS: [ArmPose; 11] = [
 ];
 
 /// Sets an arm of a state to a candidate pose.
-pub(super) fn set_arm(model: &BodyModel, state: &mut FitState, shoulder: Joint, arm: ArmPose) {
+pub fn set_arm(model: &BodyModel, state: &mut FitState, shoulder: Joint, arm: ArmPose) {
     let rest = model.shapes.skeleton(&state.shape);
     let left = shoulder == Joint::LeftShoulder;
     let elbow = if left { Joint::LeftElbow } else { Joint::RightElbow };
@@ -102,7 +102,7 @@ pub(super) fn upright(model: &BodyModel, view: &DepthCells, ground: Option<f32>)
 }
 
 /// The mean shape of people of that stature; the mean person where it is no plausible stature.
-fn of_stature(shapes: &Shapes, height: f32) -> toile_assets::body::shape::BodyShape {
+pub fn of_stature(shapes: &Shapes, height: f32) -> toile_assets::body::shape::BodyShape {
     let wanted = Wanted::<En>::new().with(En::Stature, height);
     if STATURES.contains(&height) { shapes.wanted(&wanted).unwrap_or(*shapes.mean()) } else { *shapes.mean() }
 }

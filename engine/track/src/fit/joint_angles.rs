@@ -5,7 +5,7 @@ use toile_assets::skeleton::{JOINTS, Joint, Skeleton};
 
 /// One angle of the pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct JointAngle {
+pub struct JointAngle {
     /// The joint that rotates.
     pub joint: Joint,
     /// Axis in the parent's frame (unit).
@@ -19,7 +19,7 @@ pub(super) struct JointAngle {
 }
 
 /// Number of angles.
-pub(super) const ANGLES: usize = 41;
+pub const ANGLES: usize = 41;
 
 /// Axes of the rest pose; positive about x is forwards (or down), about y to the left, about z the left side up.
 const AXES: [Vec3; 3] = [Vec3::X, Vec3::Y, Vec3::Z];
@@ -60,7 +60,7 @@ const KNEE: [f32; 4] = [-10.0, 155.0, 2.0, 10.0];
 const HANGING: f32 = 0.2;
 
 /// The angles of a skeleton, joint by joint in the order of [`Joint::ALL`].
-pub(super) fn joint_angles(rest: &Skeleton) -> [JointAngle; ANGLES] {
+pub fn joint_angles(rest: &Skeleton) -> [JointAngle; ANGLES] {
     let mut all = Vec::with_capacity(ANGLES);
     for joint in Joint::ALL {
         let left = if joint.mirror() < joint { joint.mirror() } else { joint };
@@ -101,14 +101,14 @@ fn hinge(rest: &Skeleton, joint: Joint, root: Joint, end: Joint, bends: Vec3, fi
 }
 
 /// The rotation about z that brings a shoulder's arm from the rest pose to an angle from the vertical (rad).
-pub(super) fn hanging(rest: &Skeleton, shoulder: Joint, angle: f32) -> f32 {
+pub fn hanging(rest: &Skeleton, shoulder: Joint, angle: f32) -> f32 {
     let elbow = if shoulder == Joint::LeftShoulder { Joint::LeftElbow } else { Joint::RightElbow };
     let arm = rest.at(elbow) - rest.at(shoulder);
     (angle - arm.x.abs().atan2(-arm.y)) * arm.x.signum()
 }
 
 /// The angle of a pose about one of its axes (rad).
-pub(super) fn angle(local: &[Quat; JOINTS], turn: &JointAngle) -> f32 {
+pub fn angle(local: &[Quat; JOINTS], turn: &JointAngle) -> f32 {
     let q = local[turn.joint.index()];
     let q = if q.w < 0.0 { -q } else { q };
     q.to_scaled_axis().dot(turn.axis)

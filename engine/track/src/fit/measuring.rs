@@ -45,7 +45,7 @@ pub const MEASURES: [MeasureRow; 11] = [
 
 impl FittedMeasure {
     /// Whether it counts from the floor up, and is taken as the shopper stands.
-    const fn is_height(self) -> bool {
+    pub const fn is_height(self) -> bool {
         matches!(self, Self::Standard(En::Stature | En::InsideLegHeight) | Self::Torso)
     }
 

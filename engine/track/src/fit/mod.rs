@@ -28,4 +28,11 @@ pub mod tracker;
 
 pub use body_fit::{BodyFit, FitTimes, FittedFrame};
 pub use closer_look::CLOSED;
+pub use initial_pose::{ARMS, ArmPose, of_stature, set_arm};
+pub use joint_angles::JointAngle;
+pub use normal_equations::{NormalEquations, ShapeQuadratic};
 pub use options::{FitOptions, Stance};
+pub use posed_body::{BodyModel, FitState, JacobianRow, PosedBody, SurfaceSample, UNKNOWNS};
+pub use residuals::{PosePrior, add_priors, limit_step};
+pub use seen_surface::SeenSurface;
+pub use shape_filter::ShapeFilter;

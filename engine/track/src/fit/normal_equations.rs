@@ -6,14 +6,15 @@ use toile_assets::numeric::linear::{self, Pivot};
 use super::posed_body::{JacobianRow, POSE, UNKNOWNS, WIDTH};
 
 /// `hessian` is J^T W J (Gauss-Newton, upper triangle), `gradient` J^T W r, `cost` the weighted sum of squares.
-pub(super) struct NormalEquations {
+pub struct NormalEquations {
     hessian: Box<[JacobianRow; UNKNOWNS]>,
     gradient: JacobianRow,
+    /// The weighted sum of squares of all residuals.
     pub cost: f64,
 }
 
 /// Half the cost around a state as a quadratic of the shape alone, the pose following it.
-pub(super) struct ShapeQuadratic {
+pub struct ShapeQuadratic {
     /// Second derivatives by the shape parameters.
     pub hessian: [[f64; SHAPES]; SHAPES],
     /// First derivatives at the state.
@@ -33,19 +34,27 @@ impl ShapeQuadratic {
     };
 }
 
+impl Default for NormalEquations {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl NormalEquations {
-    pub(super) fn new() -> Self {
+    /// Nothing summed yet.
+    pub fn new() -> Self {
         Self { hessian: Box::new([[0.0; WIDTH]; UNKNOWNS]), gradient: [0.0; WIDTH], cost: 0.0 }
     }
 
-    pub(super) fn clear(&mut self) {
+    /// Forgets all residuals.
+    pub fn clear(&mut self) {
         self.hessian.iter_mut().for_each(|row| row.fill(0.0));
         self.gradient.fill(0.0);
         self.cost = 0.0;
     }
 
     /// Adds a weighted residual with its Jacobian row.
-    pub(super) fn add(&mut self, row: &JacobianRow, residual: f32, weight: f32) {
+    pub fn add(&mut self, row: &JacobianRow, residual: f32, weight: f32) {
         for i in 0..UNKNOWNS {
             let by = weight * row[i];
             if by != 0.0 {
@@ -62,7 +71,7 @@ impl NormalEquations {
     }
 
     /// Adds a weighted residual that depends on one unknown only, with derivative 1.
-    pub(super) fn add_one(&mut self, unknown: usize, residual: f32, weight: f32) {
+    pub fn add_one(&mut self, unknown: usize, residual: f32, weight: f32) {
         self.hessian[unknown][unknown] += weight;
         self.gradient[unknown] += weight * residual;
         self.cost += f64::from(weight * residual * residual);
@@ -74,7 +83,7 @@ impl NormalEquations {
 
     /// The Gauss-Newton step with a quadratic of the shape added; `damping` is a fraction of each diagonal
     /// (Levenberg-Marquardt).
-    pub(super) fn step(&self, shape: &ShapeQuadratic, damping: f64) -> [f64; UNKNOWNS] {
+    pub fn step(&self, shape: &ShapeQuadratic, damping: f64) -> [f64; UNKNOWNS] {
         let mut a = vec![[0.0; UNKNOWNS]; UNKNOWNS];
         let mut x = [0.0; UNKNOWNS];
         for i in 0..UNKNOWNS {
@@ -93,7 +102,7 @@ impl NormalEquations {
     }
 
     /// The pose eliminated (Schur complement): the frame's information about the shape alone.
-    pub(super) fn shape(&self) -> ShapeQuadratic {
+    pub fn shape(&self) -> ShapeQuadratic {
         let mut a = vec![[0.0; UNKNOWNS]; UNKNOWNS];
         let mut gradient = [0.0; UNKNOWNS];
         for i in 0..UNKNOWNS {
@@ -124,7 +133,7 @@ impl NormalEquations {
 }
 
 /// The inverse of a symmetric positive matrix of the shape's size, and the logarithm of its determinant.
-pub(super) fn invert(a: &[[f64; SHAPES]; SHAPES]) -> ([[f64; SHAPES]; SHAPES], f64) {
+pub fn invert(a: &[[f64; SHAPES]; SHAPES]) -> ([[f64; SHAPES]; SHAPES], f64) {
     let mut l = *a;
     factored(&mut l);
     (linear::inverse(&l), linear::log_determinant(&l))

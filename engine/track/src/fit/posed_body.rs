@@ -14,16 +14,16 @@ use toile_assets::skeleton::{JOINTS, Joint, Skeleton, bone_joint};
 use super::joint_angles::{ANGLES, JointAngle, joint_angles};
 
 /// Unknowns of the pose: the root's position, then the joint angles.
-pub(super) const POSE: usize = 3 + ANGLES;
+pub const POSE: usize = 3 + ANGLES;
 
 /// All unknowns: the pose, then the shape.
-pub(super) const UNKNOWNS: usize = POSE + SHAPES;
+pub const UNKNOWNS: usize = POSE + SHAPES;
 
 /// [`UNKNOWNS`] rounded up to whole lanes.
-pub(super) const WIDTH: usize = UNKNOWNS.next_multiple_of(8);
+pub const WIDTH: usize = UNKNOWNS.next_multiple_of(8);
 
 /// Derivatives of one number by every unknown.
-pub(super) type JacobianRow = [f32; WIDTH];
+pub type JacobianRow = [f32; WIDTH];
 
 /// Most bones of one sample.
 const BONES_EACH: usize = 4;
@@ -31,7 +31,7 @@ const BONES_EACH: usize = 4;
 /// The middle of one face of the surface. Faces and not vertices, because a face is flat: where on it a measured point
 /// lies changes nothing, while beside a vertex the surface falls away from its tangent plane.
 #[derive(Debug, Clone)]
-pub(super) struct SurfaceSample {
+pub struct SurfaceSample {
     /// Vertices of its face.
     pub corners: [u32; 4],
     /// Position on the base mesh (m).
@@ -50,17 +50,20 @@ pub(super) struct SurfaceSample {
 
 impl SurfaceSample {
     /// The joints that carry it, with their shares.
-    pub(super) fn bones(&self) -> impl Iterator<Item = (usize, f32)> + '_ {
+    pub fn bones(&self) -> impl Iterator<Item = (usize, f32)> + '_ {
         self.bones.iter().filter(|b| b.1 > 0.0).map(|b| (b.0 as usize, b.1))
     }
 }
 
 /// One sex's surface samples and joint angles: constant over the frames.
-pub(super) struct BodyModel {
+pub struct BodyModel {
+    /// The shapes of its sex.
     pub shapes: &'static Shapes,
+    /// What its surface is sampled at.
     pub samples: Vec<SurfaceSample>,
     /// Shape parameter and displacement a unit (m), for all samples.
     moves: Vec<(u32, Vec3)>,
+    /// The angles of the pose, in the order of the unknowns.
     pub joint_angles: [JointAngle; ANGLES],
     /// The angles of each joint: first and end in `joint_angles`.
     of_joint: [(u8, u8); JOINTS],
@@ -71,7 +74,7 @@ const SOLE: f32 = 0.012;
 
 impl BodyModel {
     /// Samples at least about `spacing` (m) apart; every face for 0.
-    pub(super) fn new(shapes: &'static Shapes, spacing: f32) -> Self {
+    pub fn new(shapes: &'static Shapes, spacing: f32) -> Self {
         let joint_angles = joint_angles(&shapes.skeleton(shapes.mean()));
         let mut of_joint = [(0u8, 0u8); JOINTS];
         for (i, joint) in Joint::ALL.into_iter().enumerate() {
@@ -134,7 +137,7 @@ fn sample(shapes: &Shapes, corners: [u32; 4], moves: &mut Vec<(u32, Vec3)>) -> S
 
 /// The unknowns of the fit: pose and shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct FitState {
+pub struct FitState {
     /// Position of the pelvis, world (m).
     pub root: Vec3,
     /// Rotation of each joint relative to its parent; the pelvis' relative to the world.
@@ -145,7 +148,7 @@ pub(super) struct FitState {
 
 impl FitState {
     /// The state after a step, given in the order of the unknowns.
-    pub(super) fn stepped(&self, model: &BodyModel, step: &[f64; UNKNOWNS]) -> Self {
+    pub fn stepped(&self, model: &BodyModel, step: &[f64; UNKNOWNS]) -> Self {
         let mut next = *self;
         next.root += Vec3::new(step[0] as f32, step[1] as f32, step[2] as f32);
         let mut turned = [Vec3::ZERO; JOINTS];
@@ -172,11 +175,12 @@ impl FitState {
 }
 
 /// A posed body.
-pub(super) struct PosedBody {
+pub struct PosedBody {
     rest: Skeleton,
     scale: f32,
-    /// Rotation of each joint from rest to world, and its place.
+    /// Rotation of each joint from rest to world.
     turned: [Mat3; JOINTS],
+    /// Where each joint is, world (m).
     pub place: [Vec3; JOINTS],
     /// World axis of each joint angle.
     axes: [Vec3; ANGLES],
@@ -184,14 +188,17 @@ pub(super) struct PosedBody {
     drift: Vec<[Vec3; SHAPES]>,
     /// How far each sample lies from where its shape puts it, at rest (m).
     pub displaced: Vec<Vec3>,
-    /// Rest position, world position and world normal of each sample.
+    /// Rest position of each sample (m).
     rest_points: Vec<Vec3>,
+    /// Position of each sample, world (m).
     pub points: Vec<Vec3>,
+    /// Outward normal of each sample, world.
     pub normals: Vec<Vec3>,
 }
 
 impl PosedBody {
-    pub(super) fn new(model: &BodyModel) -> Self {
+    /// Room for a model's samples; posed later.
+    pub fn new(model: &BodyModel) -> Self {
         let n = model.samples.len();
         Self {
             rest: model.shapes.skeleton(model.shapes.mean()),
@@ -208,7 +215,7 @@ impl PosedBody {
     }
 
     /// Poses the body; `rest_normals` are those of its samples at rest.
-    pub(super) fn pose(&mut self, model: &BodyModel, state: &FitState, rest_normals: &[Vec3]) {
+    pub fn pose(&mut self, model: &BodyModel, state: &FitState, rest_normals: &[Vec3]) {
         self.rest = model.shapes.skeleton(&state.shape);
         self.scale = state.shape[SCALE].exp() as f32;
         self.joints(state);
@@ -232,7 +239,7 @@ impl PosedBody {
     }
 
     /// A surface with the base's vertices at rest, posed by linear skinning with one bone a joint (m) `[vertices]`.
-    pub(super) fn skinned(&mut self, model: &BodyModel, state: &FitState, rest: &[Vec3]) -> Vec<Vec3> {
+    pub fn skinned(&mut self, model: &BodyModel, state: &FitState, rest: &[Vec3]) -> Vec<Vec3> {
         self.rest = model.shapes.skeleton(&state.shape);
         self.joints(state);
         let skinned = |(p, weights): (&Vec3, &SkinWeights)| {
@@ -275,13 +282,35 @@ impl PosedBody {
         }
     }
 
+    /// Derivatives of a joint's place along a direction.
+    pub fn joint_row(&self, model: &BodyModel, joint: Joint, along: Vec3) -> JacobianRow {
+        let mut row = [0.0; WIDTH];
+        row[..3].copy_from_slice(&along.to_array());
+        let i = joint.index();
+        let mut above = joint.parent();
+        while let Some(carrier) = above {
+            let (first, end) = model.of_joint[carrier.index()];
+            let pull = (self.place[i] - self.place[carrier.index()]).cross(along);
+            for t in first as usize..end as usize {
+                row[3 + t] += self.axes[t].dot(pull);
+            }
+            above = carrier.parent();
+        }
+        for (k, r) in row[POSE..POSE + SHAPES].iter_mut().enumerate() {
+            let rest = self.rest.rest[i];
+            let moved = if k == SCALE { rest } else { self.scale * model.shapes.joint_moves(k)[i] };
+            *r = along.dot(self.drift[i][k] + self.turned[i] * moved);
+        }
+        row
+    }
+
     /// Height of a sample above its height in the rest pose on level ground at 0 (m).
-    pub(super) fn above_rest(&self, index: usize) -> f32 {
+    pub fn above_rest(&self, index: usize) -> f32 {
         self.points[index].y - self.rest_points[index].y
     }
 
     /// Derivatives of [`PosedBody::above_rest`].
-    pub(super) fn row_above_rest(&self, model: &BodyModel, index: usize) -> JacobianRow {
+    pub fn row_above_rest(&self, model: &BodyModel, index: usize) -> JacobianRow {
         let mut row = self.row(model, index, Vec3::Y);
         for &(k, by) in model.moves(&model.samples[index]) {
             row[POSE + k as usize] -= self.scale * by.y;
@@ -291,7 +320,7 @@ impl PosedBody {
     }
 
     /// Derivatives of a sample's position along a direction.
-    pub(super) fn row(&self, model: &BodyModel, index: usize, along: Vec3) -> JacobianRow {
+    pub fn row(&self, model: &BodyModel, index: usize, along: Vec3) -> JacobianRow {
         let sample = &model.samples[index];
         let mut row = [0.0; WIDTH];
         row[..3].copy_from_slice(&along.to_array());
@@ -365,8 +394,16 @@ mod tests {
                 let mut step = [0.0; UNKNOWNS];
                 step[unknown] = by;
                 moved.pose(&model, &state.stepped(&model, &step), &normals);
-                moved.points.clone()
+                (moved.points.clone(), moved.place)
             });
+            for joint in Joint::ALL {
+                for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
+                    let change = (after.1[joint.index()] - before.1[joint.index()]).dot(axis) / (2.0 * BY as f32);
+                    let off = (posed.joint_row(&model, joint, axis)[unknown] - change).abs();
+                    assert!(off < 2e-3, "unknown {unknown} {joint:?}: {change} off by {off}");
+                }
+            }
+            let [before, after] = [before.0, after.0];
             for i in 0..model.samples.len() {
                 for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
                     let change = (after[i] - before[i]).dot(axis) / (2.0 * BY as f32);

@@ -161,7 +161,7 @@ fn soles(
 
 /// What is known of the pose beforehand.
 #[derive(Clone, Copy)]
-pub(super) struct PosePrior<'a> {
+pub struct PosePrior<'a> {
     /// What the shopper does.
     pub stance: Stance,
     /// The state of the frame before.
@@ -171,7 +171,7 @@ pub(super) struct PosePrior<'a> {
 }
 
 /// Adds the prior of the pose: usual angles, joint limits, small changes since the frame before, and a pose that is kept.
-pub(super) fn add_priors(equations: &mut NormalEquations, model: &BodyModel, state: &FitState, prior: &PosePrior) {
+pub fn add_priors(equations: &mut NormalEquations, model: &BodyModel, state: &FitState, prior: &PosePrior) {
     for (t, turn) in model.joint_angles.iter().enumerate() {
         let now = angle(&state.local, turn);
         let spread = turn.spread * prior.stance.pose_spread();
@@ -196,7 +196,7 @@ pub(super) fn add_priors(equations: &mut NormalEquations, model: &BodyModel, sta
 const LARGEST_STEP: [f64; 2] = [0.25, 0.5];
 
 /// Clamps the pose part of a step to where the linearisation holds.
-pub(super) fn limit_step(mut step: [f64; UNKNOWNS]) -> [f64; UNKNOWNS] {
+pub fn limit_step(mut step: [f64; UNKNOWNS]) -> [f64; UNKNOWNS] {
     for (i, s) in step.iter_mut().enumerate().take(UNKNOWNS - SHAPES) {
         let most = LARGEST_STEP[usize::from(i >= 3)];
         *s = s.clamp(-most, most);

@@ -25,7 +25,7 @@ const EXACT: f64 = 1e-4;
 const ROUNDS: usize = 200;
 
 /// What was seen of a surface so far, sample by sample.
-pub(super) struct SeenSurface {
+pub struct SeenSurface {
     /// Cells that showed each sample `[samples]`.
     cells: Vec<f32>,
     /// Sum of how far they lay outside of it (m) `[samples]`.
@@ -42,7 +42,8 @@ struct KnownSample {
 }
 
 impl SeenSurface {
-    pub(super) fn new(samples: usize) -> Self {
+    /// Nothing seen of so many samples.
+    pub fn new(samples: usize) -> Self {
         Self { cells: vec![0.0; samples], sum: vec![0.0; samples] }
     }
 
@@ -55,7 +56,7 @@ impl SeenSurface {
     }
 
     /// Adds how far the surface at one sample lies outside the body (m), as so many cells.
-    pub(super) fn add_rim(&mut self, sample: usize, out: f32, cells: f32) {
+    pub fn add_rim(&mut self, sample: usize, out: f32, cells: f32) {
         if out.abs() < FARTHEST {
             self.cells[sample] += cells;
             self.sum[sample] += cells * out;
@@ -64,7 +65,7 @@ impl SeenSurface {
 
     /// The displacement of each vertex along its normal (m), where the samples were displaced by `about` when they were seen:
     /// least squares of all that was seen, of the differences along the edges and of the displacements themselves.
-    pub(super) fn displacements(&self, model: &BodyModel, about: &[f32]) -> Vec<f32> {
+    pub fn displacements(&self, model: &BodyModel, about: &[f32]) -> Vec<f32> {
         let known: Vec<KnownSample> = (model.samples.iter().zip(&self.cells).zip(&self.sum))
             .filter(|((_, cells), _)| **cells > 0.0)
             .map(|((sample, cells), sum)| {

@@ -13,7 +13,7 @@ const LONGEST: f64 = 90.0;
 
 /// Accumulated information about the shape.
 #[derive(Clone)]
-pub(super) struct ShapeFilter {
+pub struct ShapeFilter {
     shapes: &'static Shapes,
     hessian: [[f64; SHAPES]; SHAPES],
     rhs: BodyShape,
@@ -21,12 +21,13 @@ pub(super) struct ShapeFilter {
 }
 
 impl ShapeFilter {
-    pub(super) fn new(shapes: &'static Shapes) -> Self {
+    /// The prior alone.
+    pub fn new(shapes: &'static Shapes) -> Self {
         Self { shapes, hessian: [[0.0; SHAPES]; SHAPES], rhs: [0.0; SHAPES], frames: 0.0 }
     }
 
     /// Adds a frame's information, a quadratic about a shape.
-    pub(super) fn add(&mut self, frame: &ShapeQuadratic, about: &BodyShape) {
+    pub fn add(&mut self, frame: &ShapeQuadratic, about: &BodyShape) {
         if self.frames >= LONGEST {
             let keep = (LONGEST - 1.0) / LONGEST;
             self.hessian.iter_mut().flatten().for_each(|c| *c *= keep);
@@ -44,12 +45,12 @@ impl ShapeFilter {
     }
 
     /// Frames added so far.
-    pub(super) fn frames(&self) -> usize {
+    pub fn frames(&self) -> usize {
         self.frames.round() as usize
     }
 
     /// Prior and frames together, as a quadratic about a shape.
-    pub(super) fn about(&self, shape: &BodyShape) -> ShapeQuadratic {
+    pub fn about(&self, shape: &BodyShape) -> ShapeQuadratic {
         let (precision, mean) = (self.shapes.precision(), self.shapes.mean());
         let share = WORTH.min(self.frames) / self.frames.max(1.0);
         let mut known = ShapeQuadratic { hessian: [[0.0; SHAPES]; SHAPES], gradient: [0.0; SHAPES] };
@@ -65,7 +66,7 @@ impl ShapeFilter {
     }
 
     /// The maximum a posteriori shape and the covariance of its parameters.
-    pub(super) fn estimate(&self) -> (BodyShape, [[f64; SHAPES]; SHAPES]) {
+    pub fn estimate(&self) -> (BodyShape, [[f64; SHAPES]; SHAPES]) {
         let mean = self.shapes.mean();
         let known = self.about(mean);
         let (covariance, _) = invert(&known.hessian);
@@ -79,7 +80,7 @@ impl ShapeFilter {
 
     /// The shape's part of the deviance (twice the negative logarithm of the model evidence): Mahalanobis distance of
     /// the shape from the population, and the change of the log determinants.
-    pub(super) fn deviance(&self) -> f64 {
+    pub fn deviance(&self) -> f64 {
         let (shape, _) = self.estimate();
         let (precision, mean) = (self.shapes.precision(), self.shapes.mean());
         let off: BodyShape = std::array::from_fn(|i| shape[i] - mean[i]);

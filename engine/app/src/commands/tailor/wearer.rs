@@ -80,7 +80,10 @@ pub fn wearer(choice: &WearerChoice<'_>, package: &PatternPackage) -> Result<Tai
 }
 
 /// Measures of a file; what it leaves out is the mean person's.
-fn read(path: &Path, sex: Sex) -> Result<Measures, AppError> {
+///
+/// # Errors
+/// A file that cannot be read or holds no measures.
+pub fn read(path: &Path, sex: Sex) -> Result<Measures, AppError> {
     let text = file::read_text(path, &MEASURES_FILE).map_err(AppError::input)?;
     let wrong = |reason: String| AppError::input(format!("{}: {reason}; give numbers of mm by name", path.display()));
     let value: Value = serde_json::from_str(&text).map_err(|e| wrong(e.to_string()))?;

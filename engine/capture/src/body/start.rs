@@ -1,0 +1,98 @@
+//! The start of a fit without anybody's help: from the visual hull or from joints, the way somebody faces and how they hold their arms.
+
+use glam::{DVec3, Quat, Vec3};
+use toile_assets::skeleton::{JOINTS, Joint};
+use toile_track::fit::{ARMS, FitState, of_stature, set_arm};
+
+use super::fit::{BodyFitter, COARSE};
+use super::hull::HullShape;
+
+/// Ways of facing that are tried: across the hull's spread, both ways, and along it, for somebody who holds both arms ahead; and how
+/// far off each is looked for besides (rad), because a hull of few views is spread along its corners.
+const FACINGS: usize = 4;
+const BESIDE: [f32; 3] = [-0.35, 0.0, 0.35];
+
+/// Starts that are fitted to the end of the coarse stages.
+const REFINED: usize = 4;
+
+/// Steps from an upright body towards joints.
+const JOINT_STEPS: usize = 25;
+
+/// Confidence from which a joint says which way somebody faces.
+const BELIEVED: f32 = 0.2;
+
+/// The best start of all that are tried: upright bodies of the hull's height, each way of facing; those that cover the silhouettes
+/// best are fitted coarsely, with their arms looked for before, between the stages and after them, and the one that agrees best is taken.
+pub(super) fn start(fitter: &mut BodyFitter, hull: &HullShape) -> FitState {
+    let mut tried: Vec<(f64, FitState)> = Vec::new();
+    for facing in facings(fitter, hull) {
+        let state = upright(fitter, hull, facing);
+        let state = if fitter.joints.is_empty() { state } else { fitter.towards_joints(&state, JOINT_STEPS) };
+        tried.push((fitter.agreement(&state), state));
+    }
+    tried.sort_by(|a, b| b.0.total_cmp(&a.0));
+    tried.truncate(REFINED);
+    let mut best: Option<(f64, FitState)> = None;
+    for (_, state) in tried {
+        let mut state = with_arms(fitter, state);
+        for (k, stage) in COARSE.into_iter().enumerate() {
+            // The shape stays at first: a body would rather grow short arms than lower them.
+            state = fitter.steps(&state, &[stage], k == 0);
+            state = with_arms(fitter, state);
+        }
+        let agreement = fitter.agreement(&state);
+        if best.is_none_or(|b| agreement > b.0) {
+            best = Some((agreement, state));
+        }
+    }
+    best.map_or_else(|| upright(fitter, hull, Vec3::Z), |b| b.1)
+}
+
+/// The ways somebody may face: the one that their joints say, or four by the hull.
+fn facings(fitter: &BodyFitter, hull: &HullShape) -> Vec<Vec3> {
+    let place = |joint: Joint| fitter.joints.iter().find(|p| p.joint == joint && p.confidence > BELIEVED);
+    for (left, right) in [(Joint::LeftHip, Joint::RightHip), (Joint::LeftShoulder, Joint::RightShoulder)] {
+        if let (Some(left), Some(right)) = (place(left), place(right)) {
+            let facing = (left.place - right.place).cross(DVec3::Y).as_vec3();
+            return vec![facing.normalize_or(Vec3::Z)];
+        }
+    }
+    let ahead = hull.across.cross(DVec3::Y).as_vec3();
+    let quarter = |k: usize| k as f32 * std::f32::consts::FRAC_PI_2;
+    let turns = (0..FACINGS).flat_map(|k| BESIDE.map(|by| quarter(k) + by));
+    turns.map(|turn| Quat::from_rotation_y(turn) * ahead).collect()
+}
+
+/// An upright body of the hull's height, at its middle.
+fn upright(fitter: &BodyFitter, hull: &HullShape, facing: Vec3) -> FitState {
+    let shapes = fitter.model.shapes;
+    let shape = of_stature(shapes, (hull.heights[1] - hull.heights[0]) as f32);
+    let pelvis = shapes.skeleton(&shape).at(Joint::Pelvis);
+    let root = hull.middle.as_vec3().with_y(hull.heights[0] as f32 + pelvis.y);
+    let mut state = FitState { root, local: [Quat::IDENTITY; JOINTS], shape };
+    state.local[0] = Quat::from_rotation_y(facing.x.atan2(facing.z));
+    for shoulder in [Joint::LeftShoulder, Joint::RightShoulder] {
+        set_arm(&fitter.model, &mut state, shoulder, ARMS[0]);
+    }
+    state
+}
+
+/// Each arm in the pose that covers the silhouettes best, one after the other: as it is, or one of those that people hold them in.
+fn with_arms(fitter: &mut BodyFitter, state: FitState) -> FitState {
+    if !fitter.joints.is_empty() {
+        return state;
+    }
+    let mut best = (fitter.agreement(&state), state);
+    for shoulder in [Joint::LeftShoulder, Joint::RightShoulder] {
+        let from = best.1;
+        for arm in ARMS {
+            let mut tried = from;
+            set_arm(&fitter.model, &mut tried, shoulder, arm);
+            let agreement = fitter.agreement(&tried);
+            if agreement > best.0 {
+                best = (agreement, tried);
+            }
+        }
+    }
+    best.1
+}

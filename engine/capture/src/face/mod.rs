@@ -1,0 +1,24 @@
+//! A head from photographs with marked points: the mannequin's head adapted by radial basis functions, and its picture from the photographs.
+//!
+//! Reads: photographs with points, cameras where they are calibrated. Writes: the adapted head, a texture.
+//! Budget: offline; a second a head.
+//! Thread: the caller's.
+//!
+//! What is off from the mannequin's head is a field of displacements d(x) with a prior: smooth (a compact radial function), nearly the
+//! same on both sides, and with an affine part. The marked points are its observations, each two equations in one photograph, so that
+//! the most likely field is a sum of radial functions around the points (Roussel and Gagalowicz 2003 adapt through points in
+//! space; with the prior one photograph will do). Pose and field are found in turn.
+
+mod adapt;
+mod landmarks;
+mod obj;
+mod prior;
+mod texture;
+
+pub use adapt::{AdaptedHead, FaceView, adapt, assumed_camera};
+pub use landmarks::{FaceLandmarks, SurfacePoint};
+pub use obj::{MTL, obj};
+pub use texture::{HeadTexture, png, texture};
+
+#[cfg(test)]
+pub(crate) mod tests;

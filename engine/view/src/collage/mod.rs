@@ -1,0 +1,20 @@
+//! A collage: photographs of garments laid on the picture of a body, from the front, the side and behind.
+//!
+//! Reads: a body, garments' photographs with their arm layers. Writes: a picture a side.
+//! Budget: not in the frame; half a second a side of 800 rows, nearly all of it the body's picture.
+//! Thread: the caller's, which lends every core for the body's picture.
+//!
+//! After Ugur (2008, sections 6.1.2 and 6.2). In painting order: the body, the garments' parts beside the arms in wearing order, the body's
+//! arms once more, the garments' parts on the arms. A garment hangs at its level, is as large as two points of known distance say,
+//! and its rows are stretched to the body within limits.
+
+mod body_layers;
+mod paint;
+mod scaling;
+
+pub use body_layers::{BodyLayers, CollageSide};
+pub use paint::{CollageError, WornPhotographs, collage};
+pub use scaling::{Layer, RowSpan, scaled};
+
+#[cfg(test)]
+mod tests;

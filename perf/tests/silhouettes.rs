@@ -1,0 +1,24 @@
+//! A small study of bodies from silhouettes: a woman and a man of the other family, before four cameras.
+
+#[path = "../../tests/src/recordings.rs"]
+mod recordings;
+
+use toile_perf::ansur::Survey;
+use toile_perf::capture::silhouettes::{SilhouetteStudyOptions, study};
+
+#[test]
+fn people_of_another_family_are_found_and_measured_by_their_silhouettes() {
+    let Some(folder) = recordings::folder() else { return };
+    let file = |name: &str| Survey::read(&folder.join("anthropometry/ansur2").join(name)).expect("the survey's file");
+    let surveys = [file("ANSUR_II_FEMALE.csv"), file("ANSUR_II_MALE.csv")];
+    let options =
+        SilhouetteStudyOptions { makehuman: Some(folder.join("body/makehuman-hm08")), people: 1, cameras: 4, seed: 99 };
+    let found = study(&surveys, &options, &mut |_| ()).expect("a study");
+    println!("{found:?}");
+    assert_eq!((found.people, found.lost, found.measures.len()), (2, 0, 11));
+    // Of two people: half as much again as over the many of docs/capture.md.
+    assert!(found.agreement > 0.90 && found.girths_mm < 38.0, "{found:?}");
+    assert!(found.chi_square < 4.0, "{found:?}");
+    let stature = &found.measures[0];
+    assert!(stature.mean_absolute_mm < 20.0 && stature.sigma_mm > 0.0, "{stature:?}");
+}

@@ -1,0 +1,166 @@
+//! Points that were marked on photographs of a face: JSON with 68 points in the order of Multi-PIE and iBUG, 468 or 478 in that of
+//! MediaPipe's face mesh, or points by name.
+//!
+//! ```json
+//! {"photographs": [{"picture": "front.jpg", "camera": "cam1", "points": [[412.5, 610.0], null]}]}
+//! ```
+//!
+//! A point that is not seen is `null`. `camera` names one of a calibration; without it `focal_px`, where the lens is known. Names are
+//! the numbers of the 68 points: `"30"` is the tip of the nose.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use glam::DVec2;
+use serde::Deserialize;
+use toile_assets::file::{self, FileKind};
+
+use crate::error::{Fault, Place, SourceError};
+use crate::limits::MAX_CAMERAS;
+
+/// Points of a face.
+pub const FACE_POINTS: usize = 68;
+
+/// Fewest points of a photograph: a pose has six numbers.
+const FEWEST: usize = 8;
+
+/// The points of MediaPipe's face mesh that are those of the 68, in their order.
+const OF_MESH: [usize; FACE_POINTS] = [
+    162, 234, 93, 58, 172, 136, 149, 148, 152, 377, 378, 365, 397, 288, 323, 454, 389, 71, 63, 105, 66, 107, 336, 296,
+    334, 293, 301, 168, 197, 5, 4, 75, 97, 2, 326, 305, 33, 160, 158, 133, 153, 144, 362, 385, 387, 263, 373, 380, 61,
+    39, 37, 0, 267, 269, 291, 405, 314, 17, 84, 181, 78, 82, 13, 312, 308, 317, 14, 87,
+];
+
+const FILE: FileKind = FileKind { name: "a file of points", max_bytes: 4 << 20, cure: "give the points of one face" };
+
+const CURE: &str =
+    "give 68 points in the order of Multi-PIE, 468 or 478 in MediaPipe's, or an object of names and points";
+
+/// One photograph with its points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MarkedPhotograph {
+    /// The picture's file.
+    pub picture: PathBuf,
+    /// Its camera in a calibration.
+    pub camera: Option<String>,
+    /// Its focal length (px), where no calibration has it.
+    pub focal_px: Option<f64>,
+    /// Where the 68 points are (px); none where they are not seen.
+    pub points: [Option<DVec2>; FACE_POINTS],
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawFile {
+    photographs: Vec<RawPhotograph>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawPhotograph {
+    picture: String,
+    camera: Option<String>,
+    focal_px: Option<f64>,
+    points: RawPoints,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum RawPoints {
+    Ordered(Vec<Option<Vec<f64>>>),
+    Named(BTreeMap<String, Vec<f64>>),
+}
+
+/// Reads a file of marked photographs; pictures lie beside it.
+///
+/// # Errors
+/// One sentence where it is no JSON of this shape, has points of no order that is known, or too few of them.
+pub fn read_marked(path: &Path) -> Result<Vec<MarkedPhotograph>, SourceError> {
+    let shown = path.display().to_string();
+    let text = file::read_text(path, &FILE)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    parse(&text, folder).map_err(|fault| fault.at(&shown))
+}
+
+fn parse(text: &str, folder: &Path) -> Result<Vec<MarkedPhotograph>, Fault> {
+    let whole = |problem: String| Fault::new(Place::Whole, problem, CURE);
+    let raw: RawFile =
+        serde_json::from_str(text).map_err(|e| whole(format!("it holds no marked photographs ({e})")))?;
+    let count = raw.photographs.len();
+    if count == 0 || count > MAX_CAMERAS {
+        return Err(whole(format!("{count} photographs where 1 to {MAX_CAMERAS} are read")));
+    }
+    let one = |r: RawPhotograph| {
+        let points = points(r.points).map_err(|problem| whole(format!("{}: {problem}", r.picture)))?;
+        let seen = points.iter().flatten().count();
+        if seen < FEWEST {
+            return Err(whole(format!("{}: {seen} points are marked and {FEWEST} are needed", r.picture)));
+        }
+        if r.focal_px.is_some_and(|f| !(50.0..1e6).contains(&f)) {
+            return Err(whole(format!("{}: a focal length of {} px is no lens", r.picture, r.focal_px.unwrap_or(0.0))));
+        }
+        Ok(MarkedPhotograph { picture: folder.join(&r.picture), camera: r.camera, focal_px: r.focal_px, points })
+    };
+    raw.photographs.into_iter().map(one).collect()
+}
+
+fn points(raw: RawPoints) -> Result<[Option<DVec2>; FACE_POINTS], String> {
+    let place = |p: &[f64]| match p {
+        [x, y, ..] if x.is_finite() && y.is_finite() => Ok(DVec2::new(*x, *y)),
+        _ => Err("a point is no pair of numbers".to_owned()),
+    };
+    let mut found = [None; FACE_POINTS];
+    match raw {
+        RawPoints::Ordered(all) => {
+            let pick: Box<dyn Fn(usize) -> usize> = match all.len() {
+                FACE_POINTS => Box::new(|i| i),
+                468 | 478 => Box::new(|i| OF_MESH[i]),
+                other => return Err(format!("{other} points, which is no order that is known")),
+            };
+            for (i, to) in found.iter_mut().enumerate() {
+                *to = all[pick(i)].as_deref().map(place).transpose()?;
+            }
+        }
+        RawPoints::Named(all) => {
+            for (name, p) in all {
+                let i = name.parse::<usize>().ok().filter(|i| *i < FACE_POINTS);
+                let i =
+                    i.ok_or_else(|| format!("there is no point \"{}\"", name.chars().take(40).collect::<String>()))?;
+                found[i] = Some(place(&p)?);
+            }
+        }
+    }
+    Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn file(points: &str) -> String {
+        format!("{{\"photographs\": [{{\"picture\": \"a.png\", \"focal_px\": 900, \"points\": {points}}}]}}")
+    }
+
+    #[test]
+    fn all_orders_give_the_same_points() {
+        let all: Vec<String> = (0..FACE_POINTS).map(|i| format!("[{i}, 2.5]")).collect();
+        let plain = parse(&file(&format!("[{}]", all.join(","))), Path::new("x")).unwrap();
+        assert_eq!(plain[0].points[30], Some(DVec2::new(30.0, 2.5)));
+        assert_eq!(plain[0].picture, Path::new("x/a.png"));
+        let mut mesh = vec!["null".to_owned(); 468];
+        (0..FACE_POINTS).for_each(|i| mesh[OF_MESH[i]] = format!("[{i}, 2.5, 0.1]"));
+        assert_eq!(parse(&file(&format!("[{}]", mesh.join(","))), Path::new("x")).unwrap(), plain);
+        let named: Vec<String> = (0..FACE_POINTS).map(|i| format!("\"{i}\": [{i}, 2.5]")).collect();
+        assert_eq!(parse(&file(&format!("{{{}}}", named.join(","))), Path::new("x")).unwrap(), plain);
+    }
+
+    #[test]
+    fn bad_points_are_one_sentence() {
+        let said = |points: &str| parse(&file(points), Path::new("")).unwrap_err().at("p.json").to_string();
+        assert!(said("[[1, 2]]").contains("1 points, which is no order that is known"));
+        assert!(said("{\"30\": [1, 2]}").contains("1 points are marked and 8 are needed"));
+        assert!(said("{\"nose\": [1, 2]}").contains("there is no point \"nose\""));
+        assert!(said("{\"3\": [1]}").contains("no pair of numbers"));
+        assert!(parse("{}", Path::new("")).unwrap_err().at("p.json").to_string().contains("no marked photographs"));
+    }
+}
