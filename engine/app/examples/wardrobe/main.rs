@@ -33,7 +33,8 @@ const OUTFITS: [&[&str]; 6] = [
 /// Runs the program with `--json`; what it reports.
 fn toile(arguments: &[&str]) -> Result<Value, String> {
     let here = std::env::current_exe().map_err(|e| e.to_string())?;
-    let program: PathBuf = here.ancestors().nth(2).map(|folder| folder.join("toile")).ok_or("this program lies in no folder")?;
+    let program: PathBuf =
+        here.ancestors().nth(2).map(|folder| folder.join("toile")).ok_or("this program lies in no folder")?;
     let run = Command::new(&program).args(arguments).args(["--json", "--quiet"]).output();
     let run = run.map_err(|e| format!("{}: {e}; cargo build --release -p toile", program.display()))?;
     let report = serde_json::from_slice(&run.stdout);
