@@ -102,7 +102,7 @@ fn wide(m: &Affine3A) -> (DMat3, DVec3) {
 
 fn place(limb: &SweptLimb, along: f64, palette: &[Affine3A; BONES]) -> Place {
     let [(r1, s1), (r2, s2)] = [0, 1].map(|k| wide(&palette[limb.joints[k].index()]));
-    let [a, b, c] = limb.rest.map(|p| (p + limb.centre).as_dvec3());
+    let [a, b, c] = limb.rest.map(|p| p.as_dvec3());
     let (e1, e2) = ((b - a).normalize(), (c - b).normalize());
     let turn = |k: usize, share: f64| {
         let of = |bone: usize| DQuat::from_mat3(&wide(&palette[bone]).0);
@@ -121,7 +121,7 @@ fn place(limb: &SweptLimb, along: f64, palette: &[Affine3A; BONES]) -> Place {
     if by >= d {
         return Place { at: r2 * (b + e2 * by) + s2, tangent: r2 * e2, turn: turn(1, by / l2) };
     }
-    let (t1, t2, joint) = (r1 * e1, r2 * e2, (r1 * b + s1 + r2 * b + s2) * 0.5);
+    let (t1, t2, joint) = (r1 * e1, r2 * e2, r2 * b + s2);
     let middle = joint + (t2 - t1) * (0.25 * d * CUT);
     let across = (t1 + t2).normalize();
     let (p, q, m, n, u) = if by < 0.0 {

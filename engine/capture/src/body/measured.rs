@@ -235,14 +235,14 @@ fn together(parts: Vec<SexMeasures>, views: &[View], upright: DMat3, hull: &Hull
 fn with_model_error(mut measured: Correlated<{ MEASURES.len() }>) -> Correlated<{ MEASURES.len() }> {
     // Chest, underbust, waist and hip.
     let is_trunk = |i: usize| (6..=9).contains(&i);
-    for i in 0..MEASURES.len() {
-        for j in 0..MEASURES.len() {
+    for (i, row) in measured.covariance.iter_mut().enumerate() {
+        for (j, value) in row.iter_mut().enumerate() {
             let share = match i == j {
                 true => 1.0,
                 false if is_trunk(i) && is_trunk(j) => TOGETHER,
                 false => 0.0,
             };
-            measured.covariance[i][j] += share * MODEL_ERROR[i] * MODEL_ERROR[j];
+            *value += share * MODEL_ERROR[i] * MODEL_ERROR[j];
         }
     }
     measured

@@ -46,9 +46,6 @@ pub struct SweptLimb {
     pub joints: [Joint; 3],
     /// Where they are at rest (m).
     pub rest: [Vec3; 3],
-    /// From the hinge to the middle of the section there, square to the limb (m): the middle of the control ellipses, which the curve goes
-    /// through, so that flesh on the inner side and on the outer one weigh alike.
-    pub centre: Vec3,
     /// Half of the stretch that bends (m).
     pub bend: f32,
     /// Length of the upper bone (m): the hinge's place along the limb.
@@ -102,11 +99,11 @@ struct CurvePoint {
 }
 
 impl SweptLimb {
-    fn new(joints: [Joint; 3], skeleton: &Skeleton, (centre, radius): (Vec3, f32)) -> Self {
+    fn new(joints: [Joint; 3], skeleton: &Skeleton, radius: f32) -> Self {
         let rest = joints.map(|j| skeleton.at(j));
         let lengths = [rest[0].distance(rest[1]), rest[1].distance(rest[2])];
         let bend = (BEND * radius).min(MOST_OF_BONE * lengths[0].min(lengths[1])).max(1e-3);
-        Self { joints, rest, centre, bend, hinge: lengths[0] }
+        Self { joints, rest, bend, hinge: lengths[0] }
     }
 
     /// Length of half of what is swept (m).
@@ -131,7 +128,7 @@ impl SweptLimb {
     /// The curve at a place along the limb (m), for a pose.
     fn at(&self, along: f32, palette: &[Affine3A; BONES]) -> CurvePoint {
         let [upper, lower] = [0, 1].map(|k| palette[self.joints[k].index()]);
-        let [a, b, c] = self.rest.map(|p| Vec3A::from(p + self.centre));
+        let [a, b, c] = self.rest.map(Vec3A::from);
         let (ahead, below) = ((b - a).normalize_or_zero(), (c - b).normalize_or_zero());
         let lengths = [self.hinge, b.distance(c)];
         let by = along - self.hinge;
@@ -145,7 +142,7 @@ impl SweptLimb {
             return CurvePoint { place, tangent: t2, turn: self.turn(1, by / lengths[1], palette) };
         }
         let d = self.bend;
-        let joint = (upper.transform_point3a(b) + lower.transform_point3a(b)) * 0.5;
+        let joint = lower.transform_point3a(b);
         let middle = joint + (t2 - t1) * (0.25 * d * CUT);
         let across = (t1 + t2).normalize_or(t1);
         let (from, to, [m0, m1], u) = if by < 0.0 {
@@ -202,7 +199,7 @@ impl SweptSkin {
         let mut skin = Self { limbs: Vec::new(), bindings: Vec::new(), at_rest: Vec::new() };
         for (i, joints) in LIMBS.into_iter().enumerate() {
             let own: Vec<f32> = weights.iter().map(|w| own_weight(w, joints)).collect();
-            let limb = SweptLimb::new(joints, skeleton, ellipse(skeleton, joints, positions, &own));
+            let limb = SweptLimb::new(joints, skeleton, radius(skeleton, joints, positions, &own));
             let sections = std::array::from_fn(|k| {
                 let at = limb.at(limb.place_of(k), &rest);
                 [at.place, at.tangent]
@@ -270,25 +267,13 @@ fn own_weight(weights: &SkinWeights, joints: [Joint; 3]) -> f32 {
     weights.iter().map(|(bone, w)| w * of(bone)).sum()
 }
 
-/// The ellipse around a limb's section at its hinge: from the joint to its middle, and the mean of its half axes (m).
-fn ellipse(skeleton: &Skeleton, joints: [Joint; 3], positions: &[Vec3], own: &[f32]) -> (Vec3, f32) {
-    const SLAB: f32 = 0.02;
+/// Mean distance of a limb's vertices within a third of a bone's breadth of its hinge from it (m), square to the limb.
+fn radius(skeleton: &Skeleton, joints: [Joint; 3], positions: &[Vec3], own: &[f32]) -> f32 {
     let [a, b, c] = joints.map(|j| skeleton.at(j));
     let along = (c - a).normalize_or(Vec3::Y);
-    let (across, ahead) = along.any_orthonormal_pair();
-    let near = positions.iter().zip(own).filter(|(p, w)| **w > 0.5 && (**p - b).dot(along).abs() < SLAB);
-    let (mut low, mut high) = ([f32::MAX; 2], [f32::MIN; 2]);
-    for (p, _) in near {
-        for (k, axis) in [across, ahead].into_iter().enumerate() {
-            let off = (*p - b).dot(axis);
-            (low[k], high[k]) = (low[k].min(off), high[k].max(off));
-        }
-    }
-    if low[0] > high[0] {
-        return (Vec3::ZERO, 0.04);
-    }
-    let middle = [0, 1].map(|k| 0.5 * (low[k] + high[k]));
-    (across * middle[0] + ahead * middle[1], 0.25 * (high[0] - low[0] + high[1] - low[1]))
+    let near = positions.iter().zip(own).filter(|(p, w)| **w > 0.5 && (**p - b).dot(along).abs() < 0.02);
+    let (sum, count) = near.fold((0.0, 0.0), |(s, n), (p, _)| (s + (*p - b).reject_from(along).length(), n + 1.0));
+    if count > 0.0 { sum / count } else { 0.04 }
 }
 
 /// The place along a limb whose section holds a point at rest (m); none outside of what is swept.
