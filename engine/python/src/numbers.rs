@@ -57,7 +57,7 @@ fn converted<T: numpy::Element + Copy>(array: &Bound<'_, PyUntypedArray>) -> PyR
     options.set_item(intern!(py, "order"), "C")?;
     let made = numpy(py)?.call((array,), Some(&options))?;
     let made = made.cast_into::<PyArrayDyn<T>>().map_err(PyErr::from)?;
-    Ok(made.to_vec().map_err(|e| PyTypeError::new_err(e.to_string()))?)
+    made.to_vec().map_err(|e| PyTypeError::new_err(e.to_string()))
 }
 
 /// Numbers with a fraction, finite or not, and their shape.

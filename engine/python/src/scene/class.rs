@@ -20,6 +20,9 @@ use crate::{pictures, track, views, words};
 /// Most steps of one call: 96 days of time in the scene.
 const MOST_STEPS: usize = 1_000_000_000;
 
+/// Positions and normals of a surface.
+type Surface<'py> = (Bound<'py, PyArray2<f32>>, Bound<'py, PyArray2<f32>>);
+
 /// A scene in motion: a dressed body, or the cloth and colliders of a scene file (``open``, ``parse``, ``of_mesh``).
 ///
 /// Garments are numbered from 0, inner first; lengths are metres, y is up. A scene takes one call at a time, of any thread; one that
@@ -269,7 +272,7 @@ impl Scene {
     }
 
     /// Vertices of the body as it stands now (m) and their unit normals, float32 [n, 3] each. Not of a scene file.
-    fn body<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyArray2<f32>>, Bound<'py, PyArray2<f32>>)> {
+    fn body<'py>(&self, py: Python<'py>) -> PyResult<Surface<'py>> {
         let (positions, normals) = self.inner.with(|state| Ok(state.scene.body().map_err(Failure::from)?))?;
         Ok((views::vectors(py, Arc::new(positions))?, views::vectors(py, Arc::new(normals))?))
     }
