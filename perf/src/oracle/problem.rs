@@ -3,7 +3,7 @@
 use glam::DVec3;
 use toile_assets::fabric::link_law::LinkLaw;
 use toile_assets::garment::Garment;
-use toile_assets::garment::layout::{Bends, ENDED, FiberLists, Fibers, Hubs, Links};
+use toile_assets::garment::layout::{Bends, Diagonals, ENDED, FiberLists, Fibers, Hubs, Links};
 use toile_assets::garment::link_laws::LawTable;
 
 use super::error::OracleError;
@@ -62,9 +62,7 @@ impl Problem {
         let mut found = LinkCollector::default();
         tuples(&layout.shear, &mut found.of(of_shear));
         tuples(&layout.weft, &mut found.of(of_weft));
-        let (bias, mut add) = (&layout.diagonals, found.of(of_bias));
-        bias.for_each(|at, ends| add(at, ends, bias.rest[at], bias.compliance[at]));
-        drop(add);
+        diagonals(&layout.diagonals, &mut found.of(of_bias));
         fibers(&layout.fibers, &mut found.of(of_fibers));
         lists(&layout.crossing, &mut found.of(of_lists));
         let LinkCollector { links, laws } = found;
@@ -176,6 +174,10 @@ const HARD_N: f64 = 1e9;
 
 fn tuples(from: &Links, add: &mut impl FnMut(usize, [u32; 2], f32, f32)) {
     from.tuples.for_each(|at, ends| add(at, ends, from.rest[at], from.compliance[at]));
+}
+
+fn diagonals(from: &Diagonals, add: &mut impl FnMut(usize, [u32; 2], f32, f32)) {
+    from.for_each(|at, ends| add(at, ends, from.rest[at], from.compliance[at]));
 }
 
 fn fibers(from: &Fibers, add: &mut impl FnMut(usize, [u32; 2], f32, f32)) {

@@ -77,7 +77,7 @@ impl Patches {
         wanted: [f64; 3],
         whole: impl Fn(usize) -> bool,
     ) -> Self {
-        let of_one = |b: [f64; 3]| QuadraticForm::plate(b);
+        let of_one = QuadraticForm::plate;
         let third = if wanted[2] > 0.0 { of_one([0.0, 0.0, 1.0]) } else { QuadraticForm::diagonals() };
         let units = [of_one([1.0, 0.0, 0.0]), of_one([0.0, 1.0, 0.0]), third];
         let one = |(v, around): (usize, &Vec<(Direction, RingMeasure)>)| {
