@@ -142,22 +142,25 @@ impl WornFrame {
         let mut normals = posed.clone();
         skin.read(&mut posed, &mut normals);
         let frame = &self.frame;
-        let Some((cloth, garment)) = frame.cloths().iter().zip(frame.garments()).max_by_key(|(_, g)| g.particles()) else {
+        let Some((cloth, garment)) = frame.cloths().iter().zip(frame.garments()).max_by_key(|(_, g)| g.particles())
+        else {
             return Draped::default();
         };
         let body = frame.body();
         let shift = frame.pose().root.y - Pose::rest(&body.skeleton).root.y;
         let stretch = wearing::stretches(cloth, garment, &body.levels).map(|s| s.map(f64::from));
-        let mut seen = Draped { stretch, comfortable: f64::from(garment.fabric.comfortable_stretch), ..Draped::default() };
+        let mut seen =
+            Draped { stretch, comfortable: f64::from(garment.fabric.comfortable_stretch), ..Draped::default() };
         // Levels are horizontal while the trunk is upright and the legs hang.
         if self.pose != TriedPose::Sitting {
             let hoops = hoop_strain(cloth, garment);
             for (i, zone) in Girth::ALL.into_iter().enumerate() {
-                let level = shift + match zone {
-                    Girth::Chest => body.levels.chest,
-                    Girth::Waist => body.levels.waist,
-                    Girth::Hip => body.levels.hip,
-                };
+                let level = shift
+                    + match zone {
+                        Girth::Chest => body.levels.chest,
+                        Girth::Waist => body.levels.waist,
+                        Girth::Hip => body.levels.hip,
+                    };
                 if let Some(section) = cloth_section(cloth, garment, &hoops, level) {
                     seen.worn_ease[i] = Some(section.girth - f64::from(zone.of(&body.measures)));
                     seen.gap[i] = section.gap(&body_section(body, &posed, level));

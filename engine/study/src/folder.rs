@@ -153,7 +153,9 @@ impl Folder {
         let place = path.join("study.json");
         if !place.exists() {
             let shown = path.display();
-            return Err(StudyError::Input(format!("{shown} holds no study; make one by `toile study STUDY.toml --out {shown}`")));
+            return Err(StudyError::Input(format!(
+                "{shown} holds no study; make one by `toile study STUDY.toml --out {shown}`"
+            )));
         }
         let locks = vec![locked(path, "lock", true)?];
         Ok(Self { path: path.to_path_buf(), manifest: read_manifest(&place)?, _locks: locks })
@@ -182,7 +184,13 @@ impl Folder {
     ///
     /// # Errors
     /// A person or garment that cannot be used, a disk that is full: what is done is kept.
-    pub fn run(&self, study: &Study, shard: Shard, workers: usize, progress: &(dyn Fn(u64) + Sync)) -> Result<RunReport> {
+    pub fn run(
+        &self,
+        study: &Study,
+        shard: Shard,
+        workers: usize,
+        progress: &(dyn Fn(u64) + Sync),
+    ) -> Result<RunReport> {
         let begun = Instant::now();
         let each = study.rows_a_person();
         let chunks = shard.chunks(self.chunk_count());
@@ -231,7 +239,9 @@ impl Folder {
         }
         (report.done, report.draped, report.seconds) = (true, draped.into_inner(), begun.elapsed().as_secs_f64());
         // A run that found all done says nothing of speed: what an earlier one said stays.
-        if !missing.is_empty() || !self.runs()?.iter().any(|r| (r.shard, r.of, r.done) == (shard.number, shard.of, true)) {
+        if !missing.is_empty()
+            || !self.runs()?.iter().any(|r| (r.shard, r.of, r.done) == (shard.number, shard.of, true))
+        {
             self.record(&report)?;
         }
         Ok(report)
@@ -259,7 +269,9 @@ impl Folder {
             let path = entry.map_err(refused)?.path();
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
             let parts = name.strip_suffix(".parquet").and_then(|stem| stem.split_once('-'));
-            let Some((chunk, hash)) = parts.and_then(|(chunk, hash)| Some((chunk.parse::<u64>().ok()?, hash))) else { continue };
+            let Some((chunk, hash)) = parts.and_then(|(chunk, hash)| Some((chunk.parse::<u64>().ok()?, hash))) else {
+                continue;
+            };
             let bytes = fs::read(&path).map_err(refused)?;
             if digest::of_bytes(&bytes)[..16] == *hash {
                 found.insert(chunk, path);
@@ -341,17 +353,24 @@ impl Folder {
         let of = self.runs().ok().and_then(|runs| runs.iter().map(|run| run.of).max()).unwrap_or(1);
         let shard = (1..=of).find(|number| Shard { number: *number, of }.chunks(self.chunk_count()).contains(&chunk));
         let again = match (of, shard) {
-            (2.., Some(number)) => format!("shard {number}/{of} is missing or was not finished: run `toile study {study} --out {folder} --shard {number}/{of}`"),
+            (2.., Some(number)) => format!(
+                "shard {number}/{of} is missing or was not finished: run `toile study {study} --out {folder} --shard {number}/{of}`"
+            ),
             _ => format!("run `toile study {study} --out {folder}`, which goes on from there"),
         };
         let all = self.chunk_count();
-        StudyError::Input(format!("{folder}: {count} of {all} chunks are missing, the first from person {people} on; {again}"))
+        StudyError::Input(format!(
+            "{folder}: {count} of {all} chunks are missing, the first from person {people} on; {again}"
+        ))
     }
 }
 
 fn read_manifest(place: &Path) -> Result<Manifest> {
     let refused = |why: &dyn std::fmt::Display| {
-        StudyError::Input(format!("{}: it does not say which study the folder holds ({why}); give another folder", place.display()))
+        StudyError::Input(format!(
+            "{}: it does not say which study the folder holds ({why}); give another folder",
+            place.display()
+        ))
     };
     let text = fs::read(place).map_err(|e| refused(&e))?;
     serde_json::from_slice(&text).map_err(|e| refused(&e))

@@ -82,9 +82,10 @@ impl TriedGarment {
         let found = if beside.is_file() { beside.display().to_string() } else { wanted.name.clone() };
         let mut choice = Choice::find(&found)?;
         if let Some(fabric) = &wanted.fabric {
-            let fabric = Some(Fabric::built_in(fabric).map_err(|e| {
-                StudyError::Input(format!("{e}; there are {}", Fabric::names().join(", ")))
-            })?);
+            let fabric = Some(
+                Fabric::built_in(fabric)
+                    .map_err(|e| StudyError::Input(format!("{e}; there are {}", Fabric::names().join(", "))))?,
+            );
             choice = Choice { own: ShopChoice { fabric, ..choice.own.clone() }, ..choice };
         }
         let made_for = choice.population()?;
@@ -119,7 +120,9 @@ impl TriedGarment {
     /// The zones of a size on true girths.
     pub fn eases(&self, size: usize, body: &Measures) -> Vec<ZoneEase> {
         let zones = self.offer.sizes[size].zones.iter();
-        zones.map(|z| ZoneEase { zone: z.zone, ease: z.girth_m - z.zone.of(body), comfort: self.offer.comfort(z.zone) }).collect()
+        zones
+            .map(|z| ZoneEase { zone: z.zone, ease: z.girth_m - z.zone.of(body), comfort: self.offer.comfort(z.zone) })
+            .collect()
     }
 
     /// The girth that its size is designated by.
@@ -142,7 +145,7 @@ impl TriedGarment {
 
     /// What a page needs to know of it.
     pub fn note(&self, sha256: Option<String>) -> GarmentNote {
-        let mm = |m: f32| (f64::from(m) * 1e4).round() / 10.0;
+        let mm = |m: f32| f64::from(m) * 1e3;
         let zones: Vec<Girth> = self.offer.ease.iter().map(|e| e.zone).collect();
         let girths = |size: &toile_track::recommend::MadeSize| {
             let at = |zone: &Girth| size.zones.iter().find(|z| z.zone == *zone).map(|z| mm(z.girth_m));

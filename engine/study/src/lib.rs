@@ -33,14 +33,23 @@ mod sensor;
 mod study;
 
 mod folder;
+mod pictures;
+mod shares;
+
+mod page;
 
 pub use drape::{Draped, TriedPose, WornFrame};
 pub use error::{Result, StudyError};
 pub use folder::{Folder, Merged, RunReport, Shard};
 pub use garments::{GarmentNote, TriedGarment, ZoneEase};
-pub use parquet_file::{Notes, bytes_of, read};
+pub use page::{TypicalPicture, page};
+pub use parquet_file::{Notes, bytes_of, notes, read};
+pub use pictures::picture;
 pub use population::{Person, Population};
 pub use row::{Kind, Row, Value};
 pub use sensor::Sensor;
+pub use shares::{
+    Convergence, DrapedFigures, GarmentSummary, GradingStep, Share, SizeSummary, Summary, SummaryWearer, ZoneFailure,
+};
 pub use study::{SCHEMA, Study};
 pub use study_file::StudyFile;

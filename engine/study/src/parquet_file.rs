@@ -124,19 +124,36 @@ pub fn bytes_of(rows: impl IntoIterator<Item = Row>, notes: &Notes) -> Result<Ve
     writer.finish().map_err(StudyError::internal)
 }
 
-/// Reads a file: its notes, and each row to `each`.
+/// That a file holds no rows of a study.
+fn no_rows(path: &Path, why: &dyn std::fmt::Display) -> StudyError {
+    StudyError::Input(format!(
+        "{}: it is no file of rows of a study ({why}); make it again by `toile study`",
+        path.display()
+    ))
+}
+
+fn opened(path: &Path) -> Result<SerializedFileReader<File>> {
+    let file = File::open(path).map_err(|e| no_rows(path, &e))?;
+    SerializedFileReader::new(file).map_err(|e| no_rows(path, &e))
+}
+
+/// The notes of a file.
+///
+/// # Errors
+/// A file that is none of ours.
+pub fn notes(path: &Path) -> Result<Notes> {
+    Ok(opened(path)?.metadata().file_metadata().key_value_metadata().map_or_else(Vec::new, |all| {
+        all.iter().map(|note| (note.key.clone(), note.value.clone().unwrap_or_default())).collect()
+    }))
+}
+
+/// Reads each row of a file to `each`.
 ///
 /// # Errors
 /// A file that is none of ours; those of `each`.
-pub fn read(path: &Path, mut each: impl FnMut(Row) -> Result<()>) -> Result<Notes> {
-    let refused = |why: &dyn std::fmt::Display| {
-        StudyError::Input(format!("{}: it is no file of rows of a study ({why}); make it again by `toile study`", path.display()))
-    };
-    let file = File::open(path).map_err(|e| refused(&e))?;
-    let reader = SerializedFileReader::new(file).map_err(|e| refused(&e))?;
-    let notes = reader.metadata().file_metadata().key_value_metadata().map_or_else(Vec::new, |all| {
-        all.iter().map(|note| (note.key.clone(), note.value.clone().unwrap_or_default())).collect()
-    });
+pub fn read(path: &Path, mut each: impl FnMut(Row) -> Result<()>) -> Result<()> {
+    let refused = |why: &dyn std::fmt::Display| no_rows(path, why);
+    let reader = opened(path)?;
     for found in reader.get_row_iter(None).map_err(|e| refused(&e))? {
         let found = found.map_err(|e| refused(&e))?;
         let mut row = Row::default();
@@ -154,5 +171,5 @@ pub fn read(path: &Path, mut each: impl FnMut(Row) -> Result<()>) -> Result<Note
         }
         each(row)?;
     }
-    Ok(notes)
+    Ok(())
 }

@@ -42,7 +42,9 @@ impl Sensor {
         for (name, sigma) in &wanted.sigma_mm {
             one_of("[sensor] sigma_mm", name, &NAMES).map_err(StudyError::Input)?;
             if !(0.0..=200.0).contains(sigma) {
-                return Err(StudyError::Input(format!("[sensor] sigma_mm: {name} = {sigma} is no deviation from 0 to 200 mm")));
+                return Err(StudyError::Input(format!(
+                    "[sensor] sigma_mm: {name} = {sigma} is no deviation from 0 to 200 mm"
+                )));
             }
             let at = NAMES.iter().position(|known| known == name).unwrap_or(0);
             mm[at] = *sigma as f32;

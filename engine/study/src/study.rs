@@ -84,12 +84,15 @@ impl Study {
         let names: Vec<&str> = garments.iter().map(|g| g.name.as_str()).collect();
         if let Some(twice) = (1..names.len()).find(|i| names[..*i].contains(&names[*i])) {
             let name = names[twice];
-            return Err(named(StudyError::Input(format!("the garment {name} is named twice; name it once, in all its sizes"))));
+            return Err(named(StudyError::Input(format!(
+                "the garment {name} is named twice; name it once, in all its sizes"
+            ))));
         }
         let population = Population::open(&file.population, file.seed, &folder).map_err(named)?;
         let sensor = Sensor::open(&file.sensor, file.seed).map_err(named)?;
         let physics = Physics::open(&file.physics, population.people()).map_err(|why| named(StudyError::Input(why)))?;
-        let bytes: Vec<Option<Vec<u8>>> = file.garment.iter().map(|g| std::fs::read(folder.join(&g.name)).ok()).collect();
+        let bytes: Vec<Option<Vec<u8>>> =
+            file.garment.iter().map(|g| std::fs::read(folder.join(&g.name)).ok()).collect();
         let hashes: Vec<Option<String>> = bytes.iter().map(|b| b.as_deref().map(digest::of_bytes)).collect();
         let mut parts: Vec<&[u8]> =
             vec![SCHEMA.as_bytes(), env!("CARGO_PKG_VERSION").as_bytes(), text.as_bytes(), &population.source];
@@ -147,7 +150,8 @@ impl Study {
 
     /// What stands in its Parquet files besides rows.
     pub fn notes(&self) -> Notes {
-        let garments: Vec<GarmentNote> = self.garments.iter().zip(&self.hashes).map(|(g, h)| g.note(h.clone())).collect();
+        let garments: Vec<GarmentNote> =
+            self.garments.iter().zip(&self.hashes).map(|(g, h)| g.note(h.clone())).collect();
         let sensor = self.sensor.sigma_mm().into_iter().map(|(name, mm)| (name.to_owned(), json!(mm))).collect();
         let text = |value: serde_json::Value| value.to_string();
         [
@@ -452,7 +456,8 @@ mod tests {
 
     #[test]
     fn a_try_on_is_draped_and_says_how_it_hangs() {
-        let physics = "[physics]\nmode = \"drape\"\npeople = 1\nsizes = \"recommended\"\ncompare = 1\ncompare_s = 0.25\n";
+        let physics =
+            "[physics]\nmode = \"drape\"\npeople = 1\nsizes = \"recommended\"\ncompare = 1\ncompare_s = 0.25\n";
         let text = SMALL.replace("women = 0.5", "women = 1.0").replace("[[garment]]\nname = \"tee\"\n", "");
         let study = opened("drape", &format!("{text}{physics}"));
         let rows = study.person_rows(0).unwrap();

@@ -255,8 +255,14 @@ mod tests {
         let file = StudyFile::parse("x.toml", SMALL).unwrap();
         assert_eq!((file.garment.len(), file.population.people, file.physics.mode), (1, Some(10), PhysicsMode::None));
         for (text, says) in [
-            (SMALL.replace("people", "poeple"), "line 6, column 1: [population] has no key \"poeple\"; did you mean \"people\""),
-            (SMALL.replace("tee\"\n", "tee\"\nsize = [\"38\"]\n"), "[[garment]] has no key \"size\"; did you mean \"sizes\""),
+            (
+                SMALL.replace("people", "poeple"),
+                "line 6, column 1: [population] has no key \"poeple\"; did you mean \"people\"",
+            ),
+            (
+                SMALL.replace("tee\"\n", "tee\"\nsize = [\"38\"]\n"),
+                "[[garment]] has no key \"size\"; did you mean \"sizes\"",
+            ),
             (SMALL.replace("ansur", "ansor"), "line 5"),
             (SMALL.replace("10", "0"), "people has to be 1 to"),
             (format!("{SMALL}women = 2.0\n"), "women is a share"),

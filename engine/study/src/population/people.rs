@@ -48,7 +48,9 @@ impl Population {
     /// A table that cannot be used, keys that do not go together.
     pub fn open(wanted: &WantedPopulation, seed: u64, folder: &Path) -> Result<Self> {
         let refused = |key: &str, for_: &str| {
-            Err(StudyError::Input(format!("[population] {key} is for from = {for_:?} alone; leave it out or change from")))
+            Err(StudyError::Input(format!(
+                "[population] {key} is for from = {for_:?} alone; leave it out or change from"
+            )))
         };
         let only = [
             ("file", PeopleFrom::Table, wanted.file.is_some()),
@@ -74,7 +76,9 @@ impl Population {
             }
             PeopleFrom::Table => {
                 let Some(file) = &wanted.file else {
-                    return Err(StudyError::Input("[population] from = \"table\" needs file = \"people.csv\"".to_owned()));
+                    return Err(StudyError::Input(
+                        "[population] from = \"table\" needs file = \"people.csv\"".to_owned(),
+                    ));
                 };
                 let path = folder.join(file);
                 let rows = table::read(&path, wanted)?;
@@ -168,7 +172,9 @@ fn given(number: u64, weight: f64, sex: Sex, given: Vec<(En, f32)>) -> Person {
 /// What is known of somebody of whom some measures are known exactly.
 fn expected(sex: Sex, given: impl Iterator<Item = (En, f32)>) -> BodyEstimate {
     let all = tape_readings::population(Some(sex).into());
-    given.filter_map(|(m, value)| Some((index(m)?, value))).fold(all, |all, (i, v)| all.observed(i, Estimate::new(v, 1e-4)))
+    given
+        .filter_map(|(m, value)| Some((index(m)?, value)))
+        .fold(all, |all, (i, v)| all.observed(i, Estimate::new(v, 1e-4)))
 }
 
 fn index(measure: En) -> Option<usize> {
@@ -210,7 +216,10 @@ fn sized(wanted: &WantedPopulation) -> Result<Way> {
         None => kinds[0],
         Some(word) => *kinds.iter().find(|kind| kind.name() == word).ok_or_else(|| {
             let known: Vec<&str> = kinds.iter().map(|kind| kind.name()).collect();
-            StudyError::Input(format!("[population] table_for = {word:?} is not in {name}; use one of {}", known.join(", ")))
+            StudyError::Input(format!(
+                "[population] table_for = {word:?} is not in {name}; use one of {}",
+                known.join(", ")
+            ))
         })?,
     };
     let girth = table.designation(kind).and_then(|d| d.primary.first().copied()).unwrap_or(Girth::Chest);
@@ -224,7 +233,8 @@ fn sized(wanted: &WantedPopulation) -> Result<Way> {
     let upto = running(table.sizes.iter().map(|size| wanted.shares.get(&size.code).copied().unwrap_or(0.0)));
     if upto.last().is_none_or(|all| *all <= 0.0) {
         return Err(StudyError::Input(
-            "[population] shares says of no size how many wear it; give such as { \"38\" = 12, \"40\" = 20 }".to_owned(),
+            "[population] shares says of no size how many wear it; give such as { \"38\" = 12, \"40\" = 20 }"
+                .to_owned(),
         ));
     }
     Ok(Way::Sized { table, girth, sex, upto })

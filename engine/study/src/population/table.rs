@@ -73,7 +73,8 @@ pub(super) fn read(path: &Path, wanted: &WantedPopulation) -> Result<Vec<TableRo
             "{shown}: it has no girth of chest, waist or hip, by which sizes are chosen; name its column in [population] columns"
         )));
     }
-    let default_sex = wanted.sex.as_deref().map(|word| sex_of(word).ok_or_else(|| no_sex(&shown, 0, word))).transpose()?;
+    let default_sex =
+        wanted.sex.as_deref().map(|word| sex_of(word).ok_or_else(|| no_sex(&shown, 0, word))).transpose()?;
     if default_sex.is_none() && !holds.contains(&Holds::Sex) {
         return Err(StudyError::Input(format!(
             "{shown}: it does not say whose measures they are; give a column sex, or [population] sex = \"female\" or \"male\""
@@ -87,7 +88,9 @@ pub(super) fn read(path: &Path, wanted: &WantedPopulation) -> Result<Vec<TableRo
         rows.push(row(&shown, number + 2, line, (&heads, &holds), (default_sex, metres))?);
     }
     if rows.iter().map(|r| r.weight).sum::<f64>() <= 0.0 {
-        return Err(StudyError::Input(format!("{shown}: every weight is 0, so that it stands for nobody; correct the column weight")));
+        return Err(StudyError::Input(format!(
+            "{shown}: every weight is 0, so that it stands for nobody; correct the column weight"
+        )));
     }
     Ok(rows)
 }
@@ -107,7 +110,9 @@ fn row(
         let value = text.parse::<f64>().or_else(|_| text.replace(',', ".").parse()).ok().filter(|v| v.is_finite());
         value.ok_or_else(|| {
             let head = &heads[at];
-            StudyError::Input(format!("{shown}: line {line}: {head} is {text:?}, which is no number; repair the line or leave it out"))
+            StudyError::Input(format!(
+                "{shown}: line {line}: {head} is {text:?}, which is no number; repair the line or leave it out"
+            ))
         })
     };
     for (at, holds) in holds.iter().enumerate() {
@@ -130,26 +135,33 @@ fn row(
             Holds::Measure(_) if cells.get(at).is_none_or(|c| c.trim().is_empty()) => {}
             Holds::Measure(measure) => {
                 let value = number(at)?;
-                in_range(*measure, value, metres).map_err(|why| StudyError::Input(format!("{shown}: line {line}: {why}")))?;
+                in_range(*measure, value, metres)
+                    .map_err(|why| StudyError::Input(format!("{shown}: line {line}: {why}")))?;
                 found.given.push((*measure, value as f32 * metres));
             }
         }
     }
     if !found.given.iter().any(|(m, _)| matches!(m, En::BustGirth | En::WaistGirth | En::HipGirth)) {
-        return Err(StudyError::Input(format!("{shown}: line {line}: it has no girth of chest, waist or hip; leave the line out")));
+        return Err(StudyError::Input(format!(
+            "{shown}: line {line}: it has no girth of chest, waist or hip; leave the line out"
+        )));
     }
     Ok(found)
 }
 
 /// That a body is built for a length; else a sentence with the unit that was probably meant.
 fn in_range(measure: En, value: f64, metres: f32) -> std::result::Result<(), String> {
-    let Err(BodyError::OutOfRange { measure, least, most, .. }) = Wanted::<En>::new().with(measure, value as f32 * metres).check()
+    let Err(BodyError::OutOfRange { measure, least, most, .. }) =
+        Wanted::<En>::new().with(measure, value as f32 * metres).check()
     else {
         return Ok(());
     };
     let range = f64::from(least)..=f64::from(most);
     let [least, most] = [least, most].map(|m| (m * 1e3).round());
-    let says = format!("the {measure} is {} mm, and a body is built for {least} to {most} mm", (value * f64::from(metres) * 1e4).round() / 10.0);
+    let says = format!(
+        "the {measure} is {} mm, and a body is built for {least} to {most} mm",
+        (value * f64::from(metres) * 1e4).round() / 10.0
+    );
     let meant = UNITS.iter().find(|u| range.contains(&(value * f64::from(u.2))));
     Err(match meant {
         Some((unit, words, _)) => format!("{says}; {value} may be {words}: say unit = {unit:?}"),
@@ -159,7 +171,8 @@ fn in_range(measure: En, value: f64, metres: f32) -> std::result::Result<(), Str
 
 /// What each column holds.
 fn meanings(shown: &str, heads: &[String], wanted: &WantedPopulation) -> Result<Vec<Holds>> {
-    let named: BTreeMap<&str, &str> = wanted.columns.iter().map(|(holds, column)| (column.as_str(), holds.as_str())).collect();
+    let named: BTreeMap<&str, &str> =
+        wanted.columns.iter().map(|(holds, column)| (column.as_str(), holds.as_str())).collect();
     for (holds, column) in &wanted.columns {
         if !heads.contains(column) {
             let cure = toml_keys::nearest(column, heads.iter().map(String::as_str))
@@ -186,7 +199,9 @@ fn meanings(shown: &str, heads: &[String], wanted: &WantedPopulation) -> Result<
             ))
         })?;
         if found != Holds::Nothing && all.contains(&found) {
-            return Err(StudyError::Input(format!("{shown}: two columns hold the same as {head:?}; name one of them in [population] ignore")));
+            return Err(StudyError::Input(format!(
+                "{shown}: two columns hold the same as {head:?}; name one of them in [population] ignore"
+            )));
         }
         all.push(found);
     }
@@ -196,7 +211,10 @@ fn meanings(shown: &str, heads: &[String], wanted: &WantedPopulation) -> Result<
 fn unknown(place: &str, word: &str) -> String {
     let names = MEASURES.iter().map(|m| m.0).chain(["weight", "sex"]);
     let near = toml_keys::nearest(&word.to_lowercase(), names.clone());
-    let cure = near.map_or_else(|| format!("there are {}", names.collect::<Vec<_>>().join(", ")), |n| format!("did you mean {n:?}?"));
+    let cure = near.map_or_else(
+        || format!("there are {}", names.collect::<Vec<_>>().join(", ")),
+        |n| format!("did you mean {n:?}?"),
+    );
     format!("{place} {word:?} is no measure that is known; {cure}")
 }
 
@@ -239,9 +257,13 @@ fn from_csv(path: &Path) -> Result<Cells> {
     let delimiter = [b',', b';', b'\t'].into_iter().max_by_key(|sign| often(*sign)).unwrap_or(b',');
     let mut reader = csv::ReaderBuilder::new().delimiter(delimiter).from_reader(&bytes[..]);
     let owned = |record: &csv::StringRecord| record.iter().map(|cell| cell.trim().to_owned()).collect::<Vec<String>>();
-    let refused = |e: csv::Error| StudyError::Input(format!("{shown}: {e}; give a table with as many cells in each line, in UTF-8"));
+    let refused = |e: csv::Error| {
+        StudyError::Input(format!("{shown}: {e}; give a table with as many cells in each line, in UTF-8"))
+    };
     // Programs of others begin a file with a mark of its encoding.
-    let heads = owned(reader.headers().map_err(refused)?).into_iter().map(|head| head.trim_start_matches('\u{feff}').to_owned());
+    let heads = owned(reader.headers().map_err(refused)?)
+        .into_iter()
+        .map(|head| head.trim_start_matches('\u{feff}').to_owned());
     let heads = heads.collect();
     let cells = reader.records().map(|record| record.map(|r| owned(&r)).map_err(refused)).collect::<Result<_>>()?;
     Ok((heads, cells))
@@ -251,7 +273,9 @@ fn from_parquet(path: &Path) -> Result<Cells> {
     let bytes = file::read(path, &TABLE).map_err(StudyError::input)?;
     let shown = path.display();
     let refused = |e: &dyn std::fmt::Display| {
-        StudyError::Input(format!("{shown}: it cannot be read as Parquet ({e}); write it without compression or with Snappy"))
+        StudyError::Input(format!(
+            "{shown}: it cannot be read as Parquet ({e}); write it without compression or with Snappy"
+        ))
     };
     let reader = SerializedFileReader::new(Bytes::from(bytes)).map_err(|e| refused(&e))?;
     let schema = reader.metadata().file_metadata().schema_descr();
@@ -275,14 +299,17 @@ mod tests {
 
     fn refused(columns: &str, line: &str, unit: &str) -> String {
         let heads: Vec<String> = columns.split(',').map(str::to_owned).collect();
-        let wanted: WantedPopulation = toml::from_str(&format!("from = \"table\"\nunit = {unit:?}\nsex = \"female\"")).unwrap();
+        let wanted: WantedPopulation =
+            toml::from_str(&format!("from = \"table\"\nunit = {unit:?}\nsex = \"female\"")).unwrap();
         let holds = match meanings("t.csv", &heads, &wanted) {
             Ok(holds) => holds,
             Err(why) => return why.to_string(),
         };
         let cells: Vec<String> = line.split(',').map(str::to_owned).collect();
         let metres = UNITS.iter().find(|u| u.0 == unit).unwrap().2;
-        row("t.csv", 2, &cells, (&heads, &holds), (Some(Sex::Female), metres)).map(|_| String::new()).unwrap_or_else(|e| e.to_string())
+        row("t.csv", 2, &cells, (&heads, &holds), (Some(Sex::Female), metres))
+            .map(|_| String::new())
+            .unwrap_or_else(|e| e.to_string())
     }
 
     #[test]
