@@ -21,6 +21,7 @@
 mod digest;
 mod error;
 mod row;
+
 mod study_file;
 
 mod garments;
