@@ -60,7 +60,7 @@ fn the_rows_are_the_same_bytes_however_they_come_by() {
 
 #[test]
 fn a_run_that_is_killed_goes_on_and_loses_nothing() {
-    let scratch = folder("study-killed", &STUDY.replace("1200", "6000"));
+    let scratch = folder("study-killed", &STUDY.replace("1200", "2500"));
     let mut command = Command::new(env!("CARGO_BIN_EXE_toile"));
     command.args(["study", "study.toml", "--out", "killed", "--workers", "1", "--no-pictures", "--quiet"]);
     let mut run = command.current_dir(scratch.path()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();

@@ -27,8 +27,9 @@ const MOST_WORKERS: u64 = 1024;
                   study.toml --out tee --shard 2/8"
 )]
 pub struct StudyArgs {
+    /// What is done with a folder that a study has been computed in; none computes.
     #[command(subcommand)]
-    pub command: Option<StudyCommand>,
+    pub(crate) command: Option<StudyCommand>,
     /// Study file
     #[arg(value_name = "STUDY.toml", required = true)]
     pub file: Option<PathBuf>,
@@ -49,9 +50,10 @@ pub struct StudyArgs {
     pub printing: Printing,
 }
 
+// The help of a command is the doc of its arguments, which a doc of the variant would replace.
 /// What is done with a study's folder.
 #[derive(Debug, Clone, PartialEq, clap::Subcommand)]
-pub enum StudyCommand {
+pub(crate) enum StudyCommand {
     Merge(MergeArgs),
     Report(ReportArgs),
 }

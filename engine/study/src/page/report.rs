@@ -23,7 +23,7 @@ pub struct TypicalPicture {
     /// Number of the person.
     pub person: i64,
     /// The picture as a `data:` address, or why there is none.
-    pub image: std::result::Result<String, String>,
+    pub image: Result<String, String>,
 }
 
 /// The page of a study: its summary, what its runs took, and pictures of typical people.
