@@ -127,10 +127,10 @@ fn weights_count_as_people() {
 #[test]
 fn bad_studies_are_refused_in_a_sentence() {
     let scratch = Scratch::new("study-bad");
+    // Each table is written when its turn has come.
     let table = |csv: &str, keys: &str| {
-        fs::write(scratch.path().join("people.csv"), csv).unwrap();
         format!(
-            "name = \"x\"\n[[garment]]\nname = \"tee\"\n[population]\nfrom = \"table\"\nfile = \"people.csv\"\nsex = \"female\"\n{keys}"
+            "{csv}\0name = \"x\"\n[[garment]]\nname = \"tee\"\n[population]\nfrom = \"table\"\nfile = \"people.csv\"\nsex = \"female\"\n{keys}"
         )
     };
     let mm = "unit = \"mm\"\n";
@@ -161,7 +161,11 @@ fn bad_studies_are_refused_in_a_sentence() {
         (format!("{STUDY}[sensor]\nview = \"frnot\"\n"), "did you mean \"front\"?"),
         (STUDY.replace("from = \"ansur\"", "from = \"ansur\"\nfile = \"x.csv\""), "is for from = \"table\" alone"),
     ] {
-        fs::write(scratch.path().join("study.toml"), &text).unwrap();
+        let text = text.split_once('\0').map_or(text.as_str(), |(csv, text)| {
+            fs::write(scratch.path().join("people.csv"), csv).unwrap();
+            text
+        });
+        fs::write(scratch.path().join("study.toml"), text).unwrap();
         let said = refusal(&scratch.toile(&["study", "study.toml", "--out", "refused"]), 4);
         assert!(
             said.contains(says) && said.contains("study.toml") || said.contains(says) && said.contains("people.csv"),
@@ -226,7 +230,7 @@ fn a_full_disk_is_a_sentence_and_what_was_done_is_kept() {
 
 #[test]
 fn try_ons_are_simulated_the_same_in_parts() {
-    let physics = "[physics]\nmode = \"drape\"\npeople = 2\nsizes = \"recommended\"\n";
+    let physics = "[physics]\nmode = \"drape\"\npeople = 2\nsizes = \"recommended\"\nquality = \"shop\"\n";
     let text = STUDY.replace("1200", "9").replace("[[garment]]\nname = \"pencil-skirt\"\n", "");
     let scratch = folder("study-physics", &format!("{text}{physics}"));
     let found = object(&scratch.toile(&["study", "study.toml", "--out", "one", "--no-pictures", "--json"]));

@@ -149,7 +149,7 @@ impl Default for WantedPhysics {
             people: None,
             sizes: "near".to_owned(),
             poses: vec!["standing".to_owned()],
-            quality: "draft".to_owned(),
+            quality: "shop".to_owned(),
             settle_s: 0.0,
             compare: 0,
             compare_s: 8.0,

@@ -208,13 +208,15 @@ fn meanings(shown: &str, heads: &[String], wanted: &WantedPopulation) -> Result<
     Ok(all)
 }
 
+/// That a word is no measure, with the one that was probably meant.
 fn unknown(place: &str, word: &str) -> String {
-    let names = MEASURES.iter().map(|m| m.0).chain(["weight", "sex"]);
-    let near = toml_keys::nearest(&word.to_lowercase(), names.clone());
-    let cure = near.map_or_else(
-        || format!("there are {}", names.collect::<Vec<_>>().join(", ")),
-        |n| format!("did you mean {n:?}?"),
-    );
+    let names: Vec<&str> = MEASURES.iter().map(|m| m.0).chain(["weight", "sex"]).collect();
+    let short = names.iter().filter_map(|name| name.split_once('_').map(|(first, _)| (first, *name)));
+    let words: Vec<(&str, &str)> = names.iter().map(|name| (*name, *name)).chain(short).collect();
+    let near = toml_keys::nearest(&word.to_lowercase(), words.iter().map(|w| w.0));
+    let meant = near.and_then(|near| words.iter().find(|w| w.0 == near));
+    let cure =
+        meant.map_or_else(|| format!("there are {}", names.join(", ")), |(_, name)| format!("did you mean {name:?}?"));
     format!("{place} {word:?} is no measure that is known; {cure}")
 }
 
