@@ -11,8 +11,8 @@ fn people_of_another_family_are_found_and_measured_by_their_silhouettes() {
     let Some(folder) = recordings::folder() else { return };
     let file = |name: &str| Survey::read(&folder.join("anthropometry/ansur2").join(name)).expect("the survey's file");
     let surveys = [file("ANSUR_II_FEMALE.csv"), file("ANSUR_II_MALE.csv")];
-    let options =
-        SilhouetteStudyOptions { makehuman: Some(folder.join("body/makehuman-hm08")), people: 1, cameras: 4, seed: 99 };
+    let makehuman = Some(folder.join("body/makehuman-hm08"));
+    let options = SilhouetteStudyOptions { makehuman, people: 1, cameras: 4, seed: 99, pictures: false };
     let found = study(&surveys, &options, &mut |_| ()).expect("a study");
     println!("{found:?}");
     assert_eq!((found.people, found.lost, found.measures.len()), (2, 0, 11));

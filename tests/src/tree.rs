@@ -17,6 +17,7 @@ pub const FLOORS: &[(&str, &str)] = &[
     ("engine/view", "toile-view"),
     ("engine/fitting", "toile-fitting"),
     ("engine/sdk", "toile-sdk"),
+    ("engine/study", "toile-study"),
     ("engine/c", "toile-c"),
     ("engine/python", "toile-python"),
     ("engine/kiosk", "toile-kiosk"),

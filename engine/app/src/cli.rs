@@ -27,6 +27,7 @@ use crate::commands::record::RecordArgs;
 use crate::commands::replay::ReplayArgs;
 use crate::commands::run::RunArgs;
 use crate::commands::soak::SoakArgs;
+use crate::commands::study::StudyArgs;
 use crate::commands::tailor::TailorArgs;
 use crate::commands::torture::TortureArgs;
 use crate::commands::try_on::TryOnArgs;
@@ -78,6 +79,7 @@ pub(crate) enum Command {
     Torture(TortureArgs),
     Latency(LatencyArgs),
     Plan(PlanArgs),
+    Study(StudyArgs),
     Replay(ReplayArgs),
     Soak(SoakArgs),
     Kiosk(KioskArgs),

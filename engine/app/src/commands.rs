@@ -27,6 +27,7 @@ mod record_camera;
 pub mod replay;
 pub mod run;
 pub mod soak;
+pub mod study;
 pub mod tailor;
 pub mod torture;
 pub mod try_on;

@@ -83,6 +83,7 @@ fn dispatch(command: &Command) -> Result<(), AppError> {
         Command::Torture(args) => commands::torture::run(args),
         Command::Latency(args) => commands::latency::run(args),
         Command::Plan(args) => commands::plan::run(args),
+        Command::Study(args) => commands::study::run(args),
         Command::Replay(args) => commands::replay::run(args),
         Command::Soak(args) => commands::soak::run(args),
         Command::Kiosk(args) => commands::kiosk::run(args),

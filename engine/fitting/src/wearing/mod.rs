@@ -7,4 +7,4 @@
 pub mod poses;
 mod pulls;
 
-pub use pulls::{CoveredZone, GarmentPulls, PosePulls, Pull, ZonePull, in_poses};
+pub use pulls::{CoveredZone, GarmentPulls, PosePulls, Pull, ZonePull, in_poses, stretches};

@@ -161,10 +161,16 @@ fn look(
     let now = frame.pose();
     let (root, turn) = (now.root, now.local[Joint::Pelvis.index()].inverse());
     let seen = |(cloth, garment): (&Cloth, &Garment)| Seen {
-        stretch: CoveredZone::ALL.iter().map(|zone| stretch(cloth, garment, *zone, &body.levels)).collect(),
+        stretch: stretches(cloth, garment, &body.levels).to_vec(),
         hem: hem(garment).map(|(v, share)| (turn * (Vec3::from(cloth.positions[v]) - root)).y * share).sum(),
     };
     Ok(frame.cloths().iter().zip(frame.garments()).map(seen).collect())
+}
+
+/// Stretch that nine tenths of the edges of each zone stay below (1), in the order of [`CoveredZone::ALL`]; none of a zone that the
+/// garment does not cover.
+pub fn stretches(cloth: &Cloth, garment: &Garment, levels: &Levels) -> [Option<f32>; CoveredZone::ALL.len()] {
+    CoveredZone::ALL.map(|zone| stretch(cloth, garment, zone, levels))
 }
 
 /// Stretch that all but a tenth of a zone's edges stay below.

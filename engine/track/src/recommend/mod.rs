@@ -20,11 +20,13 @@ use toile_assets::sizes::SizeError;
 use crate::estimate::Estimate;
 use crate::measure::{Measurements, Source};
 use probability::{SizeProbabilities, least};
-use scored_zone::{ScoredZone, WEIGHTS, WORTH_NAMING};
+use scored_zone::{ScoredZone, WORTH_NAMING};
 
 pub use feel::Feel;
 pub use offer::{EaseRange, MadeSize, Offer, Zone, ZoneGirth};
+pub use probability::{OFF_MIDDLE, TIGHT_TO_LOOSE};
 pub use recommendation::{Recommendation, RunnerUp, SURE, SizeProbability, TapeAdvice, Verdict, ZoneFit};
+pub use scored_zone::WEIGHTS;
 
 /// Why no size can be named; each message says what, where, and the cure.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

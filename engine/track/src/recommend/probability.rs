@@ -13,11 +13,11 @@ const TAPED: usize = 32;
 const BODIES_TAPED: usize = 128;
 
 /// A centimetre too tight is worse than one too loose by this: one cannot wear it.
-const TIGHT_TO_LOOSE: f32 = 2.0;
+pub const TIGHT_TO_LOOSE: f32 = 2.0;
 
 /// Penalty of ease within the comfortable range but off its middle, per metre, next to 1 outside: it decides between
 /// sizes that both fit.
-const OFF_MIDDLE: f32 = 0.1;
+pub const OFF_MIDDLE: f32 = 0.1;
 
 /// Mean penalty and probability of each size.
 pub(super) struct SizeProbabilities {

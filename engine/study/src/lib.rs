@@ -1,0 +1,56 @@
+//! How many people each size of a garment fits, where it fails, and which step between sizes would help most.
+//!
+//! A study file says which garments, whose bodies, which sensor and how much physics; each try-on is one row, a function of the study
+//! and the row's number alone, so that any machine may compute any part of it:
+//!
+//! ```no_run
+//! use std::path::Path;
+//! use toile_study::Study;
+//!
+//! let study = Study::open(Path::new("study.toml"))?;
+//! let row = study.row(17)?; // the same on every machine
+//! println!("{} in {}: fits {}", row.garment, row.size, row.fits);
+//! # Ok::<(), toile_study::StudyError>(())
+//! ```
+//!
+//! Reads: a study file, tables of people, garments. Writes: rows of Parquet in a folder, shares with intervals, a page.
+//! Budget: 2 ms a person and garment without physics, some seconds a try-on with it.
+//! Thread: as many workers as are asked for, each with people of its own.
+
+// Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
+mod digest;
+mod error;
+mod row;
+
+mod study_file;
+
+mod garments;
+mod parquet_file;
+mod population;
+
+mod drape;
+mod sensor;
+
+mod study;
+
+mod folder;
+mod pictures;
+mod shares;
+
+mod page;
+
+pub use drape::{Draped, TriedPose, WornFrame};
+pub use error::{Result, StudyError};
+pub use folder::{Folder, Merged, RunReport, Shard};
+pub use garments::{GarmentNote, TriedGarment, ZoneEase};
+pub use page::{TypicalPicture, page};
+pub use parquet_file::{Notes, bytes_of, notes, read};
+pub use pictures::picture;
+pub use population::{Person, Population};
+pub use row::{Kind, Row, Value};
+pub use sensor::Sensor;
+pub use shares::{
+    Convergence, DrapedFigures, GarmentSummary, GradingStep, Share, SizeSummary, Summary, SummaryWearer, ZoneFailure,
+};
+pub use study::{SCHEMA, Study};
+pub use study_file::StudyFile;

@@ -1,0 +1,102 @@
+//! Drawing by number: a generator for each person and purpose, bodies of the survey, people of a size.
+
+use toile_assets::body::shape::{BodyShape, SHAPES, Shapes};
+use toile_assets::numeric::linear::{self, Pivot};
+use toile_assets::numeric::random::SplitMix64;
+use toile_track::fit::measuring::MEASURES;
+use toile_track::tape_readings::BodyEstimate;
+
+/// Number of measures that go together.
+pub(super) const COUNT: usize = MEASURES.len();
+
+/// Directions in which nobody strays.
+const LEAST_PIVOT: f64 = 1e-12;
+
+/// What numbers are drawn for: each purpose has numbers of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u64)]
+pub(crate) enum Purpose {
+    /// Who a person is.
+    Person = 1,
+    /// The sensor's errors.
+    Sensor = 2,
+    /// Which people are counted again for an interval.
+    Resample = 3,
+}
+
+/// The generator of number `index`, the same whatever was drawn before.
+pub(crate) fn generator(seed: u64, purpose: Purpose, index: u64) -> SplitMix64 {
+    let stream = SplitMix64::new(seed ^ ((purpose as u64) << 56)).next_u64();
+    SplitMix64::new(stream ^ SplitMix64::new(index).next_u64())
+}
+
+/// The lower factor of the covariance of a sex's shapes.
+pub(super) fn shape_factor(shapes: &Shapes) -> [BodyShape; SHAPES] {
+    let mut factor = shapes.covariance();
+    linear::factor(&mut factor, Pivot::AtLeast(LEAST_PIVOT));
+    factor
+}
+
+/// A body of the survey: the mean shape and a draw from the covariance of people's shapes.
+pub(super) fn shape(shapes: &Shapes, factor: &[BodyShape; SHAPES], random: &mut SplitMix64) -> BodyShape {
+    let normal: [f64; SHAPES] = std::array::from_fn(|_| f64::from(random.gaussian()));
+    let mut drawn = *shapes.mean();
+    for (i, value) in drawn.iter_mut().enumerate() {
+        *value += factor[i][..=i].iter().zip(&normal).map(|(l, z)| l * z).sum::<f64>();
+        let [least, most] = shapes.bounds(i);
+        *value = value.clamp(least, most);
+    }
+    drawn
+}
+
+/// Measures drawn from what is known of them (m).
+pub(super) fn measures(known: &BodyEstimate, random: &mut SplitMix64) -> [f32; COUNT] {
+    let mut factor: [[f64; COUNT]; COUNT] = known.covariance.map(|row| row.map(f64::from));
+    linear::factor(&mut factor, Pivot::AtLeast(LEAST_PIVOT));
+    let normal: [f64; COUNT] = std::array::from_fn(|_| f64::from(random.gaussian()));
+    std::array::from_fn(|i| {
+        let by: f64 = factor[i][..=i].iter().zip(&normal).map(|(l, z)| l * z).sum();
+        (f64::from(known.mean[i]) + by) as f32
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use toile_assets::body::{En, Sex};
+
+    use super::*;
+
+    #[test]
+    fn drawn_bodies_have_the_survey_s_means_and_deviations() {
+        // ANSUR II, public release: mean and deviation (mm) of stature, chest and buttock girth.
+        let survey = [
+            (Sex::Female, [(En::Stature, 1628.5, 64.2), (En::BustGirth, 946.9, 82.7), (En::HipGirth, 1021.2, 75.9)]),
+            (Sex::Male, [(En::Stature, 1756.2, 68.6), (En::BustGirth, 1058.7, 87.4), (En::HipGirth, 1019.5, 76.7)]),
+        ];
+        for (sex, measures) in survey {
+            let shapes = Shapes::of(sex);
+            let factor = shape_factor(shapes);
+            let drawn = |n: u64| shapes.read(&shape(shapes, &factor, &mut generator(5, Purpose::Person, n))).readings;
+            let people: Vec<_> = (0..400).map(drawn).collect();
+            for (measure, mean, deviation) in measures {
+                let all: Vec<f64> = people.iter().map(|p| f64::from(p.of(measure)) * 1e3).collect();
+                let found = all.iter().sum::<f64>() / all.len() as f64;
+                let spread = (all.iter().map(|x| (x - found).powi(2)).sum::<f64>() / (all.len() - 1) as f64).sqrt();
+                // Four standard errors of 400, and what the bounds of shapes cut off.
+                assert!((found - mean).abs() < 0.25 * deviation, "{sex:?} {measure:?}: mean {found}, not {mean}");
+                assert!((spread / deviation - 1.0).abs() < 0.2, "{sex:?} {measure:?}: {spread}, not {deviation}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_number_gives_the_same_draw_whatever_came_before_and_others_differ() {
+        let first = |purpose, index| generator(9, purpose, index).next_u64();
+        assert_eq!(first(Purpose::Person, 7), first(Purpose::Person, 7));
+        let mut all: Vec<u64> = (0..1000).map(|i| first(Purpose::Person, i)).collect();
+        all.push(first(Purpose::Sensor, 7));
+        all.sort_unstable();
+        all.dedup();
+        assert_eq!(all.len(), 1001);
+    }
+}
