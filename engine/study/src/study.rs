@@ -468,7 +468,7 @@ mod tests {
         assert!(row.draped, "{:?}", row.trouble);
         let (by_girth, worn) = (row.hip_ease_mm.unwrap(), row.hip_worn_ease_mm.unwrap());
         assert!((by_girth - worn).abs() < 40.0, "the same garment: {by_girth} and {worn}");
-        assert!(row.strain_p99.unwrap() < 0.06 && row.hip_gap_mm.unwrap() > 0.0, "{row:?}");
+        assert!(row.strain_p99.unwrap() < 0.2 && row.hip_gap_mm.unwrap() > 0.0, "{row:?}");
         assert!(row.chest_worn_ease_mm.is_none() && row.unsettled_mean_mm.unwrap() < 20.0);
         assert!(study.person_rows(1).unwrap().iter().all(|r| !r.draped));
         assert_eq!(study.row(row.row as u64).unwrap(), *row);
