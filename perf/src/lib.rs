@@ -7,7 +7,6 @@
 // Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
 pub mod agreement;
 pub mod backend;
-pub mod capture;
 pub mod crossings;
 pub mod depth;
 pub mod distance;
@@ -37,3 +36,5 @@ pub mod crossover;
 pub mod drape;
 pub mod measuring;
 pub mod pareto;
+
+pub mod capture;
