@@ -17,6 +17,10 @@ pub struct Failure {
 }
 
 impl Failure {
+    pub fn new(kind: ErrorKind, sentence: impl Display) -> Self {
+        Self { kind, sentence: sentence.to_string() }
+    }
+
     pub fn usage(sentence: impl Display) -> Self {
         Self { kind: ErrorKind::Usage, sentence: sentence.to_string() }
     }

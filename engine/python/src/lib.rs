@@ -24,6 +24,7 @@ mod garment;
 mod recording;
 mod scene;
 
+mod study;
 mod try_on;
 
 use pyo3::prelude::*;
@@ -44,6 +45,8 @@ mod _toile {
     use crate::recording::{DepthFrame, Measured, Recording, measure};
     #[pymodule_export]
     use crate::scene::Scene;
+    #[pymodule_export]
+    use crate::study::study_row;
     #[pymodule_export]
     use crate::track::Track;
     #[pymodule_export]

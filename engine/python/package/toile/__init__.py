@@ -29,6 +29,7 @@ from ._toile import (
     measure,
     measure_names,
     recommend,
+    study_row,
     try_on,
 )
 from .answers import (
@@ -79,5 +80,6 @@ __all__ = [
     "measure",
     "measure_names",
     "recommend",
+    "study_row",
     "try_on",
 ]
