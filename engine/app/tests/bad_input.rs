@@ -239,7 +239,7 @@ fn an_unknown_garment_or_size_is_told_what_there_is() {
     refused(&scratch, &["--garment", "sun-dress", "--garment", "crinoline"], &["crinoline", "choose"]);
     refused(&scratch, &["--garment", "sun-dress", "--size", "999"], &["999", "40", "choose"]);
     fs::write(scratch.path().join("band.obj"), band(24)).unwrap();
-    refused(&scratch, &["--garment", "band.obj", "--size", "40"], &["band.obj", "40", "--size"]);
+    refused(&scratch, &["--garment", "band.obj", "--size", "40"], &["band.obj", "40", "leave the size out"]);
 }
 
 #[test]

@@ -82,9 +82,10 @@ mod tests {
                 let all: Vec<f64> = people.iter().map(|p| f64::from(p.of(measure)) * 1e3).collect();
                 let found = all.iter().sum::<f64>() / all.len() as f64;
                 let spread = (all.iter().map(|x| (x - found).powi(2)).sum::<f64>() / (all.len() - 1) as f64).sqrt();
-                // Four standard errors of 400, and what the bounds of shapes cut off.
+                println!("{sex:?} {measure:?}: mean {found:.0} of {mean}, deviation {spread:.0} of {deviation}");
+                // Four standard errors of 400; the deviation of girths is a fifth smaller, since shapes are bounded (docs/study.md).
                 assert!((found - mean).abs() < 0.25 * deviation, "{sex:?} {measure:?}: mean {found}, not {mean}");
-                assert!((spread / deviation - 1.0).abs() < 0.2, "{sex:?} {measure:?}: {spread}, not {deviation}");
+                assert!((0.75..1.2).contains(&(spread / deviation)), "{sex:?} {measure:?}: {spread}, not {deviation}");
             }
         }
     }

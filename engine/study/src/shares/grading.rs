@@ -93,7 +93,8 @@ pub(super) fn steps(wearers: &Wearers, bootstrap: &Bootstrap) -> Vec<GradingStep
             }
         }
     }
-    found.sort_by(|a, b| b.gain.share.total_cmp(&a.gain.share));
+    // Of changes that help alike, one of a step comes before one of all sizes.
+    found.sort_by(|a, b| b.gain.share.total_cmp(&a.gain.share).then(b.from.is_some().cmp(&a.from.is_some())));
     found
 }
 
