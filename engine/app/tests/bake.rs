@@ -63,7 +63,7 @@ fn bake_tells_what_is_wrong_with_a_mesh_of_the_users() {
         (&["bake", "absent.obj"], "absent.obj"),
         (&["bake", "line.obj"], "nobody stands in it"),
         (&["bake", "sun-dress", "--size", "999"], "999"),
-        (&["bake", "strips.obj", "--size", "40"], "--size"),
+        (&["bake", "strips.obj", "--size", "40"], "leave the size out"),
         (&["bake", "sun-dress", "--fabric", "tin"], "toile fabric list"),
         (&["bake", "sun-dress", "--fabric", "wool.toml"], "wool.toml"),
     ];

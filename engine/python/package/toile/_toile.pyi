@@ -1,5 +1,5 @@
 from os import PathLike
-from typing import Literal, Mapping, Optional, Sequence, Tuple, Union, final
+from typing import List, Literal, Mapping, Optional, Sequence, Tuple, Union, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,6 +15,7 @@ _View: TypeAlias = Union[Literal["front", "side", "back"], float]
 _Garments: TypeAlias = Union[Garment, Sequence[Garment]]
 _Source: TypeAlias = Union[Recording, _Path, DepthFrame, Sequence[DepthFrame]]
 
+__all__: List[str]
 __version__: str
 TIME_STEP: float
 JOINTS: Tuple[str, ...]
@@ -183,7 +184,7 @@ class Scene:
     def body_faces(self) -> NDArray[np.uint32]: ...
     def snapshot(self) -> Snapshot: ...
     def picture(
-        self, view: Optional[_View] = None, *, size: Tuple[int, int] = (540, 960), look: _Look = "fabric"
+        self, view: Optional[_View] = None, *, size: Tuple[int, int] = ..., look: _Look = "fabric"
     ) -> NDArray[np.uint8]: ...
     @property
     def state_hash(self) -> int: ...
