@@ -29,7 +29,7 @@ def main(path, summary):
     by_pandas, by_polars = pandas.read_parquet(path), polars.read_parquet(path)
     assert len(by_pandas) == len(by_polars) == said["merged"]["rows"] == int(notes["toile.rows"])
     assert list(by_pandas.columns) == by_polars.columns
-    assert (by_pandas.row == range(len(by_pandas))).all()
+    assert list(by_pandas.row) == list(range(len(by_pandas)))
     for garment in said["summary"]["garments"]:
         name, share = garment["name"], garment["fitted"]["share"]
         tried = {note["name"]: note for note in json.loads(notes["toile.garments"])}[name]
