@@ -37,7 +37,7 @@ const MOST: [f64; 2] = [2.5, 16.5];
 const FOCUS: [u8; 3] = [255, 205, 96];
 
 /// The recording comes and goes; who presses something stays.
-const CONFIG: &str = "[sensor]\npause_s = 5.0\n[session]\nstep_out_s = 8.0\n[display]\nmotion = false\n";
+const CONFIG: &str = "[sensor]\npause_s = 12.0\n[session]\nstep_out_s = 8.0\n[display]\nmotion = false\n";
 
 /// The program at a window of its own.
 struct Kiosk {
