@@ -158,8 +158,7 @@ impl CoveredSamples {
         let (width, height) = (self.size.width as usize, self.size.height as usize);
         let w = width * SAMPLES;
         let mut arms = vec![0.0; width * height];
-        for (i, first) in self.first.iter().enumerate().filter(|(_, f)| **f == 2) {
-            let _ = first;
+        for i in (0..self.first.len()).filter(|i| self.first[*i] == 2) {
             arms[i / w / SAMPLES * width + i % w / SAMPLES] += 1.0 / (SAMPLES * SAMPLES) as f32;
         }
         let ends = |y: usize| {
