@@ -1,5 +1,5 @@
 from os import PathLike
-from typing import List, Literal, Mapping, Optional, Sequence, Tuple, Union, final
+from typing import Literal, Mapping, Optional, Sequence, Tuple, Union, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,7 +15,26 @@ _View: TypeAlias = Union[Literal["front", "side", "back"], float]
 _Garments: TypeAlias = Union[Garment, Sequence[Garment]]
 _Source: TypeAlias = Union[Recording, _Path, DepthFrame, Sequence[DepthFrame]]
 
-__all__: List[str]
+__all__ = [
+    "Body",
+    "DepthFrame",
+    "Garment",
+    "JOINTS",
+    "Measured",
+    "Recording",
+    "Scene",
+    "TIME_STEP",
+    "Track",
+    "__version__",
+    "fabric_names",
+    "fit_colours",
+    "garment_names",
+    "measure",
+    "measure_names",
+    "recommend",
+    "study_row",
+    "try_on",
+]
 __version__: str
 TIME_STEP: float
 JOINTS: Tuple[str, ...]
