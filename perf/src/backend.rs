@@ -27,14 +27,20 @@ pub struct Adapter {
     pub driver: String,
 }
 
+impl Adapter {
+    /// What a report says of an adapter.
+    pub fn of(adapter: &toile_gpu::Adapter) -> Self {
+        Self { name: adapter.name.clone(), kind: adapter.kind, driver: adapter.driver.clone() }
+    }
+}
+
 impl SteppedBy {
     /// The means of a run, after it.
     pub fn of(backends: &Backends) -> Self {
-        let adapter = |a: &toile_gpu::Adapter| Adapter { name: a.name.clone(), kind: a.kind, driver: a.driver.clone() };
         Self {
             asked: backends.asked().name(),
             backend: backends.used(),
-            adapter: backends.adapter().map(adapter),
+            adapter: backends.adapter().map(Adapter::of),
             fallen: backends.fallback().map(str::to_owned),
         }
     }

@@ -37,6 +37,10 @@ const STRAIN: [f64; 2] = [0.01, 1.0];
 /// How far a particle may then be from where the processor has it at the end, in the mean of all (m): the swing of the hem.
 const SWING_M: f64 = 0.1;
 
+/// How much nearer to the oracle's equilibrium a settled skirt may be on a device, or farther, in parts: it creeps on for a while,
+/// and where it has got to in ten seconds is a matter of last bits; an NVIDIA H200 came 3 % nearer.
+const SETTLED: f64 = 0.1;
+
 /// Whatever steps on a device; none where this machine has none, which CI does not excuse.
 fn device() -> Option<Backends> {
     let backends = Backends::open(Backend::Gpu);
@@ -168,7 +172,7 @@ fn the_settled_skirt_is_as_near_to_the_oracle_as_the_processors() {
     });
     println!("{cpu:e} m and {gpu:e} m from the oracle");
     assert!(cpu < 1e-3 && gpu < 1e-3, "{cpu} m and {gpu} m from the oracle");
-    assert!((gpu / cpu - 1.0).abs() < if exact(&backends) { f64::EPSILON } else { 0.01 }, "{cpu} m and {gpu} m");
+    assert!((gpu / cpu - 1.0).abs() < if exact(&backends) { f64::EPSILON } else { SETTLED }, "{cpu} m and {gpu} m");
 }
 
 /// A run's word on what stepped it.

@@ -119,6 +119,9 @@ fn bench_skinning_reports_time_and_error_together() {
     assert_eq!(output.status.code(), Some(0));
     let text = stdout(&output);
     assert!(text.contains("500 vertices") && text.contains("ns a vertex") && !text.contains('\x1b'), "{text}");
+
+    let output = toile(&["bench", "skinning", "--backend", "gpu", "--dual"]);
+    assert_eq!(output.status.code(), Some(2), "what is reported anyway is no option");
 }
 
 #[test]

@@ -13,9 +13,17 @@ pub fn adapters() -> Vec<Adapter> {
     FOUND.get_or_init(look).clone()
 }
 
+/// The instance of this process. There is one only: a driver that is unloaded and loaded again with each may not come back;
+/// NVIDIA's did not after some thirty times. It asks the drivers of the first choice only, because others speak to a display.
+pub fn instance() -> Instance {
+    static INSTANCE: OnceLock<Instance> = OnceLock::new();
+    let asked =
+        || InstanceDescriptor { backends: Backends::PRIMARY, ..InstanceDescriptor::new_without_display_handle() };
+    INSTANCE.get_or_init(|| Instance::new(asked())).clone()
+}
+
 fn look() -> Vec<Adapter> {
-    let instance = Instance::new(InstanceDescriptor::new_without_display_handle());
-    let found = block_on(instance.enumerate_adapters(Backends::PRIMARY));
+    let found = block_on(instance().enumerate_adapters(Backends::PRIMARY));
     let mut adapters: Vec<Adapter> = found.iter().map(|a| describe(&a.get_info())).collect();
     adapters.sort_by_key(|a| a.kind == "software");
     adapters

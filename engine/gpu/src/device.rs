@@ -5,9 +5,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
-use wgpu::{Backends, DeviceType, Instance, InstanceDescriptor, Limits, MemoryHints, Surface};
+use wgpu::{Backends, DeviceType, Instance, Limits, MemoryHints, Surface};
 
-use crate::adapters::describe;
+use crate::adapters::{self, describe};
 use crate::wait::block_on;
 
 /// Why a GPU cannot compute the cloth, or draw it. Whoever gets one for the cloth goes on with the CPU.
@@ -131,9 +131,9 @@ pub struct Device {
 }
 
 impl Device {
-    /// An instance without a window system of its own: it sees every driver of this machine.
+    /// The instance without a window system of its own: it sees every driver of this machine.
     pub fn instance() -> Instance {
-        Instance::new(InstanceDescriptor::new_without_display_handle())
+        adapters::instance()
     }
 
     /// Opens the chosen adapter, to compute.

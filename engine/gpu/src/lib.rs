@@ -41,9 +41,10 @@ mod shader;
 #[cfg(feature = "wgpu")]
 pub mod cloth;
 
-pub mod graphics;
 #[cfg(feature = "wgpu")]
 pub mod skin;
+
+pub mod graphics;
 
 pub mod backend;
 

@@ -21,4 +21,7 @@ pub enum SkinningError {
     /// Lanes that this processor lacks.
     #[error("this processor has no {0} lanes; ask for fewer, or leave `--lanes` out")]
     NoSuchLanes(Width),
+    /// There is no graphics device, or it refuses; the sentence has the cure.
+    #[error("{0}")]
+    Device(String),
 }

@@ -1,9 +1,10 @@
-//! The skinning benchmark: the engine's kernels, linear and dual, against the yardstick, each with its error.
+//! The skinning benchmark: the engine's kernels, linear and dual, against the yardstick, each with its error; and a device's.
 //!
 //! Reads: the scene's shopper in the middle of a step. Writes: times, ratios to the yardstick, errors against f64, lanes.
 //! Budget: some seconds a measurement.
 //! Thread: the caller's, and the pool's where two are asked for.
 
+pub mod device;
 mod error;
 mod oracle;
 mod picture;

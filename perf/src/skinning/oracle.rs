@@ -18,16 +18,27 @@ pub struct SurfaceErrors {
 
 /// Compares a posed surface with the oracle.
 pub fn compare(surface: &Surface, blend: Blend, posed: &Posed) -> SurfaceErrors {
+    compare_each(surface, blend, posed.vertices(), |v| [posed.position(v), posed.normal(v)])
+}
+
+/// The same for the first `count` vertices, of which `posed` gives position (m) and unit normal.
+pub(super) fn compare_each(
+    surface: &Surface,
+    blend: Blend,
+    count: usize,
+    posed: impl Fn(usize) -> [Vec3; 2],
+) -> SurfaceErrors {
     let duals = duals(&surface.palette);
     let mut worst = SurfaceErrors::default();
-    for v in 0..posed.vertices() {
+    for v in 0..count {
+        let [position, normal] = posed(v);
         let rest = [surface.positions[v], surface.normals[v]].map(|x| x.as_dvec3());
         let [p, n] = match blend {
             Blend::Linear => linear(&surface.palette, &surface.weights[v], rest),
             Blend::Dual => dual(&duals, &surface.weights[v], rest),
         };
-        worst.position_m = worse(worst.position_m, posed.position(v).as_dvec3().distance(p));
-        worst.normal_rad = worse(worst.normal_rad, posed.normal(v).as_dvec3().distance(n));
+        worst.position_m = worse(worst.position_m, position.as_dvec3().distance(p));
+        worst.normal_rad = worse(worst.normal_rad, normal.as_dvec3().distance(n));
     }
     worst
 }

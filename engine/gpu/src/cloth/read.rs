@@ -53,11 +53,24 @@ impl Offload {
         self.opened.device.answers(self.ring.waiting())
     }
 
-    /// Waits for everything that was sent, and takes it in. Never in the frame.
+    /// Waits for everything that was sent, and takes in the newest step, also where the ring had no place for it. Never in the
+    /// frame.
     ///
     /// # Errors
     /// [`GpuError::Lost`].
     pub fn finish(&mut self) -> Result<(), GpuError> {
+        self.arrive()?;
+        if self.ring.behind {
+            // All places are free now.
+            let encoder = self.encoder();
+            self.submit(encoder);
+            self.arrive()?;
+        }
+        Ok(())
+    }
+
+    /// Waits for what is on its way back, and takes it in.
+    fn arrive(&mut self) -> Result<(), GpuError> {
         self.opened.device.done()?;
         // Another thread that polled the device may be about to say that it has come back.
         while self.ring.waiting().is_some() {

@@ -21,6 +21,8 @@ pub struct ReadbackRing {
     places: [StagingBuffer; PLACES],
     /// Number of the newest step that was taken.
     newest: u64,
+    /// Whether the newest step was dropped because no place was free: what was read last is older than what the device has.
+    pub behind: bool,
     /// Steps that were sent, came back, and were dropped because no place was free.
     pub tally: ReadbackCounts,
 }
@@ -63,13 +65,15 @@ impl ReadbackRing {
             let buffer = device.create_buffer(&descriptor);
             StagingBuffer { buffer, state: Arc::new(AtomicU8::new(FREE)), number: 0, since: Instant::now() }
         };
-        Self { places: [place(), place(), place()], newest: 0, tally: ReadbackCounts::default() }
+        Self { places: [place(), place(), place()], newest: 0, behind: false, tally: ReadbackCounts::default() }
     }
 
     /// Lets the parts of a step, one behind the other, be copied to a free place; gives the place, none where the step is
     /// dropped.
     pub fn send(&mut self, encoder: &mut CommandEncoder, parts: &[BufferSlice<'_>]) -> Option<usize> {
-        let Some(free) = self.places.iter().position(|p| p.is(FREE)) else {
+        let free = self.places.iter().position(|p| p.is(FREE));
+        self.behind = free.is_none();
+        let Some(free) = free else {
             self.tally.dropped += 1;
             return None;
         };

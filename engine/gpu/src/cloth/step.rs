@@ -58,7 +58,7 @@ impl Offload {
     }
 
     /// Sends commands, and what they leave behind them back.
-    fn submit(&mut self, mut encoder: CommandEncoder) {
+    pub(super) fn submit(&mut self, mut encoder: CommandEncoder) {
         let ClothBuffers { good, state, reports, .. } = &self.buffers;
         let velocities = state.slice(2 * good.size()..3 * good.size());
         let place = self.ring.send(&mut encoder, &[good.slice(..), velocities, reports.slice(..)]);

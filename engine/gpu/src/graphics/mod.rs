@@ -1,4 +1,4 @@
-//! An open device with the cloth's kernels, and garments on it whose state is a [`Cloth`](toile_engine::cloth::Cloth);
+//! An open device with the cloth's kernels, garments on it whose state is a [`Cloth`](toile_engine::cloth::Cloth), and skins;
 //! in a build without GPU support opening one is an error.
 //!
 //! Reads: cloths, and what surrounds them in a step. Writes: the same cloths, after the step.
@@ -12,8 +12,13 @@ mod with_wgpu;
 mod without_wgpu;
 
 #[cfg(feature = "wgpu")]
+mod device_skins;
+
+#[cfg(feature = "wgpu")]
+pub use device_skins::DeviceSkins;
+#[cfg(feature = "wgpu")]
 pub use with_wgpu::{DeviceGarments, Graphics};
 #[cfg(not(feature = "wgpu"))]
-pub use without_wgpu::{DeviceGarments, Graphics};
+pub use without_wgpu::{DeviceGarments, DeviceSkins, Graphics};
 
 pub use crate::device_work::{StageTimes, StepWork};

@@ -8,6 +8,7 @@
 //! The arithmetic is that of `toile_engine::skin`, vertex by vertex; docs/gpu.md says where the bits can differ.
 
 mod buffers;
+mod device_time;
 pub mod flat;
 pub mod kernels;
 mod read;
@@ -17,7 +18,7 @@ use std::ops::Range;
 use glam::{Affine3A, Vec3};
 use toile_assets::skeleton::BONES;
 use toile_engine::skin::{Blend, DualQuat, SkinningJob, dual_palette};
-use wgpu::{Buffer, CommandEncoderDescriptor, ComputePassDescriptor};
+use wgpu::{Buffer, CommandEncoder, CommandEncoderDescriptor, ComputePass, ComputePassDescriptor};
 
 use crate::cloth::flat::Workgroups;
 use crate::cloth::readback::{ReadbackCounts, ReadbackRing};
@@ -101,21 +102,28 @@ impl Skinning {
 
     /// One dispatch over the first so many bodies.
     fn submit(&mut self, device: &Device, blend: Blend, bodies: usize) {
-        let descriptor = CommandEncoderDescriptor { label: Some("skin") };
-        let mut encoder = device.device.create_command_encoder(&descriptor);
-        let groups = self.groups.of(bodies);
-        if groups > 0 {
-            let descriptor = ComputePassDescriptor { label: Some("skin"), ..Default::default() };
-            let mut pass = encoder.begin_compute_pass(&descriptor);
-            pass.set_pipeline(&self.buffers.pipelines[blend as usize]);
-            pass.set_bind_group(0, &self.buffers.bound, &[]);
-            pass.dispatch_workgroups(groups, 1, 1);
-        }
+        let mut encoder = encoder(device);
+        let descriptor = ComputePassDescriptor { label: Some("skin"), ..Default::default() };
+        self.dispatch(&mut encoder.begin_compute_pass(&descriptor), blend, bodies);
+        self.send(device, encoder, self.fetch);
+    }
+
+    /// Sends commands, and lets what they leave behind them come back where that is wanted.
+    fn send(&mut self, device: &Device, mut encoder: CommandEncoder, back: bool) {
         let parts = [self.buffers.positions.slice(..), self.buffers.normals.slice(..)];
-        let place = if self.fetch { self.ring.send(&mut encoder, &parts) } else { None };
+        let place = if back { self.ring.send(&mut encoder, &parts) } else { None };
         device.queue.submit([encoder.finish()]);
         if let Some(place) = place {
             self.ring.ask(place);
+        }
+    }
+
+    fn dispatch(&self, pass: &mut ComputePass<'_>, blend: Blend, bodies: usize) {
+        let groups = self.groups.of(bodies);
+        if groups > 0 {
+            pass.set_pipeline(&self.buffers.pipelines[blend as usize]);
+            pass.set_bind_group(0, &self.buffers.bound, &[]);
+            pass.dispatch_workgroups(groups, 1, 1);
         }
     }
 
@@ -160,6 +168,10 @@ impl Skinning {
     pub fn bytes(&self) -> u64 {
         self.buffers.bytes
     }
+}
+
+fn encoder(device: &Device) -> CommandEncoder {
+    device.device.create_command_encoder(&CommandEncoderDescriptor { label: Some("skin") })
 }
 
 /// The rows of each bone's matrix.

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::Skinning;
+use super::{Skinning, encoder};
 use crate::device::{Device, GpuError};
 
 impl Skinning {
@@ -42,11 +42,24 @@ impl Skinning {
         device.answers(self.ring.waiting())
     }
 
-    /// Waits for everything that was sent, and takes it in. Never in the frame.
+    /// Waits for everything that was sent, and takes in the newest step that was to be sent back, also where the ring had no
+    /// place for it. Never in the frame.
     ///
     /// # Errors
     /// [`GpuError::Lost`].
     pub fn finish(&mut self, device: &Device) -> Result<(), GpuError> {
+        self.arrive(device)?;
+        if self.ring.behind {
+            // All places are free now.
+            let encoder = encoder(device);
+            self.send(device, encoder, true);
+            self.arrive(device)?;
+        }
+        Ok(())
+    }
+
+    /// Waits for what is on its way back, and takes it in.
+    fn arrive(&mut self, device: &Device) -> Result<(), GpuError> {
         device.done()?;
         // Another thread that polled the device may be about to say that it has come back.
         while self.ring.waiting().is_some() {

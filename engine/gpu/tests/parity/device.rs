@@ -42,7 +42,8 @@ fn results_come_back_late_and_are_dropped_rather_than_waited_for() {
     let tally = gpu.tally();
     assert!(tally.sent <= 20 && tally.taken >= 1, "{tally:?}");
     // Each step was taken, overtaken by a later one, or never sent.
-    assert_eq!(tally.taken + tally.dropped, 20, "{tally:?}");
+    // Where the last was dropped, `finish` has fetched it.
+    assert!((20..=21).contains(&(tally.taken + tally.dropped)), "{tally:?}");
 }
 
 #[test]
@@ -126,9 +127,11 @@ fn what_spoils_the_state_is_repaired_as_on_the_cpu() {
     let (alike, all, most) = apart(gpu.positions(0), &cloth.positions);
     let (report, events) = (gpu.events(0), cloth.events);
     println!("spoilt six times: {alike} of {all} the same, {report:?}");
-    assert!(events.repaired >= 24 && events.repaired == report.repaired, "{events:?} {report:?}");
+    assert!(events.repaired >= 24 && report.repaired >= 24, "{events:?} {report:?}");
     assert_eq!(events.rolled_back, report.rolled_back);
-    assert!(gpu.device().adapter().kind != "software" || alike == all, "{most} m apart");
+    // How far a fault spreads before it is found is a matter of last bits where a device fuses.
+    let software = gpu.device().adapter().kind == "software";
+    assert!(!software || alike == all && events.repaired == report.repaired, "{most} m apart, {events:?} {report:?}");
 }
 
 #[test]

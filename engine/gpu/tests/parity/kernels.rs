@@ -19,9 +19,12 @@ use toile_gpu::cloth::Kernel;
 
 use crate::scene::{apart, around, disturbed, nobody, offload, skirt, swaying, worn};
 
-/// What a kernel may be off by on a device that fuses products and sums (m, m/s). A tenth of the f32 rounding of a metre, a
+/// What a kernel may be off by on a device that fuses products and sums (m). A tenth of the f32 rounding of a metre, a
 /// hundredfold: a fiber's system carries errors of its upper links down.
 const BOUND: f32 = 1e-5;
+
+/// The same of a velocity (m/s): a unit in the last place of a coordinate of 1 to 2 m, 1.2e-7 m, over a substep of 1/480 s.
+const VELOCITY_BOUND: f32 = 6e-5;
 
 /// A garment's CPU side of a substep.
 struct Twin<'a> {
@@ -204,7 +207,7 @@ fn held(name: &str, garment: &Garment, settings: &Settings, kernel: Kernel) {
     let (same_v, _, most_v) = apart(&got.v, &expected.1);
     let moved = apart(&expected.0, &x).2.max(apart(&expected.1, &v).2);
     println!("{name} {kernel:?}: {same_x} and {same_v} of {all} the same, {most_x} m and {most_v} m/s apart");
-    assert!(most_x <= BOUND && most_v <= BOUND, "{name} {kernel:?}: {most_x} m, {most_v} m/s");
+    assert!(most_x <= BOUND && most_v <= VELOCITY_BOUND, "{name} {kernel:?}: {most_x} m, {most_v} m/s");
     if gpu.device().adapter().kind == "software" {
         assert_eq!((same_x, same_v), (all, all), "{name} {kernel:?}: {most_x} m, {most_v} m/s");
     }

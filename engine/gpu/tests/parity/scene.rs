@@ -7,7 +7,7 @@ use toile_assets::garment::Garment;
 use toile_assets::scene::skirt::{self, Stretch};
 use toile_assets::skeleton::BONES;
 use toile_assets::wardrobe;
-use toile_engine::cloth::{Settings, Step};
+use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere};
 use toile_gpu::cloth::Offload;
 use toile_gpu::device::{AdapterChoice, GpuError};
@@ -105,4 +105,16 @@ pub fn apart(one: &[Vec3A], other: &[Vec3A]) -> (usize, usize, f32) {
     let pairs = one.iter().zip(other).flat_map(|(a, b)| a.to_array().into_iter().zip(b.to_array()));
     // -0 and 0 are the same place.
     pairs.fold((0, 0, 0.0), |(same, all, most), (a, b)| (same + usize::from(a == b), all + 1, (a - b).abs().max(most)))
+}
+
+/// Changes the last bit of each coordinate of about half of a cloth's free particles, other ones in every step: what rounds
+/// otherwise does at least that.
+pub fn nudge(cloth: &mut Cloth, garment: &Garment, chance: &mut u64) {
+    for i in (0..garment.particles()).filter(|&i| garment.inverse_mass[i] > 0.0) {
+        // Knuth's multiplier, and the upper bits, which are the better ones.
+        *chance = chance.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let (at, velocity, bits) = (cloth.positions[i], cloth.velocity(i), (*chance >> 61) as u32);
+        let flipped = |k: u32| f32::from_bits(at[k as usize].to_bits() ^ ((bits >> k) & 1));
+        cloth.disturb(i, Vec3A::new(flipped(0), flipped(1), flipped(2)), velocity);
+    }
 }

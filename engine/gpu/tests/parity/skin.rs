@@ -184,7 +184,8 @@ fn a_skin_comes_back_late_is_dropped_rather_than_waited_for_and_not_sent_unasked
     gpu.finish(&device).expect("the last step comes back");
     let tally = gpu.tally();
     assert!(tally.sent <= 20 && tally.taken >= 1, "{tally:?}");
-    assert_eq!(tally.taken + tally.dropped, 20, "{tally:?}");
+    // Where the last was dropped, `finish` has fetched it.
+    assert!((20..=21).contains(&(tally.taken + tally.dropped)), "{tally:?}");
     let before = gpu.positions(0).to_vec();
     gpu.fetch = false;
     let away = [Affine3A::from_translation(Vec3::X); BONES];

@@ -5,52 +5,88 @@ use toile_assets::garment::Garment;
 use toile_assets::scene::skirt::{self as scene, Motion, Stretch};
 use toile_engine::cloth::{Cloth, Quality, RootSettings, Settings, Wind, measure};
 
-use crate::scene::{REST, apart, around, irregular, nobody, offload, offload_worn, skirt, swaying, walker, worn};
+use crate::scene::{
+    REST, apart, around, irregular, nobody, nudge, offload, offload_worn, skirt, swaying, walker, worn,
+};
 
 /// How the body walks.
 const MOTION: Motion = Motion::Walk;
 
-/// Mean distance that up to 20 steps, and a second of them, may leave between two devices of which one fuses products and
-/// sums (m). A hem that swings free doubles what sets it off every few steps: one last bit of one link grew to 3 um and 5 mm.
-const MEAN: [f32; 2] = [1e-4, 2e-2];
+/// How much farther from the processor a device that fuses products and sums may come than the processor itself does with last
+/// bits changed before every step, and what both may (m). A hem that swings free doubles what sets it off every few steps, and the
+/// device rounds otherwise in each phase of each substep.
+const OF_NUDGED: f32 = 8.0;
+const ANY: f32 = 1e-5;
 
-/// Steps garments on both; gives the mean distance (m) of each at the end, whether all bits are the same, and whether they
-/// have to be.
-fn both(garments: &[&Garment], settings: impl Fn(usize) -> Settings, steps: usize) -> Option<(Vec<f32>, bool, bool)> {
+/// Whether a device is no farther off than it may be: its distance and the nudged processor's (m).
+fn near(off: f32, nudged: f32) -> bool {
+    off <= ANY + OF_NUDGED * nudged
+}
+
+/// How garments came out on both.
+struct Outcome {
+    /// Mean distance of each garment to the processor's (m): the device's, and that of the processor with last bits changed.
+    means: Vec<[f32; 2]>,
+    /// Whether all bits are the same.
+    same: bool,
+    /// Whether they have to be.
+    software: bool,
+}
+
+impl Outcome {
+    fn hold(&self) {
+        assert!(self.means.iter().all(|[off, nudged]| near(*off, *nudged)), "{:?} m apart", self.means);
+        assert!(self.same || !self.software, "{:?} m apart on an adapter that fuses nothing", self.means);
+    }
+}
+
+/// Mean and largest distance of particles (m).
+fn distance(one: &[Vec3A], other: &[Vec3A]) -> [f32; 2] {
+    let each = || one.iter().zip(other).map(|(a, b)| a.distance(*b));
+    [each().sum::<f32>() / one.len() as f32, each().fold(0.0, f32::max)]
+}
+
+/// Steps garments on both, and on the processor with last bits changed.
+fn both(garments: &[&Garment], settings: impl Fn(usize) -> Settings, steps: usize) -> Option<Outcome> {
     let mut gpu = offload(garments, &settings(0))?;
     let colliders = nobody();
     let mut cloths: Vec<Cloth> = garments.iter().map(|g| Cloth::new(g, &colliders).in_wind(g)).collect();
+    let (mut nudged, mut chance) = (cloths.clone(), 1);
     for n in 0..steps {
         let palette = swaying(n);
         let settings = &settings(n);
         let all: Vec<_> = garments.iter().map(|_| around(&palette, &colliders, settings)).collect();
-        for ((cloth, garment), step) in cloths.iter_mut().zip(garments).zip(&all) {
+        for (((cloth, nudged), garment), step) in cloths.iter_mut().zip(&mut nudged).zip(garments).zip(&all) {
             cloth.step(garment, step);
+            nudge(nudged, garment, &mut chance);
+            nudged.step(garment, step);
         }
         gpu.step(garments, &all).expect("the step is sent");
     }
     gpu.finish().expect("the last step comes back");
     let (mut means, mut same) = (Vec::new(), true);
     for (k, (cloth, garment)) in cloths.iter_mut().zip(garments).enumerate() {
-        let (alike, all, most) = apart(gpu.positions(k), &cloth.positions);
-        let pairs = gpu.positions(k).iter().zip(&*cloth.positions);
-        let mean = pairs.map(|(a, b)| a.distance(*b)).sum::<f32>() / cloth.positions.len() as f32;
+        let (alike, all, _) = apart(gpu.positions(k), &cloth.positions);
+        let [[mean, most], [shaken, _]] =
+            [gpu.positions(k), &nudged[k].positions].map(|other| distance(other, &cloth.positions));
         let strain = measure::strain(cloth, garment).mean * 100.0;
-        println!("{}: {alike} of {all} the same, mean {mean} m, most {most} m, strain {strain} %", garment.name);
+        println!(
+            "{}: {alike} of {all} the same, mean {mean} m ({shaken} m by last bits alone), most {most} m, strain {strain} %",
+            garment.name
+        );
         assert_eq!(gpu.events(k).rolled_back, 0);
         assert_eq!(gpu.events(k).speed_limited, cloth.events.speed_limited);
         assert_eq!(gpu.substeps(k), cloth.substeps());
-        means.push(mean);
+        means.push([mean, shaken]);
         same &= alike == all;
     }
-    Some((means, same, gpu.device().adapter().kind == "software"))
+    Some(Outcome { means, same, software: gpu.device().adapter().kind == "software" })
 }
 
 fn held(garments: &[&Garment], settings: &Settings, steps: usize) {
-    let Some((means, same, software)) = both(garments, |_| *settings, steps) else { return };
-    let bound = MEAN[usize::from(steps > 20)];
-    assert!(means.iter().all(|m| *m <= bound), "{means:?} m apart");
-    assert!(same || !software, "{means:?} m apart on an adapter that fuses nothing");
+    if let Some(outcome) = both(garments, |_| *settings, steps) {
+        outcome.hold();
+    }
 }
 
 #[test]
@@ -58,12 +94,15 @@ fn a_second_of_the_skirt_is_the_cpus() {
     held(&[&skirt(20, Stretch::Inextensible)], &Settings::default(), 120);
 }
 
+/// Mean distance that six steps with cyclic reduction may leave (m): it rounds in another order, on whatever device.
+const CYCLIC: f32 = 1e-4;
+
 #[test]
 fn a_skirt_of_long_fibers_stays_near_the_cpus() {
     let garment = skirt(98, Stretch::Inextensible);
-    let Some((means, same, _)) = both(&[&garment], |_| Settings::default(), 6) else { return };
+    let Some(Outcome { means, same, .. }) = both(&[&garment], |_| Settings::default(), 6) else { return };
     assert!(!same, "cyclic reduction rounds otherwise: was it run?");
-    assert!(means[0] <= MEAN[0], "{means:?} m apart");
+    assert!(means[0][0] <= CYCLIC, "{means:?} m apart");
 }
 
 /// Steps the skirt on its walking body, `speed` times as fast as it walks.
@@ -72,6 +111,7 @@ fn walked(n: usize, speed: f64, steps: usize) {
     let mut colliders = walker();
     let Some(mut gpu) = offload_worn(&[&garment], &[&colliders], &settings) else { return };
     let mut cloth = Cloth::new(&garment, &colliders);
+    let (mut nudged, mut chance) = (cloth.clone(), 1);
     let mut palette = REST;
     for k in 0..steps {
         let time = speed * k as f64 / 120.0;
@@ -79,17 +119,22 @@ fn walked(n: usize, speed: f64, steps: usize) {
         colliders.place_spheres(&scene::spheres(MOTION, time));
         let step = around(&palette, &colliders, &settings);
         cloth.step(&garment, &step);
+        nudge(&mut nudged, &garment, &mut chance);
+        nudged.step(&garment, &step);
         gpu.step(&[&garment], &[step]).expect("the step is sent");
     }
     gpu.finish().expect("the last step comes back");
     let tally = cloth.contact_counts();
     let (alike, all, most) = apart(gpu.positions(0), &cloth.positions);
-    println!("walking skirt x {speed}: {alike} of {all} the same, most {most} m, {tally:?}");
+    let [off, shaken] = [gpu.positions(0), &nudged.positions].map(|other| distance(other, &cloth.positions)[0]);
+    println!(
+        "walking skirt x {speed}: {alike} of {all} the same, mean {off} m ({shaken} m by last bits alone), {tally:?}"
+    );
     assert!(tally.near > 0, "the body was not met");
     assert!(speed < 2.0 || tally.swept > 0, "nothing was fast");
     let software = gpu.device().adapter().kind == "software";
     assert!(!software || alike == all, "{most} m apart on an adapter that fuses nothing");
-    assert!(most < 0.05, "{most} m apart");
+    assert!(near(off, shaken), "{off} m apart, {shaken} m by last bits alone");
     assert_eq!((gpu.events(0).rolled_back, cloth.events.rolled_back), (0, 0));
 }
 
@@ -160,8 +205,9 @@ fn settings_may_change_from_step_to_step() {
     let each = [blown(false, false), blown(true, false), blown(true, true), blown(false, true)];
     let few = |s: Settings| Settings { substep_share: 0.5, ..s };
     let all: Vec<Settings> = each.into_iter().flat_map(|s| [s, few(s)]).collect();
-    let Some((_, same, software)) = both(&garments, |n| all[n % all.len()], 16) else { return };
-    assert!(same || !software, "another result on an adapter that fuses nothing");
+    if let Some(outcome) = both(&garments, |n| all[n % all.len()], 16) {
+        outcome.hold();
+    }
 }
 
 #[test]

@@ -44,7 +44,11 @@ pub struct SkinningArgs {
     /// Lanes of the kernels (default: the widest of this processor)
     #[arg(long, value_name = "L", value_parser = lanes())]
     lanes: Option<Width>,
-    /// Run every row of the table, and the volumes of limbs; takes half a minute
+    /// cpu, or gpu: skin on a graphics device as well, and report its times and errors beside the processor's
+    #[arg(long, value_name = "B", value_parser = ["cpu", "gpu"], default_value = "cpu", conflicts_with = "picture")]
+    backend: String,
+    /// Run every row of the table, and the volumes of limbs; takes half a minute. With --backend gpu: surfaces up to a million
+    /// vertices, and up to 64 bodies
     #[arg(long)]
     table: bool,
     /// Draw the twist test into DIR/twist.png instead: the forearm by each blend, split and not
@@ -75,6 +79,19 @@ pub fn run(args: &SkinningArgs) -> Result<(), AppError> {
     if let Some(folder) = &args.picture {
         return twist(folder, args.json);
     }
+    if args.backend == "gpu" {
+        if args.dual || args.threads != 1 {
+            let words = "with `--backend gpu` both blends and both numbers of threads are reported; leave `--dual` and `--threads` out";
+            return Err(AppError::Usage(words.to_owned()));
+        }
+        let words = Words::new(args.json);
+        let found = skinning::device::run(&args.options(), args.table, &mut |case| words.print_line(case));
+        let found = found.map_err(refused)?;
+        if args.json {
+            return terminal::print_json(&Document::new("bench-skinning-device", found));
+        }
+        return terminal::print(&found.markdown());
+    }
     if args.table {
         let words = Words::new(args.json);
         let table = skinning::table::run(&mut |case| words.print_line(case)).map_err(refused)?;
@@ -104,7 +121,9 @@ fn twist(folder: &Path, json: bool) -> Result<(), AppError> {
 
 fn refused(error: SkinningError) -> AppError {
     match error {
-        SkinningError::NoSuchLanes(_) | SkinningError::WorkerPool(_) => AppError::Device(error.to_string()),
+        SkinningError::NoSuchLanes(_) | SkinningError::WorkerPool(_) | SkinningError::Device(_) => {
+            AppError::Device(error.to_string())
+        }
         SkinningError::Body(_) | SkinningError::Skin(_) => AppError::internal(error),
     }
 }
