@@ -112,6 +112,15 @@ impl BodyModel {
         Self { morphs, gauge, people: People::new(sex, &drawn), drawn_stature }
     }
 
+    /// A person's readings (m), by independent standard normal numbers.
+    pub(super) fn person(&self, normal: &[f64; READINGS]) -> [f32; READINGS] {
+        let People { mean, factor } = &self.people;
+        std::array::from_fn(|i| {
+            let by: f64 = factor[i].iter().zip(normal).map(|(l, z)| l * z).sum();
+            (mean[i] + by) as f32
+        })
+    }
+
     /// The base as it is.
     pub(super) fn as_drawn(&self) -> Calibrated {
         let setting = Setting { sliders: [0.0; SLIDERS], scale: 1.0 };

@@ -24,6 +24,9 @@ pub const SCALE: usize = SLIDERS;
 /// Pivots below this are raised to it: directions in which nobody strays.
 const LEAST_PIVOT: f64 = 1e-12;
 
+/// Number of independent numbers that a person of the survey is drawn by.
+pub const DRAWN: usize = READINGS;
+
 /// A body's shape: all parameters at 0 are the body as it is drawn.
 pub type BodyShape = ParameterVector;
 
@@ -82,6 +85,13 @@ impl Shapes {
     /// parameters about the mean (symmetric), linearised there.
     pub fn precision(&self) -> &[BodyShape; SHAPES] {
         &self.precision
+    }
+
+    /// What the tape reads on a person of the survey (m), drawn by independent standard normal numbers: with the survey's own
+    /// deviations and correlations. Bodies drawn by [`Shapes::covariance`] are more alike than people are: to that, what is
+    /// expected of a shape as such counts beside the survey.
+    pub fn person(&self, normal: &[f64; DRAWN]) -> Readings {
+        Readings(self.model.person(normal))
     }
 
     /// The covariance of people's parameters about the mean: the inverse of [`Shapes::precision`].

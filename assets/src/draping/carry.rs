@@ -1,7 +1,9 @@
-//! From a level to the next finer one: each vertex goes where its panel's cloth was, by its place in the panel's drawing.
+//! Cloth taken along: from a level to the next finer one, each vertex where its panel's cloth was by its place in the panel's
+//! drawing; and from one body to another, with the skin.
 
 use glam::{DVec2, Vec3};
 
+use crate::body::Body;
 use crate::garment::check::corners;
 use crate::tailor::{PanelMesh, SewnMesh};
 
@@ -20,6 +22,29 @@ pub fn carry(coarse: &SewnMesh, at: &[Vec3], fine: &SewnMesh) -> Vec<Vec3> {
         }
     }
     out
+}
+
+/// How far the pull of a vertex of the skin reaches beside cloth that lies on it (m): what is nearer than that counts alike.
+const REACH_M: f32 = 0.02;
+
+/// Every so manieth vertex of the skin tells how it moves: neighbours move alike.
+const SKIN_EVERY: usize = 3;
+
+/// Places of cloth that hangs on one body, taken along to another of the same mesh: each moves as the skin around it does, nearer
+/// skin counting by the inverse sixth power of its distance (m) `[vertices]`.
+pub fn carry_over(from: &Body, to: &Body, at: &[Vec3]) -> Vec<Vec3> {
+    let skin: Vec<[Vec3; 2]> =
+        from.mesh.positions.iter().zip(&to.mesh.positions).step_by(SKIN_EVERY).map(|(a, b)| [*a, *b - *a]).collect();
+    let moved = |p: &Vec3| {
+        let mut sum = (Vec3::ZERO, 0.0);
+        for [place, motion] in &skin {
+            let near = (p.distance_squared(*place) + REACH_M * REACH_M).recip();
+            let weight = near * near * near;
+            sum = (sum.0 + *motion * weight, sum.1 + weight);
+        }
+        *p + sum.0 / sum.1
+    };
+    at.iter().map(moved).collect()
 }
 
 fn triangles(mesh: &PanelMesh) -> Vec<[u32; 3]> {

@@ -5,7 +5,7 @@ use std::time::Instant;
 use glam::Vec3;
 
 use super::arrange::{Arrangement, arrange};
-use super::carry::carry;
+use super::carry::{carry, carry_over};
 use super::error::DrapeError;
 use super::legs::free_loops;
 use super::limits::{LEVELS_M, MAX_OPEN_MM, MAX_STRETCH};
@@ -75,19 +75,31 @@ const HANGING: RelaxRun =
 const RESTING: RelaxRun =
     RelaxRun { steps: 500, step_s: 1.0 / 9000.0, gravity: 9.81, kept: 0.9, seam: 0.0, shear: 20.0, exact: true };
 
+/// Steps in which cloth comes down that was carried over from another body, where it hung already.
+const HANGING_ON: RelaxRun = RelaxRun { steps: 400, ..HANGING };
+
 /// Lays a pattern around a body, sews it and lets it hang, at a spacing (m).
 ///
 /// # Errors
 /// One sentence: the panel or seam, what is wrong, and the cure.
 pub fn drape(pattern: &Pattern, body: &Body, fabric: &Fabric, spacing: f64) -> Result<DrapedPattern, DrapeError> {
+    drape_around(pattern, (body, &SkinField::new(body)), fabric, spacing)
+}
+
+/// The same with the skin's field at hand.
+pub(super) fn drape_around(
+    pattern: &Pattern,
+    (body, field): (&Body, &SkinField),
+    fabric: &Fabric,
+    spacing: f64,
+) -> Result<DrapedPattern, DrapeError> {
     let mut spacings: Vec<f64> = LEVELS_M.into_iter().filter(|s| *s > 1.25 * spacing).collect();
     spacings.push(spacing);
     let mut start = Instant::now();
-    let field = SkinField::new(body);
     let mut sewn = sew(pattern, spacings[0])?;
     let arranged = arrange(pattern, &sewn, body)?;
     let first = FirstLevel::new(&sewn, &arranged, body, fabric);
-    let (mut at, open) = first.close(pattern, &sewn, &field)?;
+    let (mut at, open) = first.close(pattern, &sewn, field)?;
     let mut levels = Vec::new();
     let last = spacings.len() - 1;
     let mut held = Vec::new();
@@ -102,7 +114,7 @@ pub fn drape(pattern: &Pattern, body: &Body, fabric: &Fabric, spacing: f64) -> R
         let sides = sides(&sewn, &arranged);
         let free = vec![false; at.len()];
         held = if arranged.shoulders { free.clone() } else { upper_edge(&sewn, &arranged) };
-        let mut relaxed = Relaxation { at, springs: &own, field: &field, sides: &sides, held: &free };
+        let mut relaxed = Relaxation { at, springs: &own, field, sides: &sides, held: &free };
         if k == 0 || k < last {
             relaxed.run(&SMOOTHING);
         } else {
@@ -121,19 +133,64 @@ pub fn drape(pattern: &Pattern, body: &Body, fabric: &Fabric, spacing: f64) -> R
         start = Instant::now();
     }
     let springs = springs.ok_or(DrapeError::NoSeams)?;
-    let [strain_mean, strain_p99, strain_max] = quality::strain(&springs, &at);
-    let quality = DrapeQuality {
-        strain_mean,
-        strain_p99,
-        strain_max,
-        seams_open: open,
-        crossings: quality::crossings(body, &at, &shape(&sewn, at.clone()).triangles()),
-        penetration: quality::penetration(&field, &at),
-    };
+    let quality = judged(body, field, &sewn, &springs, &at, open);
     let placed = first.placed;
     let draped = DrapedPattern { sewn, at, placed, levels, quality, arranged, held };
     check(pattern, &draped, &springs)?;
     Ok(draped)
+}
+
+/// Lets a pattern hang on a body that hangs on another one already: it is carried over with the skin and comes to rest.
+/// Some fifth of the time of [`drape`]; where it lies differs from that by folds that could lie either way.
+///
+/// # Errors
+/// As [`drape`].
+pub(super) fn drape_on(
+    (hung, from): (&DrapedPattern, &Body),
+    pattern: &Pattern,
+    (body, field): (&Body, &SkinField),
+    fabric: &Fabric,
+) -> Result<DrapedPattern, DrapeError> {
+    let start = Instant::now();
+    let sewn = hung.sewn.clone();
+    let arranged = arrange(pattern, &sewn, body)?;
+    let at = carry_over(from, body, &hung.at);
+    let springs = Springs::new(&shape(&sewn, at.clone()), fabric, Vec::new());
+    let sides = sides(&sewn, &arranged);
+    let free = vec![false; at.len()];
+    let held = if arranged.shoulders { free.clone() } else { upper_edge(&sewn, &arranged) };
+    let mut relaxed = Relaxation { at, springs: &springs, field, sides: &sides, held: &free };
+    relaxed.run(&RelaxRun { steps: SMOOTHING.steps / 8, ..SMOOTHING });
+    relaxed.held = &held;
+    relaxed.run(&HANGING_ON);
+    relaxed.run(&RESTING);
+    let at = relaxed.at;
+    let spacing = hung.levels.last().map_or(0.0, |level| level.spacing);
+    let levels = vec![DrapeLevel { spacing, seconds: start.elapsed().as_secs_f64() }];
+    let quality = judged(body, field, &sewn, &springs, &at, hung.quality.seams_open);
+    let draped = DrapedPattern { sewn, at, placed: hung.placed.clone(), levels, quality, arranged, held };
+    check(pattern, &draped, &springs)?;
+    Ok(draped)
+}
+
+/// How well a pattern hangs whose seams were so far open (m).
+fn judged(
+    body: &Body,
+    field: &SkinField,
+    sewn: &SewnMesh,
+    springs: &Springs,
+    at: &[Vec3],
+    seams_open: f64,
+) -> DrapeQuality {
+    let [strain_mean, strain_p99, strain_max] = quality::strain(springs, at);
+    DrapeQuality {
+        strain_mean,
+        strain_p99,
+        strain_max,
+        seams_open,
+        crossings: quality::crossings(body, at, &shape(sewn, at.to_vec()).triangles()),
+        penetration: quality::penetration(field, at),
+    }
 }
 
 /// Panels around the body, each with vertices of its own.

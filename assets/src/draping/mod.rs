@@ -33,7 +33,9 @@ pub use drape::{DrapeLevel, DrapedPattern, drape};
 pub use ease::{PatternEase, ZoneEase, ease, fitting_size};
 pub use error::DrapeError;
 pub use graded::GradedPattern;
-pub use package::{FABRIC, PackageError, PatternPackage, SPACING_MM, is_pattern, parse_package, read_package};
+pub use package::{
+    FABRIC, HungPattern, PackageError, PatternPackage, SPACING_MM, is_pattern, parse_package, read_package,
+};
 pub use pattern_sizes::{AS_DRAFTED, PatternSizes, SizeGirths, SizedDraft, TO_MEASURE};
 pub use quality::DrapeQuality;
 pub use skin_field::SkinField;

@@ -18,7 +18,7 @@ use toile_fitting::wearing::{self, CoveredZone, poses};
 use toile_sensors::frame::Joints;
 
 use crate::error::{Result, StudyError};
-use crate::garments::TriedGarment;
+use crate::garments::{DrapeStart, TriedGarment};
 
 /// Steps that somebody walks: 4 s.
 const WALK_STEPS: usize = 480;
@@ -90,11 +90,11 @@ impl WornFrame {
     /// A garment that cannot be laid on this body.
     pub fn put_on(
         (body, rig): (&Body, &Rig),
-        (garment, size): (&TriedGarment, &str),
+        (garment, size, start): (&TriedGarment, &str, DrapeStart),
         pose: TriedPose,
         (settings, settle): (Settings, usize),
     ) -> Result<Self> {
-        let worn = garment.choice.dress(Some(size), body)?;
+        let worn = garment.dress(size, body, start)?;
         let made = Frame::new(body.clone(), rig, worn.garments, settings);
         let (mut frame, reader) = made.map_err(StudyError::input)?;
         frame.measure_every(0);
@@ -125,9 +125,16 @@ impl WornFrame {
         (0..steps).for_each(|_| self.frame.step(&self.joints));
     }
 
-    /// Where the cloth is (m).
+    /// Where the vertices of the garments' meshes are (m), garment after garment, whatever order they are solved in.
     pub fn positions(&self) -> Vec<Vec3> {
-        self.frame.cloths().iter().flat_map(|cloth| cloth.positions.iter().map(|p| Vec3::from(*p))).collect()
+        let worn = self.frame.cloths().iter().zip(self.frame.garments());
+        let of = |(cloth, garment): (&Cloth, &Garment)| {
+            let vertices = garment.source.iter().map(|v| *v as usize + 1).max().unwrap_or(0);
+            let mut at = vec![Vec3::ZERO; vertices];
+            garment.source.iter().zip(&cloth.positions).for_each(|(v, p)| at[*v as usize] = Vec3::from(*p));
+            at
+        };
+        worn.flat_map(of).collect()
     }
 
     /// The frame and its newest snapshot.

@@ -1,12 +1,14 @@
 //! The garments of a study: open, in their sizes, each judged on girths alone.
 
 use std::path::Path;
+use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize};
 use toile_assets::body::{Body, Measures, Sex};
+use toile_assets::draping::HungPattern;
 use toile_assets::fabric::Fabric;
 use toile_assets::sizes::{Girth, Population as MadeFor};
-use toile_fitting::dress::choice::{Choice, ShopChoice};
+use toile_fitting::dress::choice::{Choice, ShopChoice, Worn};
 use toile_fitting::dress::offer::GarmentOffer;
 
 use crate::error::{Result, StudyError};
@@ -25,6 +27,19 @@ pub struct TriedGarment {
     pub tried: Vec<usize>,
     /// Whose bodies it is made for.
     pub made_for: MadeFor,
+    /// How each size of the offer hangs on its own body, once it was asked for; none where it cannot `[sizes]`.
+    hung: Vec<OnceLock<Option<HungPattern>>>,
+}
+
+toile_assets::named! {
+    /// What draping begins with.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum DrapeStart {
+        /// The garment as it hangs on the body that its size is for.
+        Size = "size",
+        /// Its panels, laid around each body.
+        Panels = "panels",
+    }
 }
 
 /// How a zone of a size is on somebody's true girth.
@@ -109,7 +124,24 @@ impl TriedGarment {
         }
         tried.sort_unstable();
         tried.dedup();
-        Ok(Self { name, choice, offer, tried, made_for })
+        let hung = offer.sizes.iter().map(|_| OnceLock::new()).collect();
+        Ok(Self { name, choice, offer, tried, made_for, hung })
+    }
+
+    /// The garment in a size on a body: sewn up around it, or taken over from the body of its size (what that is depends on the
+    /// garment and the size alone, so that a row is the same whoever computes it).
+    ///
+    /// # Errors
+    /// A garment that cannot be laid on this body.
+    pub fn dress(&self, size: &str, body: &Body, start: DrapeStart) -> Result<Worn> {
+        let at = self.offer.sizes.iter().position(|made| made.code == size);
+        let hung = at.filter(|_| start == DrapeStart::Size).and_then(|at| {
+            // What does not hang on its own body is sewn up around each.
+            self.hung[at].get_or_init(|| self.choice.hang(size).ok().flatten()).as_ref()
+        });
+        // So is what does not come over.
+        let carried = hung.and_then(|hung| self.choice.dress_from(hung, body).ok());
+        carried.map_or_else(|| Ok(self.choice.dress(Some(size), body)?), Ok)
     }
 
     /// Whether it is made for somebody of a sex.

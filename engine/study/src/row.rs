@@ -182,13 +182,13 @@ row! {
     strain_p99: Option<f64>,
     /// Deepest point inside of the body (mm).
     penetration_mm: Option<f64>,
-    /// How far the cloth moves, in the mean, until it has settled fully (mm); of those who are compared.
+    /// Mean distance of the cloth from where it lies sewn up around the body and fully settled (mm); of those who are compared.
     unsettled_mean_mm: Option<f64>,
     /// 99th percentile of it (mm).
     unsettled_p99_mm: Option<f64>,
-    /// Greatest change of a zone's worn ease until then (mm).
+    /// Greatest difference of a zone's worn ease to that (mm).
     unsettled_ease_mm: Option<f64>,
-    /// Zones that pull then, parted by a space.
+    /// Zones that pull there, parted by a space.
     settled_pulls: Option<String>,
 }
 

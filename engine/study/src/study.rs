@@ -15,7 +15,7 @@ use toile_track::recommend::Recommendation;
 use crate::digest;
 use crate::drape::{self, Draped, TriedPose, WornFrame};
 use crate::error::{Result, StudyError};
-use crate::garments::{GarmentNote, TriedGarment};
+use crate::garments::{DrapeStart, GarmentNote, TriedGarment};
 use crate::parquet_file::{self, Notes};
 use crate::population::{Person, Population};
 use crate::row::Row;
@@ -40,6 +40,7 @@ struct Physics {
     people: u64,
     sizes: DrapedSizes,
     poses: Vec<TriedPose>,
+    start: DrapeStart,
     settings: Settings,
     settle: usize,
     compare: u64,
@@ -265,8 +266,10 @@ impl Study {
             *kept = Some((body, rig));
         }
         let Some((body, rig)) = kept else { return Ok(()) };
-        let Physics { settings, settle, compare, compare_steps, .. } = &self.physics;
-        let worn = WornFrame::put_on((body, rig), (garment, &row.size), pose, (*settings, *settle));
+        let Physics { start, settings, settle, compare, compare_steps, .. } = &self.physics;
+        let size = row.size.clone();
+        let put_on = |start, settle| WornFrame::put_on((body, rig), (garment, &size, start), pose, (*settings, settle));
+        let worn = put_on(*start, *settle);
         let mut worn = match worn {
             Ok(worn) => worn,
             // Of one body in a thousand a garment cannot be laid on: the row says so, and the study goes on.
@@ -277,11 +280,11 @@ impl Study {
         };
         let draped = worn.look();
         filled(row, &draped);
-        if person.number < *compare {
-            let before = worn.positions();
-            worn.settle(*compare_steps);
-            let [mean, p99] = drape::moved(&before, &worn.positions());
-            let then = worn.look();
+        if person.number < *compare
+            && let Ok(mut full) = put_on(DrapeStart::Panels, settle + compare_steps)
+        {
+            let [mean, p99] = drape::moved(&worn.positions(), &full.positions());
+            let then = full.look();
             let change = draped.worn_ease.iter().zip(&then.worn_ease).filter_map(|(a, b)| Some(((*a)? - (*b)?).abs()));
             row.unsettled_mean_mm = mm(Some(mean));
             row.unsettled_p99_mm = mm(Some(p99));
@@ -297,9 +300,9 @@ impl Study {
     /// A garment that cannot be laid on their body.
     pub fn worn_by(&self, person: u64, garment: usize, size: &str) -> Result<WornFrame> {
         let body = self.population.person(person).body()?;
-        let Physics { settings, settle, .. } = &self.physics;
+        let Physics { start, settings, settle, .. } = &self.physics;
         let on = (&body, &Rig::fit(&body));
-        WornFrame::put_on(on, (&self.garments[garment], size), TriedPose::Standing, (*settings, *settle))
+        WornFrame::put_on(on, (&self.garments[garment], size, *start), TriedPose::Standing, (*settings, *settle))
     }
 }
 
@@ -313,6 +316,8 @@ impl Physics {
         let poses: Vec<TriedPose> = wanted.poses.iter().map(pose).collect::<std::result::Result<_, _>>()?;
         one_of("[physics] quality", &wanted.quality, &Quality::ALL.map(Quality::name))?;
         let quality: Quality = wanted.quality.parse()?;
+        one_of("[physics] start", &wanted.start, &DrapeStart::ALL.map(DrapeStart::name))?;
+        let start = DrapeStart::ALL.into_iter().find(|start| start.name() == wanted.start).unwrap_or(DrapeStart::Size);
         let drapes = wanted.mode == PhysicsMode::Drape;
         if !drapes && poses != [TriedPose::Standing] {
             return Err("[physics] poses are tried by physics alone; say mode = \"drape\" or leave them out".to_owned());
@@ -328,6 +333,7 @@ impl Physics {
             poses,
             // A try-on is one core's; others take other people.
             settings: Settings { quality, workers: 1, ..Settings::default() },
+            start,
             settle: steps(wanted.settle_s),
             compare: wanted.compare,
             compare_steps: steps(wanted.compare_s),

@@ -21,7 +21,7 @@ const KEYS: [(&str, &[&str]); 5] = [
         &["from", "people", "women", "file", "unit", "columns", "ignore", "sex", "table", "shares", "table_for"],
     ),
     ("[sensor]", &["view", "sigma_mm"]),
-    ("[physics]", &["mode", "people", "sizes", "poses", "quality", "settle_s", "compare", "compare_s"]),
+    ("[physics]", &["mode", "people", "sizes", "poses", "quality", "start", "settle_s", "compare", "compare_s"]),
 ];
 
 /// A study file.
@@ -134,9 +134,12 @@ pub struct WantedPhysics {
     pub poses: Vec<String>,
     /// Tested settings of the cloth: draft, shop or fine.
     pub quality: String,
+    /// `size` (as it hangs on the body of the size) or `panels` (sewn up around each body).
+    pub start: String,
     /// Time in which a garment settles once it is dressed (s).
     pub settle_s: f64,
-    /// The first so many people are draped a second time, for long: the error of `settle_s`.
+    /// The first so many people are draped a second time, sewn up around them and settled for long: the error of `start` and
+    /// `settle_s`.
     pub compare: u64,
     /// How long that is (s).
     pub compare_s: f64,
@@ -149,8 +152,9 @@ impl Default for WantedPhysics {
             people: None,
             sizes: "near".to_owned(),
             poses: vec!["standing".to_owned()],
-            quality: "shop".to_owned(),
-            settle_s: 0.0,
+            quality: "fine".to_owned(),
+            start: "size".to_owned(),
+            settle_s: 0.5,
             compare: 0,
             compare_s: 8.0,
         }

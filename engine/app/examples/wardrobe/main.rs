@@ -15,7 +15,7 @@ use toile_assets::drafting;
 /// Sizes that a garment is sewn up in: smallest, largest, and four between.
 const WOMEN: [&str; 6] = ["32", "38", "44", "50", "54", "42"];
 const MEN: [&str; 6] = ["XXS", "S", "M", "XL", "3XL", "L"];
-const MENS_TROUSERS: [&str; 6] = ["60", "76", "92", "112", "132", "84"];
+const MENS_TROUSERS: [&str; 6] = ["60", "76", "92", "114", "132", "84"];
 
 /// The man who walks: the embedded session's joints, with measures by tape.
 const MAN: [&str; 8] = ["--body", "male", "--measure", "chest=1000", "--measure", "waist=860", "--measure", "hip=1000"];

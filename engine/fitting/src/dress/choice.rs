@@ -10,7 +10,7 @@ use toile_assets::catalogue::limits::{MAX_PACKAGE_BYTES, MAX_TOML_BYTES};
 use toile_assets::catalogue::package::ENDING;
 use toile_assets::catalogue::{GarmentPackage, GarmentPhotographs, word};
 use toile_assets::drafting;
-use toile_assets::draping::{self, AS_DRAFTED, PatternPackage, TO_MEASURE};
+use toile_assets::draping::{self, AS_DRAFTED, HungPattern, PatternPackage, TO_MEASURE};
 use toile_assets::fabric::Fabric;
 use toile_assets::garment::Garment;
 use toile_assets::sizes::{Population, SizeTable};
@@ -315,6 +315,35 @@ impl Choice {
                 worn.garments.push(dressed.map_err(FittingError::input)?);
             }
         }
+        self.finished(worn, wearer)
+    }
+
+    /// The garment in a size as it hangs on the body that the size is for: what [`Self::dress_from`] begins with. None where it is
+    /// not sewn, or the size is for no body of a table.
+    ///
+    /// # Errors
+    /// A pattern that cannot be laid on that body.
+    pub fn hang(&self, size: &str) -> Result<Option<HungPattern>, FittingError> {
+        match &self.source {
+            ChoiceSource::Pattern(package) => package.hang(self.own.fabric.as_ref(), size).map_err(FittingError::input),
+            ChoiceSource::Style(_) | ChoiceSource::Mesh(_) => Ok(None),
+        }
+    }
+
+    /// As [`Self::dress`], from where it hangs on the body of its size: sooner, with folds that may lie another way.
+    ///
+    /// # Errors
+    /// A pattern that cannot be laid on the body; one that hangs and is not this garment's.
+    pub fn dress_from(&self, hung: &HungPattern, wearer: &Body) -> Result<Worn, FittingError> {
+        let ChoiceSource::Pattern(package) = &self.source else {
+            return Err(FittingError::Internal(format!("{} is not sewn", self.name)));
+        };
+        let garment = package.dress_from(hung, wearer).map_err(FittingError::input)?;
+        self.finished(Worn { garments: vec![garment], mesh_vertices: Vec::new(), fit: None, mesh: None }, wearer)
+    }
+
+    /// Garments in the shop's layer and with its photographs.
+    fn finished(&self, mut worn: Worn, wearer: &Body) -> Result<Worn, FittingError> {
         for garment in &mut worn.garments {
             garment.layer = self.own.layer.unwrap_or(garment.layer);
             if let Some(photographs) = &self.own.photographs {

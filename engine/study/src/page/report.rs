@@ -182,7 +182,7 @@ fn put_physics(html: &mut String, draped: &DrapedFigures) {
         let [mean, p99, ease] = draped.unsettled_mm;
         put_line!(
             html,
-            "<p class=\"small\">Against fully settled ones ({} try-ons, medians): cloth {mean:.1} mm off in the mean, {p99:.1} mm at the 99th percentile, \
+            "<p class=\"small\">Against garments sewn up around the same bodies and fully settled ({} try-ons, medians): cloth {mean:.1} mm off in the mean, {p99:.1} mm at the 99th percentile, \
              ease {ease:.1} mm; in {} of them other zones pull.</p>",
             draped.compared,
             draped.verdicts_changed

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use toile_assets::body::shape::{BodyShape, SHAPES, Shapes};
+use toile_assets::body::shape::Shapes;
 use toile_assets::body::{En, Measures, Sex};
 use toile_assets::numeric::random::SplitMix64;
 use toile_assets::sizes::{GarmentKind, Girth, SizeTable};
@@ -21,7 +21,7 @@ const PEOPLE: u64 = 1000;
 
 /// How people come by.
 enum Way {
-    Drawn { women: f64, factors: Box<[[BodyShape; SHAPES]; 2]> },
+    Drawn { women: f64 },
     Listed { rows: Vec<TableRow>, drawn: Option<Vec<f64>> },
     Sized { table: SizeTable, girth: Girth, sex: Sex, upto: Vec<f64> },
 }
@@ -70,10 +70,7 @@ impl Population {
         }
         let mut source = Vec::new();
         let (way, people) = match wanted.from {
-            PeopleFrom::Ansur => {
-                let factors = Box::new([Sex::Female, Sex::Male].map(|sex| draw::shape_factor(Shapes::of(sex))));
-                (Way::Drawn { women: wanted.women.unwrap_or(0.5), factors }, wanted.people.unwrap_or(PEOPLE))
-            }
+            PeopleFrom::Ansur => (Way::Drawn { women: wanted.women.unwrap_or(0.5) }, wanted.people.unwrap_or(PEOPLE)),
             PeopleFrom::Table => {
                 let Some(file) = &wanted.file else {
                     return Err(StudyError::Input(
@@ -106,11 +103,10 @@ impl Population {
         assert!(number < self.people, "there are {} people", self.people);
         let mut random = generator(self.seed, Purpose::Person, number);
         match &self.way {
-            Way::Drawn { women, factors } => {
-                let is_woman = random.uniform_f64() < *women;
-                let (sex, factor) = if is_woman { (Sex::Female, &factors[0]) } else { (Sex::Male, &factors[1]) };
+            Way::Drawn { women } => {
+                let sex = if random.uniform_f64() < *women { Sex::Female } else { Sex::Male };
                 let shapes = Shapes::of(sex);
-                let shape = draw::shape(shapes, factor, &mut random);
+                let shape = draw::shape(shapes, &mut random);
                 let readings = shapes.read(&shape).readings;
                 let measures = Measures {
                     stature: readings.of(En::Stature),
