@@ -9,16 +9,28 @@
 //! the most likely field is a sum of radial functions around the points (Roussel and Gagalowicz 2003 adapt through points in
 //! space; with the prior one photograph will do). Pose and field are found in turn.
 
-mod adapt;
 mod landmarks;
-mod obj;
 mod prior;
+mod view;
+
+mod head_mesh;
+mod sighting;
+
+mod head_pose;
+mod outline;
+
+mod adapt;
+
+mod obj;
 mod texture;
 
-pub use adapt::{AdaptedHead, FaceView, adapt, assumed_camera};
+pub use adapt::{AdaptedHead, adapt};
 pub use landmarks::{FaceLandmarks, SurfacePoint};
 pub use obj::{MTL, obj};
 pub use texture::{HeadTexture, png, texture};
+pub use view::{FaceView, assumed_camera};
 
 #[cfg(test)]
-pub(crate) mod tests;
+mod outline_tests;
+#[cfg(test)]
+mod tests;

@@ -8,12 +8,12 @@ use toile_assets::numeric::random::SplitMix64;
 use toile_sensors::calibration::CalibratedCamera;
 use toile_sensors::face_points::FACE_POINTS;
 
-use super::adapt::middle;
+use super::head_mesh::middle;
 use super::*;
 use crate::render::look_at;
 
 /// A head that no field of the prior made: sides of a head stretched, waves over it, another nose and chin, not quite symmetric.
-fn stranger(sex: Sex, seed: u64) -> Vec<DVec3> {
+pub(super) fn stranger(sex: Sex, seed: u64) -> Vec<DVec3> {
     let mut rng = SplitMix64::new(seed);
     let mut g = || f64::from(rng.gaussian());
     let base = Shapes::of(sex).base();
@@ -62,18 +62,18 @@ fn marked(truth: &[DVec3], normals: &[DVec3], rig: &[CalibratedCamera], sigma: f
                 let noise = DVec2::new(f64::from(rng.gaussian()), f64::from(rng.gaussian())) * sigma;
                 camera.pixel(truth[i]).filter(|_| seen).map(|p| p + noise)
             });
-            FaceView { camera: camera.clone(), points, sigma_px: sigma }
+            FaceView { camera: camera.clone(), points, outlines: Vec::new(), sigma_px: sigma }
         })
         .collect()
 }
 
-struct Case {
-    truth: Vec<DVec3>,
-    views: Vec<FaceView>,
+pub(super) struct Case {
+    pub truth: Vec<DVec3>,
+    pub views: Vec<FaceView>,
     face: Vec<usize>,
 }
 
-fn case(sex: Sex, seed: u64, angles: &[f64]) -> Case {
+pub(super) fn case(sex: Sex, seed: u64, angles: &[f64]) -> Case {
     let turn = DQuat::from_rotation_y(0.1) * DQuat::from_rotation_x(-0.06);
     let truth: Vec<DVec3> = stranger(sex, seed).iter().map(|p| turn * *p + DVec3::new(0.01, -0.02, 0.015)).collect();
     let base = Shapes::of(sex).base();
@@ -93,13 +93,18 @@ fn case(sex: Sex, seed: u64, angles: &[f64]) -> Case {
 }
 
 /// Mean distance of the face's vertices from the truth (mm); one photograph cannot tell a head's size, so that it is taken out.
-fn off(case: &Case, placed: &[DVec3], sized: bool) -> f64 {
+pub(super) fn off(case: &Case, placed: &[DVec3], sized: bool) -> f64 {
+    off_over(case, &case.face, placed, sized)
+}
+
+/// The same over other vertices, laid on the truth by the face.
+pub(super) fn off_over(case: &Case, vertices: &[usize], placed: &[DVec3], sized: bool) -> f64 {
     let mean = |of: &[DVec3]| case.face.iter().map(|v| of[*v]).sum::<DVec3>() / case.face.len() as f64;
     let (a, b) = (mean(placed), mean(&case.truth));
     let spread = |of: &[DVec3], m: DVec3| case.face.iter().map(|v| of[*v].distance_squared(m)).sum::<f64>().sqrt();
     let scale = if sized { spread(&case.truth, b) / spread(placed, a) } else { 1.0 };
     let moved = |v: usize| if sized { (placed[v] - a) * scale + b } else { placed[v] };
-    1e3 * case.face.iter().map(|v| moved(*v).distance(case.truth[*v])).sum::<f64>() / case.face.len() as f64
+    1e3 * vertices.iter().map(|v| moved(*v).distance(case.truth[*v])).sum::<f64>() / vertices.len() as f64
 }
 
 #[test]

@@ -11,7 +11,8 @@ use image::{ImageFormat, Rgb, RgbImage};
 use toile_assets::body::shape::Shapes;
 use toile_assets::numeric::statistics::median_of;
 
-use super::adapt::{AdaptedHead, FaceView};
+use super::adapt::AdaptedHead;
+use super::view::FaceView;
 use crate::depth_buffer::DepthBuffer;
 
 /// Pixels along a side of the atlas.
