@@ -14,7 +14,7 @@ use crate::error::CaptureError;
 
 /// Rounds of pose and field in turn, by the points and then with the outlines.
 const ROUNDS: usize = 8;
-const OUTLINE_ROUNDS: usize = 6;
+const OUTLINE_ROUNDS: usize = 8;
 
 /// Residual over which points are those of no face, or in another order (px a thousand of focal length).
 pub(super) const LARGEST_RESIDUAL: f64 = 12.0;

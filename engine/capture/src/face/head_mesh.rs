@@ -7,8 +7,8 @@ use toile_assets::skeleton::Joint;
 
 use super::prior::Field;
 
-/// Height above the head's lowest vertex over which the neck takes over (m).
-const NECK: f64 = 0.05;
+/// Distance from the head's border with the body over which the neck takes over (m); the chin is farther.
+const NECK: f64 = 0.018;
 
 /// The mannequin's body with its head marked, places counted from the middle of the head.
 #[derive(Debug, Clone)]
@@ -29,12 +29,18 @@ impl HeadMesh {
         let base = Shapes::of(sex).base();
         let middle = middle(sex);
         let positions: Vec<DVec3> = base.positions.iter().map(|p| p.as_dvec3() - middle).collect();
-        let head = |v: usize| base.regions[v] == Region::Head;
-        let lowest = (0..positions.len()).filter(|v| head(*v)).map(|v| positions[v].y).fold(f64::MAX, f64::min);
-        let share = |(v, p): (usize, &DVec3)| if head(v) { ((p.y - lowest) / NECK).clamp(0.0, 1.0) } else { 0.0 };
+        let head = |v: u32| base.regions[v as usize] == Region::Head;
+        let mut border: Vec<u32> = base.triangles.iter().filter(|t| !t.iter().all(|v| head(*v))).flatten().copied().collect();
+        border.retain(|v| head(*v));
+        border.sort_unstable();
+        border.dedup();
+        let share = |(v, p): (u32, &DVec3)| {
+            let apart = border.iter().map(|b| positions[*b as usize].distance(*p)).fold(f64::MAX, f64::min);
+            if head(v) { (apart / NECK).min(1.0) } else { 0.0 }
+        };
         Self {
-            share: positions.iter().enumerate().map(share).collect(),
-            triangles: base.triangles.iter().filter(|t| t.iter().all(|v| head(*v as usize))).copied().collect(),
+            share: (0..).zip(&positions).map(share).collect(),
+            triangles: base.triangles.iter().filter(|t| t.iter().all(|v| head(*v))).copied().collect(),
             positions,
             middle,
         }

@@ -23,7 +23,7 @@ const ALIKE: f64 = 0.8;
 
 /// Farthest that a rim may lie from its outline (m), and how much more a way along the outline counts.
 const GATE: f64 = 0.025;
-const ALONG: f64 = 2.0;
+const ALONG: f64 = 4.0;
 
 /// Robust distance of an outline, in medians of how far all of them are off: at first all are far.
 const MEDIANS: f64 = 3.0;

@@ -70,7 +70,7 @@ fn marked(truth: &[DVec3], normals: &[DVec3], rig: &[CalibratedCamera], sigma: f
 pub(super) struct Case {
     pub truth: Vec<DVec3>,
     pub views: Vec<FaceView>,
-    face: Vec<usize>,
+    pub face: Vec<usize>,
 }
 
 pub(super) fn case(sex: Sex, seed: u64, angles: &[f64]) -> Case {
@@ -94,17 +94,12 @@ pub(super) fn case(sex: Sex, seed: u64, angles: &[f64]) -> Case {
 
 /// Mean distance of the face's vertices from the truth (mm); one photograph cannot tell a head's size, so that it is taken out.
 pub(super) fn off(case: &Case, placed: &[DVec3], sized: bool) -> f64 {
-    off_over(case, &case.face, placed, sized)
-}
-
-/// The same over other vertices, laid on the truth by the face.
-pub(super) fn off_over(case: &Case, vertices: &[usize], placed: &[DVec3], sized: bool) -> f64 {
     let mean = |of: &[DVec3]| case.face.iter().map(|v| of[*v]).sum::<DVec3>() / case.face.len() as f64;
     let (a, b) = (mean(placed), mean(&case.truth));
     let spread = |of: &[DVec3], m: DVec3| case.face.iter().map(|v| of[*v].distance_squared(m)).sum::<f64>().sqrt();
     let scale = if sized { spread(&case.truth, b) / spread(placed, a) } else { 1.0 };
     let moved = |v: usize| if sized { (placed[v] - a) * scale + b } else { placed[v] };
-    1e3 * vertices.iter().map(|v| moved(*v).distance(case.truth[*v])).sum::<f64>() / vertices.len() as f64
+    1e3 * case.face.iter().map(|v| moved(*v).distance(case.truth[*v])).sum::<f64>() / case.face.len() as f64
 }
 
 #[test]
