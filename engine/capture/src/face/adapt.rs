@@ -84,7 +84,8 @@ pub fn adapt(views: &[FaceView], sex: Sex) -> Result<AdaptedHead, CaptureError> 
         search.find_outlines(&stretches);
         if 2 * search.outlines.len() < count {
             let problem = format!("{} of {count} stretches lie near the rim of the head", search.outlines.len());
-            let cure = "mark where the head itself ends, without hair and shoulders, in the pixels of the same photograph";
+            let cure =
+                "mark where the head itself ends, without hair and shoulders, in the pixels of the same photograph";
             return Err(CaptureError::unfit("the outline", problem, cure));
         }
         search.round();

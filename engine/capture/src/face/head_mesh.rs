@@ -30,7 +30,8 @@ impl HeadMesh {
         let middle = middle(sex);
         let positions: Vec<DVec3> = base.positions.iter().map(|p| p.as_dvec3() - middle).collect();
         let head = |v: u32| base.regions[v as usize] == Region::Head;
-        let mut border: Vec<u32> = base.triangles.iter().filter(|t| !t.iter().all(|v| head(*v))).flatten().copied().collect();
+        let mut border: Vec<u32> =
+            base.triangles.iter().filter(|t| !t.iter().all(|v| head(*v))).flatten().copied().collect();
         border.retain(|v| head(*v));
         border.sort_unstable();
         border.dedup();

@@ -85,7 +85,11 @@ pub(super) fn first_pose(views: &[FaceView], marks: &[DVec3]) -> Result<HeadPose
         let cure = "mark them again, in the picture's pixels";
         return Err(CaptureError::unfit("the points", "they give the head no place", cure));
     }
-    Ok(best_turn(views, marks, HeadPose { turn: DQuat::from_mat3(&DMat3::from_cols(x, z.cross(x), z)), place, size: 1.0 }))
+    Ok(best_turn(
+        views,
+        marks,
+        HeadPose { turn: DQuat::from_mat3(&DMat3::from_cols(x, z.cross(x), z)), place, size: 1.0 },
+    ))
 }
 
 /// The best of several turns about the vertical: cameras that stand all on one side of the face leave the way it faces open.

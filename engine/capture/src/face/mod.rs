@@ -20,17 +20,24 @@ mod head_pose;
 mod outline;
 
 mod adapt;
+mod expressions;
+
+mod track;
 
 mod obj;
 mod texture;
 
 pub use adapt::{AdaptedHead, adapt};
+pub use expressions::{EXPRESSION_NAMES, EXPRESSIONS, ExpressionFields};
 pub use landmarks::{FaceLandmarks, SurfacePoint};
 pub use obj::{MTL, obj};
 pub use texture::{HeadTexture, png, texture};
+pub use track::{TrackedFrame, TrackedHead, TrackedSequence, follow, track};
 pub use view::{FaceView, assumed_camera};
 
 #[cfg(test)]
 mod outline_tests;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod track_tests;

@@ -92,7 +92,8 @@ fn outlines_bring_cranium_cheeks_and_jaw_nearer_to_the_truth() {
 #[test]
 fn an_outline_of_something_else_is_refused() {
     let mut wrong = case(Sex::Female, 3, &[0.0]);
-    wrong.views[0].outlines = vec![vec![DVec2::new(20.0, 20.0), DVec2::new(1_150.0, 20.0), DVec2::new(1_150.0, 1_500.0)]];
+    wrong.views[0].outlines =
+        vec![vec![DVec2::new(20.0, 20.0), DVec2::new(1_150.0, 20.0), DVec2::new(1_150.0, 1_500.0)]];
     let said = adapt(&wrong.views, Sex::Female).unwrap_err().to_string();
     assert!(said.contains("lie near the rim of the head") && !said.contains('\n'), "{said}");
 }

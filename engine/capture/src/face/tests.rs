@@ -44,7 +44,7 @@ pub(super) fn stranger(sex: Sex, seed: u64) -> Vec<DVec3> {
 }
 
 /// Cameras before a face at these angles (degrees), 1.2 m off.
-fn cameras(angles: &[f64]) -> Vec<CalibratedCamera> {
+pub(super) fn cameras(angles: &[f64]) -> Vec<CalibratedCamera> {
     let at = |(k, a): (usize, &f64)| {
         let (s, c) = a.to_radians().sin_cos();
         look_at(&format!("cam{k}"), [1200, 1600], 3_600.0, [DVec3::new(1.2 * s, 0.05, 1.2 * c), DVec3::ZERO], DVec3::Y)
@@ -53,7 +53,13 @@ fn cameras(angles: &[f64]) -> Vec<CalibratedCamera> {
 }
 
 /// Points with noise, where they can be seen at all.
-fn marked(truth: &[DVec3], normals: &[DVec3], rig: &[CalibratedCamera], sigma: f64, seed: u64) -> Vec<FaceView> {
+pub(super) fn marked(
+    truth: &[DVec3],
+    normals: &[DVec3],
+    rig: &[CalibratedCamera],
+    sigma: f64,
+    seed: u64,
+) -> Vec<FaceView> {
     let mut rng = SplitMix64::new(seed);
     rig.iter()
         .map(|camera| {
