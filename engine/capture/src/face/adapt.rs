@@ -8,7 +8,7 @@ use super::head_pose::{POSE_ROUNDS, first_pose, pose_step};
 use super::landmarks::FaceLandmarks;
 use super::outline::{OutlineStretch, seen_outlines, stretches};
 use super::prior::Field;
-use super::sighting::{HeadPose, Sighting, marked_points, observations, residual};
+use super::sighting::{HeadPose, Sighting, across, marked_points, observations, residual};
 use super::view::FaceView;
 use crate::error::CaptureError;
 
@@ -129,25 +129,38 @@ impl HeadSearch<'_> {
     }
 
     fn adapted(self, sex: Sex) -> AdaptedHead {
-        let HeadSearch { mesh, pose, .. } = &self;
-        let own = mesh.moved(&self.field);
+        let head = AdaptedHead::of(sex, &self.mesh, &self.field, self.pose);
+        AdaptedHead {
+            residual_px: self.residual()[0],
+            points: self.views.iter().map(|v| v.points.iter().flatten().count()).sum(),
+            outline: (self.outlines.len(), across(self.views, &self.outlines, self.pose)),
+            ..head
+        }
+    }
+}
+
+impl AdaptedHead {
+    /// The head that a field makes of the mannequin's, where it stands; nothing is said of what was seen of it.
+    pub(super) fn of(sex: Sex, mesh: &HeadMesh, field: &Field, pose: HeadPose) -> Self {
+        let own = mesh.moved(field);
         let face: Vec<f64> = (0..own.len())
             .filter(|v| mesh.share[*v] > 0.0 && mesh.positions[*v].z > FACE)
             .map(|v| own[v].distance(mesh.positions[v]))
             .collect();
         // About the joint of head and neck, so that the chin stays over the throat.
         let rest = |v: usize| own[v] * (1.0 + (pose.size - 1.0) * mesh.share[v]) + mesh.middle;
-        AdaptedHead {
+        let drawn = FaceLandmarks::new().on(&mesh.positions);
+        Self {
             sex,
             rest: (0..own.len()).map(rest).collect(),
             placed: own.iter().map(|p| pose.to_world(*p)).collect(),
             triangles: mesh.triangles.clone(),
-            residual_px: self.residual()[0],
-            points: self.views.iter().map(|v| v.points.iter().flatten().count()).sum(),
-            outline: (self.outlines.len(), super::sighting::across(self.views, &self.outlines, self.pose)),
+            residual_px: 0.0,
+            points: 0,
+            outline: (0, 0.0),
             moved: face.iter().sum::<f64>() / face.len().max(1) as f64,
-            marks: self.marks,
-            pose: self.pose,
+            marks: drawn.iter().map(|p| *p + field.at(*p)).collect(),
+            pose,
         }
     }
 }

@@ -8,7 +8,7 @@ use toile_assets::body::Sex;
 use toile_sensors::face_points::FACE_POINTS;
 
 use super::head_mesh::HeadMesh;
-use super::landmarks::{FaceLandmarks, mirrored};
+use super::landmarks::{FaceLandmarks, SurfacePoint, mirrored};
 use super::prior::{solve, wendland};
 
 /// Number of expressions.
@@ -16,6 +16,9 @@ pub const EXPRESSIONS: usize = 4;
 
 /// Their names, in the order of all amplitudes.
 pub const EXPRESSION_NAMES: [&str; EXPRESSIONS] = ["jaw_open", "smile", "brows_up", "lids_closed"];
+
+/// Rounds until points of the mesh move as they are meant to.
+const CORRECTIONS: usize = 12;
 
 /// What a point of the wearer's right half or the middle does (mm: to the left, up, ahead), by its number.
 type Displaced = (usize, [f64; 3]);
@@ -93,30 +96,42 @@ struct Expression {
 }
 
 impl Expression {
-    /// Through the displacements of points that are drawn here (m) `[68]`.
-    fn through((reach_mm, displaced): (f64, &[Displaced]), points: &[DVec3]) -> Self {
-        let reach = reach_mm * 1e-3;
-        let mut wanted: Vec<(DVec3, DVec3)> = Vec::new();
+    /// Through the displacements of points of a mesh.
+    fn through((reach_mm, displaced): (f64, &[Displaced]), landmarks: &FaceLandmarks, mesh: &HeadMesh) -> Self {
+        let mut wanted: Vec<(usize, DVec3)> = Vec::new();
         for (own, by) in displaced {
             let by = DVec3::from_array(*by) * 1e-3;
-            wanted.push((points[*own], by));
+            wanted.push((*own, by));
             let other = mirrored(*own);
             if other != *own {
-                wanted.push((points[other], by * DVec3::new(-1.0, 1.0, 1.0)));
+                wanted.push((other, by * DVec3::new(-1.0, 1.0, 1.0)));
             }
         }
-        let kernel = || {
-            let row = |a: &(DVec3, DVec3)| wanted.iter().map(|b| wendland(a.0.distance(b.0) / reach)).collect();
-            wanted.iter().map(row).collect::<Vec<Vec<f64>>>()
-        };
-        let axes = [0, 1, 2].map(|axis| {
-            let mut weights: Vec<f64> = wanted.iter().map(|w| w.1[axis]).collect();
-            solve(&mut kernel(), &mut weights);
-            weights
-        });
-        let part = |(i, w): (usize, &(DVec3, DVec3))| (w.0, DVec3::new(axes[0][i], axes[1][i], axes[2][i]));
-        let parts = wanted.iter().enumerate().map(part).collect();
-        Self { reach, parts }
+        let parts = wanted.iter().map(|(i, _)| (landmarks.points[*i].on(&mesh.positions), DVec3::ZERO)).collect();
+        let mut found = Self { reach: reach_mm * 1e-3, parts };
+        // The mesh is flat between its vertices, so that a point moves less than the function does there.
+        for _ in 0..CORRECTIONS {
+            let off: Vec<DVec3> = wanted.iter().map(|(i, by)| *by - found.of_point(&landmarks.points[*i], mesh)).collect();
+            found.add(&off);
+        }
+        found
+    }
+
+    /// Adds displacements of its points.
+    fn add(&mut self, wanted: &[DVec3]) {
+        for axis in 0..3 {
+            let row = |a: &(DVec3, DVec3)| self.parts.iter().map(|b| wendland(a.0.distance(b.0) / self.reach)).collect();
+            let mut kernel: Vec<Vec<f64>> = self.parts.iter().map(row).collect();
+            let mut weights: Vec<f64> = wanted.iter().map(|w| w[axis]).collect();
+            solve(&mut kernel, &mut weights);
+            self.parts.iter_mut().zip(weights).for_each(|(part, w)| part.1[axis] += w);
+        }
+    }
+
+    /// The displacement of a point of a mesh (m).
+    fn of_point(&self, point: &SurfacePoint, mesh: &HeadMesh) -> DVec3 {
+        let one = |(v, share): (&u32, f64)| self.at(mesh.positions[*v as usize]) * share;
+        point.corners.iter().zip(point.shares).map(one).sum()
     }
 
     fn at(&self, place: DVec3) -> DVec3 {
@@ -133,8 +148,8 @@ pub struct ExpressionFields {
 impl ExpressionFields {
     /// On the head of a sex.
     pub fn of(sex: Sex) -> Self {
-        let points = FaceLandmarks::new().on(&HeadMesh::of(sex).positions);
-        Self { all: DRAWN.map(|drawn| Expression::through(drawn, &points)) }
+        let (landmarks, mesh) = (FaceLandmarks::new(), HeadMesh::of(sex));
+        Self { all: DRAWN.map(|drawn| Expression::through(drawn, &landmarks, &mesh)) }
     }
 
     /// The displacement (m) of a place of the mannequin's head (m, from its middle) in each expression at amplitude 1.
@@ -143,8 +158,8 @@ impl ExpressionFields {
     }
 
     /// The same of the 68 points `[68]`.
-    pub(super) fn of_points(&self, drawn: &[DVec3]) -> [[DVec3; EXPRESSIONS]; FACE_POINTS] {
-        std::array::from_fn(|i| self.at(drawn[i]))
+    pub(super) fn of_points(&self, landmarks: &FaceLandmarks, mesh: &HeadMesh) -> [[DVec3; EXPRESSIONS]; FACE_POINTS] {
+        std::array::from_fn(|i| std::array::from_fn(|k| self.all[k].of_point(&landmarks.points[i], mesh)))
     }
 }
 
@@ -156,8 +171,7 @@ mod tests {
     fn an_expression_displaces_its_points_on_both_sides_and_nothing_far_off() {
         for sex in Sex::ALL {
             let fields = ExpressionFields::of(sex);
-            let points = FaceLandmarks::new().on(&HeadMesh::of(sex).positions);
-            let all = fields.of_points(&points);
+            let all = fields.of_points(&FaceLandmarks::new(), &HeadMesh::of(sex));
             let near = |a: DVec3, x: f64, y: f64, z: f64| a.distance(DVec3::new(x, y, z) * 1e-3) < 1e-4;
             assert!(
                 near(all[8][0], 0.0, -18.0, -8.0) && near(all[62][0], 0.0, 0.0, 0.0),

@@ -24,6 +24,8 @@ mod expressions;
 
 mod track;
 
+mod sequence;
+
 mod obj;
 mod texture;
 
@@ -32,7 +34,8 @@ pub use expressions::{EXPRESSION_NAMES, EXPRESSIONS, ExpressionFields};
 pub use landmarks::{FaceLandmarks, SurfacePoint};
 pub use obj::{MTL, obj};
 pub use texture::{HeadTexture, png, texture};
-pub use track::{TrackedFrame, TrackedHead, TrackedSequence, follow, track};
+pub use sequence::{TrackedSequence, follow};
+pub use track::{TrackedFrame, TrackedHead, track};
 pub use view::{FaceView, assumed_camera};
 
 #[cfg(test)]

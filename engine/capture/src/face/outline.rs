@@ -110,6 +110,7 @@ pub(super) fn seen_outlines(
             view,
             drawn: place.drawn,
             own: place.own,
+            by: DVec3::ZERO,
             at: s.at,
             across: Some(s.out),
             sigma: v.sigma_px,

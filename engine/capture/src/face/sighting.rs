@@ -34,6 +34,8 @@ pub(super) struct Sighting {
     /// The place on the mannequin's head, and on this one as far as it is known (m, from the middle).
     pub drawn: DVec3,
     pub own: DVec3,
+    /// What an expression adds (m).
+    pub by: DVec3,
     /// Where it was seen, as by a lens that bends nothing (px, from the principal point).
     pub at: DVec2,
     /// Of an outline: the way across it. Where along an outline a place was seen, nobody knows.
@@ -72,7 +74,7 @@ pub(super) fn marked_points(views: &[FaceView], drawn: &[DVec3], own: &[DVec3]) 
         let one = |(i, marked): (usize, &Option<DVec2>)| {
             let at = v.camera.ray((*marked)?) * v.camera.focal();
             let (sigma, robust) = (v.sigma_px, ROBUST * v.sigma_px);
-            Some(Sighting { view, drawn: drawn[i], own: own[i], at, across: None, sigma, robust })
+            Some(Sighting { view, drawn: drawn[i], own: own[i], by: DVec3::ZERO, at, across: None, sigma, robust })
         };
         v.points.iter().enumerate().filter_map(one).collect::<Vec<_>>()
     };
@@ -87,7 +89,7 @@ pub(super) fn equations<'a>(
 ) -> impl Iterator<Item = SightingEquation> + 'a {
     let both = move |(of, s): (usize, &'a Sighting)| {
         let camera = &views[s.view].camera;
-        let world = pose.to_world(s.own);
+        let world = pose.to_world(s.own + s.by);
         let p = camera.to_camera(world);
         let focal = camera.focal();
         let off = p.truncate() / p.z * focal - s.at;

@@ -12,14 +12,13 @@ use toile_assets::numeric::linear::{self, Pivot};
 use toile_sensors::calibration::CalibratedCamera;
 use toile_sensors::face_points::FACE_POINTS;
 
-use super::adapt::{AdaptedHead, LARGEST_RESIDUAL, adapt};
+use super::adapt::{AdaptedHead, LARGEST_RESIDUAL};
 use super::expressions::{EXPRESSIONS, ExpressionFields};
 use super::head_mesh::HeadMesh;
 use super::head_pose::{first_pose, moved};
 use super::landmarks::FaceLandmarks;
 use super::sighting::{HeadPose, Sighting, equations, marked_points};
 use super::view::FaceView;
-use crate::error::CaptureError;
 
 /// Steps of a frame.
 const STEPS: usize = 15;
@@ -31,10 +30,7 @@ const AMPLITUDE: f64 = 0.5;
 /// so many.
 const AGREES: f64 = 0.008;
 const AGREEING: f64 = 0.6;
-const FEWEST: usize = 8;
-
-/// Frames of which one has to show the head well enough to begin with.
-const FIRST: usize = 30;
+pub(super) const FEWEST: usize = 8;
 
 /// What was found in a frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,70 +64,46 @@ impl TrackedHead {
     }
 }
 
-/// A sequence with its head.
-#[derive(Debug, Clone)]
-pub struct TrackedSequence {
-    /// The head, adapted to the first frame that shows it well.
-    pub head: AdaptedHead,
-    /// That frame.
-    pub first: usize,
-    /// What was found in each frame.
-    pub frames: Vec<TrackedFrame>,
-}
-
-/// Adapts the head of a sex to the first frame that shows it, which should be at rest, and follows it through all frames.
-///
-/// # Errors
-/// One sentence where none of the first frames shows a head.
-pub fn follow(frames: &[FaceView], sex: Sex) -> Result<TrackedSequence, CaptureError> {
-    let mut refused = None;
-    for (first, frame) in frames.iter().enumerate().take(FIRST) {
-        if frame.points.iter().flatten().count() < FEWEST {
-            continue;
-        }
-        match adapt(from_ref(frame), sex) {
-            Ok(head) => return Ok(TrackedSequence { frames: track(&head, frames), head, first }),
-            Err(error) => refused = refused.or(Some(error)),
-        }
-    }
-    let none = || {
-        let problem = format!("none of the first {} has {FEWEST} points", frames.len().min(FIRST));
-        CaptureError::unfit("the frames", problem, "begin where the face is seen")
-    };
-    Err(refused.unwrap_or_else(none))
-}
-
 /// Follows an adapted head through the frames of one camera.
 pub fn track(head: &AdaptedHead, frames: &[FaceView]) -> Vec<TrackedFrame> {
-    let drawn = FaceLandmarks::new().on(&HeadMesh::of(head.sex).positions);
-    let expressions = ExpressionFields::of(head.sex).of_points(&drawn);
-    let tracker = HeadTracker { head, drawn, expressions };
-    let mut last = TrackedState { pose: head.pose, amplitudes: [0.0; EXPRESSIONS] };
-    let one = |frame: &FaceView| {
-        let (outcome, state) = tracker.frame(frame, last);
-        last = state.unwrap_or(last);
-        outcome
-    };
-    frames.iter().map(one).collect()
+    HeadTracker::new(head.sex, head.marks.clone()).run(head.pose, frames).into_iter().map(|(frame, _)| frame).collect()
 }
 
-/// What a frame starts from.
+/// Pose and amplitudes: what a frame starts from, and ends at.
 #[derive(Debug, Clone, Copy)]
-struct TrackedState {
-    pose: HeadPose,
-    amplitudes: [f64; EXPRESSIONS],
+pub(super) struct TrackedState {
+    pub pose: HeadPose,
+    pub amplitudes: [f64; EXPRESSIONS],
 }
 
 /// A head with its expressions.
-struct HeadTracker<'a> {
-    head: &'a AdaptedHead,
-    /// The points on the mannequin's head (m, from its middle) `[68]`.
-    drawn: Vec<DVec3>,
+pub(super) struct HeadTracker {
+    /// The points on the mannequin's head, and on this one at rest (m, from its middle) `[68]`.
+    pub drawn: Vec<DVec3>,
+    pub marks: Vec<DVec3>,
     /// Their displacements (m) in each expression `[68]`.
     expressions: [[DVec3; EXPRESSIONS]; FACE_POINTS],
 }
 
-impl HeadTracker<'_> {
+impl HeadTracker {
+    /// Of a head of a sex whose points are here (m, from its middle) `[68]`.
+    pub(super) fn new(sex: Sex, marks: Vec<DVec3>) -> Self {
+        let (landmarks, mesh) = (FaceLandmarks::new(), HeadMesh::of(sex));
+        let expressions = ExpressionFields::of(sex).of_points(&landmarks, &mesh);
+        Self { drawn: landmarks.on(&mesh.positions), marks, expressions }
+    }
+
+    /// All frames in turn, from a pose; the last state that was found with each.
+    pub(super) fn run(&self, pose: HeadPose, frames: &[FaceView]) -> Vec<(TrackedFrame, TrackedState)> {
+        let mut last = TrackedState { pose, amplitudes: [0.0; EXPRESSIONS] };
+        let one = |frame: &FaceView| {
+            let (outcome, state) = self.frame(frame, last);
+            last = state.unwrap_or(last);
+            (outcome, last)
+        };
+        frames.iter().map(one).collect()
+    }
+
     /// The head in a frame, from where it was last or, where that fails, from anywhere.
     fn frame(&self, frame: &FaceView, last: TrackedState) -> (TrackedFrame, Option<TrackedState>) {
         let marked = frame.points.iter().flatten().count();
@@ -141,7 +113,7 @@ impl HeadTracker<'_> {
         let state = self.fitted(frame, last);
         let mut best = (self.judged(frame, state), state);
         if best.0.found.is_none()
-            && let Some(state) = self.anew(frame)
+            && let Some(state) = self.anew(frame, last.pose.size)
         {
             let state = self.fitted(frame, state);
             let judged = self.judged(frame, state);
@@ -153,25 +125,26 @@ impl HeadTracker<'_> {
     }
 
     /// A start that knows nothing of the frames before; the head keeps its size.
-    fn anew(&self, frame: &FaceView) -> Option<TrackedState> {
-        let pose = first_pose(from_ref(frame), &self.head.marks).ok()?;
-        let (from, size) = (frame.camera.position(), self.head.pose.size);
+    fn anew(&self, frame: &FaceView, size: f64) -> Option<TrackedState> {
+        let pose = first_pose(from_ref(frame), &self.marks).ok()?;
+        let from = frame.camera.position();
         let place = from + (pose.place - from) * (size / pose.size);
         Some(TrackedState { pose: HeadPose { place, size, ..pose }, amplitudes: [0.0; EXPRESSIONS] })
     }
 
-    fn fitted(&self, frame: &FaceView, from: TrackedState) -> TrackedState {
+    /// Pose and amplitudes in a frame, from some that are near.
+    pub(super) fn fitted(&self, frame: &FaceView, from: TrackedState) -> TrackedState {
         (0..STEPS).fold(from, |state, _| self.step(frame, state))
     }
 
     /// The marked points, with their numbers, on the head with its expressions.
-    fn sightings(&self, frame: &FaceView, state: TrackedState) -> (Vec<usize>, Vec<Sighting>) {
-        let displaced = |(mark, fields): (&DVec3, &[DVec3; EXPRESSIONS])| {
-            *mark + fields.iter().zip(state.amplitudes).map(|(by, a)| *by * a).sum::<DVec3>()
-        };
-        let own: Vec<DVec3> = self.head.marks.iter().zip(&self.expressions).map(displaced).collect();
-        let shown = (0..FACE_POINTS).filter(|i| frame.points[*i].is_some()).collect();
-        (shown, marked_points(from_ref(frame), &self.drawn, &own))
+    pub(super) fn sightings(&self, frame: &FaceView, state: TrackedState) -> (Vec<usize>, Vec<Sighting>) {
+        let shown: Vec<usize> = (0..FACE_POINTS).filter(|i| frame.points[*i].is_some()).collect();
+        let mut all = marked_points(from_ref(frame), &self.drawn, &self.marks);
+        for (s, i) in all.iter_mut().zip(&shown) {
+            s.by = self.expressions[*i].iter().zip(state.amplitudes).map(|(by, a)| *by * a).sum();
+        }
+        (shown, all)
     }
 
     /// A Gauss-Newton step of pose and amplitudes, which stay within 0 and 1.

@@ -49,16 +49,21 @@ fn sequence(sex: Sex, seed: u64) -> Vec<FaceView> {
     (0..FRAMES).map(one).collect()
 }
 
-/// Mean and largest error of the turn, counted from that of a frame at rest (degrees), and of the amplitudes.
+/// Mean and largest error of the turn (degrees) and of the amplitudes. What a turn is counted from is the head's own matter, since another
+/// head has other axes: their mean turn is taken out.
 fn errors(frames: &[TrackedFrame]) -> [[f64; 2]; 2] {
-    let (mut turns, mut amplitudes) = (Vec::new(), Vec::new());
-    // What a turn is counted from is the head's own matter: another head has other axes.
-    let own = frames[0].found.unwrap().turn;
-    for (k, frame) in frames.iter().enumerate() {
-        let (Some(found), wanted) = (frame.found, truth(k)) else { continue };
-        turns.push((found.turn * own.inverse()).angle_between(wanted.turn).to_degrees());
-        amplitudes.extend(found.amplitudes.iter().zip(wanted.amplitudes).map(|(a, b)| (a - b).abs()));
-    }
+    let all: Vec<_> = frames.iter().enumerate().filter_map(|(k, f)| Some((f.found?, truth(k)))).collect();
+    let between = |(found, wanted): &(TrackedHead, TrackedHead)| {
+        let by = wanted.turn.inverse() * found.turn;
+        if by.w < 0.0 { -by } else { by }
+    };
+    let sum = all.iter().map(between).fold(DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0), |a, b| a + b);
+    let axes = sum.normalize();
+    let turns: Vec<f64> = all.iter().map(|both| between(both).angle_between(axes).to_degrees()).collect();
+    let off = |(found, wanted): &(TrackedHead, TrackedHead)| {
+        found.amplitudes.into_iter().zip(wanted.amplitudes).map(|(a, b)| (a - b).abs()).collect::<Vec<_>>()
+    };
+    let amplitudes: Vec<f64> = all.iter().flat_map(off).collect();
     [turns, amplitudes].map(|v| [v.iter().sum::<f64>() / v.len() as f64, v.iter().fold(0.0, |m, x| f64::max(m, *x))])
 }
 
