@@ -135,6 +135,11 @@ fn photograph(r: RawPhotograph, sequence: bool, folder: &Path) -> Result<MarkedP
     if r.focal_px.is_some_and(|f| !(50.0..1e6).contains(&f)) {
         return Err(whole(format!("a focal length of {} px is no lens", r.focal_px.unwrap_or(0.0))));
     }
+    if sequence && r.outline.is_some() {
+        let problem = format!("{}: an outline in a sequence, which is followed by its points", r.picture);
+        let cure = "leave it out, or give the photograph without \"sequence\"";
+        return Err(Fault::new(Place::Whole, problem, cure));
+    }
     let outlines = r.outline.map(outlines).transpose().map_err(|problem| {
         let cure = "give a curve as [[x, y], [x, y], ...] in the picture's pixels, or several of them";
         Fault::new(Place::Whole, format!("{}: {problem}", r.picture), cure)
@@ -250,5 +255,9 @@ mod tests {
         let said =
             parse(&format!("{{\"photographs\": [{frame}]}}"), Path::new("")).unwrap_err().at("p.json").to_string();
         assert!(said.contains("0 points, which is no order that is known"), "{said}");
+        let outlined = frame.replace('}', ", \"outline\": [[1, 2], [3, 4]]}");
+        let text = format!("{{\"sequence\": true, \"photographs\": [{outlined}]}}");
+        let said = parse(&text, Path::new("")).unwrap_err().at("p.json").to_string();
+        assert!(said.contains("an outline in a sequence, which is followed by its points; leave it out"), "{said}");
     }
 }

@@ -111,7 +111,8 @@ impl Expression {
         let mut found = Self { reach: reach_mm * 1e-3, parts };
         // The mesh is flat between its vertices, so that a point moves less than the function does there.
         for _ in 0..CORRECTIONS {
-            let off: Vec<DVec3> = wanted.iter().map(|(i, by)| *by - found.of_point(&landmarks.points[*i], mesh)).collect();
+            let off: Vec<DVec3> =
+                wanted.iter().map(|(i, by)| *by - found.of_point(&landmarks.points[*i], mesh)).collect();
             found.add(&off);
         }
         found
@@ -120,7 +121,8 @@ impl Expression {
     /// Adds displacements of its points.
     fn add(&mut self, wanted: &[DVec3]) {
         for axis in 0..3 {
-            let row = |a: &(DVec3, DVec3)| self.parts.iter().map(|b| wendland(a.0.distance(b.0) / self.reach)).collect();
+            let row =
+                |a: &(DVec3, DVec3)| self.parts.iter().map(|b| wendland(a.0.distance(b.0) / self.reach)).collect();
             let mut kernel: Vec<Vec<f64>> = self.parts.iter().map(row).collect();
             let mut weights: Vec<f64> = wanted.iter().map(|w| w[axis]).collect();
             solve(&mut kernel, &mut weights);

@@ -33,8 +33,8 @@ pub use adapt::{AdaptedHead, adapt};
 pub use expressions::{EXPRESSION_NAMES, EXPRESSIONS, ExpressionFields};
 pub use landmarks::{FaceLandmarks, SurfacePoint};
 pub use obj::{MTL, obj};
-pub use texture::{HeadTexture, png, texture};
 pub use sequence::{TrackedSequence, follow};
+pub use texture::{HeadTexture, png, texture};
 pub use track::{TrackedFrame, TrackedHead, track};
 pub use view::{FaceView, assumed_camera};
 
