@@ -32,7 +32,7 @@ mod texture;
 pub use adapt::{AdaptedHead, adapt};
 pub use expressions::{EXPRESSION_NAMES, EXPRESSIONS, ExpressionFields};
 pub use landmarks::{FaceLandmarks, SurfacePoint};
-pub use obj::{MTL, obj};
+pub use obj::{mtl, obj};
 pub use sequence::{TrackedSequence, follow};
 pub use texture::{HeadTexture, png, texture};
 pub use track::{TrackedFrame, TrackedHead, track};
