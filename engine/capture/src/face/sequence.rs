@@ -50,15 +50,11 @@ pub fn follow(frames: &[FaceView], sex: Sex) -> Result<TrackedSequence, CaptureE
     let mut kept = most_different(&before);
     let field = (kept.len() > 1).then(|| refined(&mut tracker, &frames[first..], &mut kept));
     let pose = kept.first().map_or(head.pose, |(_, state)| state.pose);
-    let head = match field {
-        Some(field) => AdaptedHead { points: 0, ..AdaptedHead::of(sex, &HeadMesh::of(sex), &field, pose) },
-        None => head,
-    };
-    let after = tracker.run(pose, frames).into_iter().map(|(frame, _)| frame).collect::<Vec<_>>();
-    let AdaptedHead { residual_px, points, .. } = head;
-    let seen = after.get(first).filter(|_| points == 0).map_or((residual_px, points), |f| (f.residual_px, f.points));
-    let head = AdaptedHead { residual_px: seen.0, points: seen.1, ..head };
-    Ok(TrackedSequence { head, first, kept: kept.len(), frames: after })
+    let first = first + kept.first().map_or(0, |(k, _)| *k);
+    let mut head = field.map_or(head, |field| AdaptedHead::of(sex, &HeadMesh::of(sex), &field, pose));
+    let frames: Vec<TrackedFrame> = tracker.run(pose, frames).into_iter().map(|(frame, _)| frame).collect();
+    (head.residual_px, head.points) = (frames[first].residual_px, frames[first].points);
+    Ok(TrackedSequence { head, first, kept: kept.len(), frames })
 }
 
 /// The first frame that shows a head, and that head.

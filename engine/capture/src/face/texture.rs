@@ -12,11 +12,12 @@ use toile_assets::body::shape::Shapes;
 use toile_assets::numeric::statistics::median_of;
 
 use super::adapt::AdaptedHead;
+use super::head_mesh::HeadMesh;
 use super::view::FaceView;
 use crate::depth_buffer::DepthBuffer;
 
 /// Pixels along a side of the atlas.
-pub const ATLAS: usize = 1_024;
+pub const ATLAS: usize = 2_048;
 
 /// Weight at which the skin's colour and what was seen count alike: a cosine of .35.
 const SKIN: f64 = 0.12;
@@ -38,11 +39,12 @@ pub struct HeadTexture {
     pub seen: f64,
 }
 
-/// A texel of the head: its place and normal before the cameras.
+/// A texel of the head: its place and normal before the cameras, and how far the head is its own there and not the neck's, 0 to 1.
 struct Texel {
     at: usize,
     place: DVec3,
     normal: DVec3,
+    own: f64,
 }
 
 /// Takes the head's picture from the photographs, one a view.
@@ -77,7 +79,10 @@ pub fn texture(head: &AdaptedHead, views: &[FaceView], photographs: &[RgbImage])
     let mut filled = vec![false; ATLAS * ATLAS];
     for (texel, (sum, weight)) in texels.iter().zip(&sums) {
         let faded = SKIN * SKIN / (SKIN + weight);
-        let colour = std::array::from_fn(|k| ((sum[k] + faded * skin[k]) / (weight + faded)).round() as u8);
+        // Towards the border with the body all of it becomes the skin's colour, which the body has.
+        let own = texel.own * texel.own * (3.0 - 2.0 * texel.own);
+        let seen = |k: usize| (sum[k] + faded * skin[k]) / (weight + faded);
+        let colour = std::array::from_fn(|k| (skin[k] + own * (seen(k) - skin[k])).round() as u8);
         picture.put_pixel((texel.at % ATLAS) as u32, (texel.at / ATLAS) as u32, Rgb(colour));
         filled[texel.at] = true;
     }
@@ -104,6 +109,7 @@ fn texels(head: &AdaptedHead) -> Vec<Texel> {
         let [a, b, c] = t.map(|v| head.placed[v as usize]);
         t.iter().for_each(|v| normals[*v as usize] += (b - a).cross(c - a));
     }
+    let share = HeadMesh::of(head.sex).share;
     let is_head: std::collections::BTreeSet<[u32; 3]> = head.triangles.iter().copied().collect();
     let mut found = Vec::new();
     let mut taken = vec![false; ATLAS * ATLAS];
@@ -130,7 +136,8 @@ fn texels(head: &AdaptedHead) -> Vec<Texel> {
                 }
                 taken[at] = true;
                 let of = |v: &[DVec3]| t.iter().zip(weights).map(|(i, w)| v[*i as usize] * w).sum::<DVec3>();
-                found.push(Texel { at, place: of(&head.placed), normal: of(&normals).normalize_or_zero() });
+                let own = t.iter().zip(weights).map(|(i, w)| share[*i as usize] * w).sum::<f64>().clamp(0.0, 1.0);
+                found.push(Texel { at, place: of(&head.placed), normal: of(&normals).normalize_or_zero(), own });
             }
         }
     }
