@@ -1,8 +1,8 @@
 //! The head's picture from the photographs, by inverse mapping: each texel of the body's atlas looks up where it was seen.
 //!
-//! A texel of the head is seen by a photograph where nothing hides it; photographs count by the square of the cosine between the surface
-//! and the line of sight, so that seams between them are feathered, and where none looks square on, the skin's own colour fades in: the
-//! median of what was seen well. All of the atlas that is not the head has that colour, which carries it to the body.
+//! A texel of the head is seen by a photograph where nothing hides it and the head goes on around it; photographs count by the square of
+//! the cosine between the surface and the line of sight and less towards the rim, so that seams between them are feathered, and where none
+//! looks square on, the skin's own colour fades in: the median of what was seen well. All of the atlas that is not the head has that colour, which carries it to the body.
 
 use std::io::Cursor;
 
@@ -24,6 +24,12 @@ const SKIN: f64 = 0.12;
 
 /// How much deeper than the nearest surface a point may lie and be seen (m).
 const HIDDEN: f64 = 0.004;
+
+/// How near to the place where the head ends in a photograph nothing is taken from it (m), since what lies beyond may show there, and
+/// over how many times that it comes to count in full; the head goes on where it is at most so much deeper (m).
+const RIM: f64 = 0.0025;
+const FEATHER: usize = 6;
+const DEEPER: f64 = 0.02;
 
 /// Weight from which a texel tells the skin's colour.
 const WELL: f64 = 0.5;
@@ -62,12 +68,16 @@ pub fn texture(head: &AdaptedHead, views: &[FaceView], photographs: &[RgbImage])
                 continue;
             }
             let in_buffer = buffer.project(&straight, texel.place);
-            if f64::from(buffer.nearest_around(in_buffer.truncate())) < in_buffer.z - HIDDEN {
+            let (at, depth) = (in_buffer.truncate(), in_buffer.z);
+            let reach = RIM * straight.focal().x / depth;
+            let goes_on = |k: &usize| buffer.goes_on(at, reach * *k as f64, depth + DEEPER);
+            let within = (1..=FEATHER).take_while(goes_on).count() as f64 / FEATHER as f64;
+            if within == 0.0 || f64::from(buffer.nearest_around(at)) < depth - HIDDEN {
                 continue;
             }
             let Some(pixel) = view.camera.pixel(texel.place) else { continue };
             let Some(colour) = sample(photograph, pixel) else { continue };
-            let weight = cosine * cosine;
+            let weight = cosine * cosine * within * within;
             sum.0.iter_mut().zip(colour).for_each(|(s, c)| *s += weight * c);
             sum.1 += weight;
         }
