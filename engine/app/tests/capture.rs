@@ -85,6 +85,8 @@ fn faces_that_nobody_has_are_one_sentence() {
     let with = |more: &str| wild.replacen("\"points\"", &format!("{more}, \"points\""), 1);
     write("dot.json", &file(&[with("\"outline\": [[3, 4]]")]));
     let sequence = |all: &[String]| file(all).replacen('{', "{\"sequence\": true, ", 1);
+    let corner = "\"outline\": [[2, 2], [290, 2], [290, 300]], \"points\"";
+    write("corner.json", &file(&[mannequin(0.0).replacen("\"points\"", corner, 1)]));
     write("nobody.json", &sequence(&[photograph("[]"), photograph("[]")]));
     write("cameras.json", &sequence(&[wild.clone(), with("\"camera\": \"cam2\"")]));
     write("outlined.json", &sequence(&[with("\"outline\": [[3, 4], [5, 6]]")]));
@@ -98,6 +100,7 @@ fn faces_that_nobody_has_are_one_sentence() {
         ("gone.json", 4, "gone.png"),
         ("wild.json", 4, "any head that stands before these cameras"),
         ("dot.json", 4, "a.png: an outline of 1 points is no curve"),
+        ("corner.json", 4, "lie near the rim of the head; mark where the head itself ends"),
         ("nobody.json", 4, "none of the first 2 has 8 points"),
         ("cameras.json", 4, "a sequence is of one camera"),
         ("outlined.json", 4, "an outline in a sequence"),
@@ -130,7 +133,8 @@ fn mannequin(aside: f64) -> String {
 fn a_sequence_is_reported_frame_by_frame_and_its_head_has_hair() {
     let scratch = Scratch::new("capture-frames");
     png(&scratch, "a.png", [300, 400], |x, y| x > y);
-    let frames = [mannequin(0.0), "{\"picture\": \"a.png\", \"focal_px\": 900, \"points\": []}".to_owned(), mannequin(0.02)];
+    let frames =
+        [mannequin(0.0), "{\"picture\": \"a.png\", \"focal_px\": 900, \"points\": []}".to_owned(), mannequin(0.02)];
     let text = format!("{{\"sequence\": true, \"photographs\": [{}]}}", frames.join(","));
     fs::write(scratch.path().join("frames.json"), text).unwrap();
     let output = scratch.toile(&["capture", "face", "frames.json", "--hair", "bun", "--out", "head", "--json"]);

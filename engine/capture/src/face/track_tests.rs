@@ -98,14 +98,18 @@ fn a_frame_of_garbage_is_said_so_and_does_not_spoil_the_next() {
         frames[k].points.iter_mut().for_each(|p| *p = Some(anywhere()));
     }
     frames[41].points.iter_mut().for_each(|p| *p = None);
+    // A fifth of the points of another.
+    frames[30].points.iter_mut().step_by(5).for_each(|p| *p = Some(anywhere()));
     let found = follow(&frames, Sex::Female).unwrap();
     let lost: Vec<usize> = (0..FRAMES).filter(|k| found.frames[*k].found.is_none()).collect();
     assert_eq!((found.first, lost), (1, vec![0, 20, 21, 40, 41]));
     let spared = track(&found.head, &clean);
-    for k in [22, 23, 42, 43] {
+    for (k, turned, grown) in [(22, 1e-3, 0.01), (23, 1e-3, 0.01), (42, 1e-3, 0.01), (30, 0.02, 0.15)] {
         let [a, b] = [found.frames[k], spared[k]].map(|f| f.found.unwrap());
-        assert!(a.turn.angle_between(b.turn) < 1e-3 && a.place.distance(b.place) < 1e-3, "frame {k}");
-        assert!(a.amplitudes.iter().zip(b.amplitudes).all(|(a, b)| (a - b).abs() < 0.01), "frame {k}");
+        let turn = a.turn.angle_between(b.turn);
+        let most = a.amplitudes.iter().zip(b.amplitudes).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        println!("frame {k}: {turn:.5} rad, amplitudes {most:.4}");
+        assert!(turn < turned && most < grown, "frame {k}: {turn} {most}");
     }
 }
 
