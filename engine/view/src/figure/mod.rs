@@ -92,7 +92,7 @@ pub struct HairMesh {
 }
 
 impl HairMesh {
-    /// On a head of any shape, of the drawn body at rest: its vertices (m) with their parts of the body, its triangles, the head's joint (m).
+    /// On a head of any shape, of the drawn body at rest: its vertices (m) with their parts of the body, its triangles, the joint (m).
     /// None for no hair.
     pub fn of(positions: &[Vec3], regions: &[Region], triangles: &[[u32; 3]], joint: Vec3, hair: Hair) -> Option<Self> {
         HeadSpace::around(positions, regions, joint).and_then(|space| Self::on(positions, triangles, &space, hair))
