@@ -5,6 +5,10 @@ mod common;
 use std::fs;
 
 use common::{Scratch, sentence};
+use glam::DVec3;
+use toile_assets::body::Sex;
+use toile_assets::body::shape::Shapes;
+use toile_capture::face::FaceLandmarks;
 
 /// Two cameras at a right angle, 3 m from the middle, in the format of Pose2Sim.
 const CAMERAS: &str = "[cam1]\nname = \"cam1\"\nsize = [60.0, 80.0]\nmatrix = [[80.0, 0.0, 29.5], [0.0, 80.0, 39.5], [0.0, 0.0, 1.0]]\n\
@@ -78,6 +82,15 @@ fn faces_that_nobody_has_are_one_sentence() {
     write("two.json", &file(&[wild.clone(), wild.clone()]));
     write("wild.json", &file(std::slice::from_ref(&wild)));
     write("gone.json", &file(&[wild.replace("a.png", "gone.png")]));
+    let with = |more: &str| wild.replacen("\"points\"", &format!("{more}, \"points\""), 1);
+    write("dot.json", &file(&[with("\"outline\": [[3, 4]]")]));
+    let sequence = |all: &[String]| file(all).replacen('{', "{\"sequence\": true, ", 1);
+    let corner = "\"outline\": [[2, 2], [290, 2], [290, 300]], \"points\"";
+    write("corner.json", &file(&[mannequin(0.0).replacen("\"points\"", corner, 1)]));
+    write("nobody.json", &sequence(&[photograph("[]"), photograph("[]")]));
+    write("cameras.json", &sequence(&[wild.clone(), with("\"camera\": \"cam2\"")]));
+    write("outlined.json", &sequence(&[with("\"outline\": [[3, 4], [5, 6]]")]));
+    write("frames.json", &sequence(&[wild.clone(), wild.clone()]));
     for (name, code, wanted) in [
         ("absent.json", 4, "absent.json"),
         ("none.json", 4, "it holds no marked photographs"),
@@ -86,9 +99,55 @@ fn faces_that_nobody_has_are_one_sentence() {
         ("two.json", 2, "2 photographs need --calibration"),
         ("gone.json", 4, "gone.png"),
         ("wild.json", 4, "any head that stands before these cameras"),
+        ("dot.json", 4, "a.png: an outline of 1 points is no curve"),
+        ("corner.json", 4, "lie near the rim of the head; mark where the head itself ends"),
+        ("nobody.json", 4, "none of the first 2 has 8 points"),
+        ("cameras.json", 4, "a sequence is of one camera"),
+        ("outlined.json", 4, "an outline in a sequence"),
+        ("frames.json", 4, "any head that stands before these cameras"),
     ] {
         let output = scratch.toile(&["capture", "face", name]);
         let said = sentence(&output);
         assert!(output.status.code() == Some(code) && said.contains(wanted), "{name}: {said}");
     }
+    let output = scratch.toile(&["capture", "face", "wild.json", "--picture"]);
+    assert!(output.status.code() == Some(2) && sentence(&output).contains("--out"));
+}
+
+/// The mannequin's own points, 1.2 m before a camera of 300 x 400 pixels, so far to the side (m).
+fn mannequin(aside: f64) -> String {
+    let base = Shapes::of(Sex::Female).base();
+    let positions: Vec<DVec3> = base.positions.iter().map(|p| p.as_dvec3()).collect();
+    let points = FaceLandmarks::new().on(&positions);
+    let middle = points.iter().sum::<DVec3>() / points.len() as f64;
+    let seen = |p: &DVec3| {
+        let p = *p - middle;
+        let depth = 1.2 - p.z;
+        format!("[{:.3}, {:.3}]", 149.5 + 900.0 * (p.x + aside) / depth, 199.5 - 900.0 * p.y / depth)
+    };
+    let points: Vec<String> = points.iter().map(seen).collect();
+    format!("{{\"picture\": \"a.png\", \"focal_px\": 900, \"points\": [{}]}}", points.join(","))
+}
+
+#[test]
+fn a_sequence_is_reported_frame_by_frame_and_its_head_has_hair() {
+    let scratch = Scratch::new("capture-frames");
+    png(&scratch, "a.png", [300, 400], |x, y| x > y);
+    let frames =
+        [mannequin(0.0), "{\"picture\": \"a.png\", \"focal_px\": 900, \"points\": []}".to_owned(), mannequin(0.02)];
+    let text = format!("{{\"sequence\": true, \"photographs\": [{}]}}", frames.join(","));
+    fs::write(scratch.path().join("frames.json"), text).unwrap();
+    let output = scratch.toile(&["capture", "face", "frames.json", "--hair", "bun", "--out", "head", "--json"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let frames = report["sequence"]["frames"].as_array().unwrap();
+    let found: Vec<bool> = frames.iter().map(|f| f["found"].as_bool().unwrap()).collect();
+    assert_eq!((found, report["sequence"]["lost"].as_u64()), (vec![true, false, true], Some(1)));
+    let x = |k: usize| frames[k]["place_mm"][0].as_f64().unwrap();
+    assert!((x(2) - x(0) - 20.0).abs() < 1.0 && frames[2]["smile"].as_f64().unwrap() < 0.05, "{} {}", x(0), x(2));
+    assert!(frames[1].get("yaw_degrees").is_none() && frames[1]["residual_px"].is_null());
+    let obj = fs::read_to_string(scratch.path().join("head/head.obj")).unwrap();
+    assert!(obj.contains("o hair\nusemtl hair\n"));
+    assert!(fs::read_to_string(scratch.path().join("head/head.mtl")).unwrap().contains("newmtl hair"));
+    assert_eq!(fs::read(scratch.path().join("head/report.json")).unwrap().first(), Some(&b'{'));
 }

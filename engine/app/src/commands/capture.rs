@@ -12,6 +12,8 @@ pub(crate) mod body;
 pub(crate) mod compare;
 mod fabric_scene;
 pub(crate) mod face;
+mod face_frames;
+mod face_picture;
 pub(crate) mod flow;
 pub(crate) mod pose;
 

@@ -94,6 +94,16 @@ impl FaceLandmarks {
     }
 }
 
+/// The number of a point's mirror image.
+pub(super) fn mirrored(point: usize) -> usize {
+    let of = |(own, other, _): &(usize, usize, _)| match point {
+        p if p == *own => Some(*other),
+        p if p == *other => Some(*own),
+        _ => None,
+    };
+    DRAWN.iter().find_map(of).unwrap_or(point)
+}
+
 impl Default for FaceLandmarks {
     fn default() -> Self {
         Self::new()

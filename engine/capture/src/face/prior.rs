@@ -18,7 +18,7 @@ const AFFINE: f64 = 0.06;
 const SYMMETRIC: f64 = 0.92;
 
 /// A smooth function of compact support, 1 at 0 and 0 from 1 on (Wendland 1995, C2 in three dimensions).
-fn wendland(x: f64) -> f64 {
+pub(super) fn wendland(x: f64) -> f64 {
     if x >= 1.0 { 0.0 } else { (1.0 - x).powi(4) * (4.0 * x + 1.0) }
 }
 
@@ -80,7 +80,7 @@ impl Field {
 }
 
 /// Solves a symmetric positive system in place by Cholesky's factors; the lower triangle is read.
-fn solve(a: &mut [Vec<f64>], x: &mut [f64]) {
+pub(super) fn solve(a: &mut [Vec<f64>], x: &mut [f64]) {
     let n = x.len();
     for i in 0..n {
         for j in 0..=i {

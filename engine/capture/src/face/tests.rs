@@ -8,12 +8,12 @@ use toile_assets::numeric::random::SplitMix64;
 use toile_sensors::calibration::CalibratedCamera;
 use toile_sensors::face_points::FACE_POINTS;
 
-use super::adapt::middle;
+use super::head_mesh::middle;
 use super::*;
 use crate::render::look_at;
 
 /// A head that no field of the prior made: sides of a head stretched, waves over it, another nose and chin, not quite symmetric.
-fn stranger(sex: Sex, seed: u64) -> Vec<DVec3> {
+pub(super) fn stranger(sex: Sex, seed: u64) -> Vec<DVec3> {
     let mut rng = SplitMix64::new(seed);
     let mut g = || f64::from(rng.gaussian());
     let base = Shapes::of(sex).base();
@@ -44,7 +44,7 @@ fn stranger(sex: Sex, seed: u64) -> Vec<DVec3> {
 }
 
 /// Cameras before a face at these angles (degrees), 1.2 m off.
-fn cameras(angles: &[f64]) -> Vec<CalibratedCamera> {
+pub(super) fn cameras(angles: &[f64]) -> Vec<CalibratedCamera> {
     let at = |(k, a): (usize, &f64)| {
         let (s, c) = a.to_radians().sin_cos();
         look_at(&format!("cam{k}"), [1200, 1600], 3_600.0, [DVec3::new(1.2 * s, 0.05, 1.2 * c), DVec3::ZERO], DVec3::Y)
@@ -53,7 +53,13 @@ fn cameras(angles: &[f64]) -> Vec<CalibratedCamera> {
 }
 
 /// Points with noise, where they can be seen at all.
-fn marked(truth: &[DVec3], normals: &[DVec3], rig: &[CalibratedCamera], sigma: f64, seed: u64) -> Vec<FaceView> {
+pub(super) fn marked(
+    truth: &[DVec3],
+    normals: &[DVec3],
+    rig: &[CalibratedCamera],
+    sigma: f64,
+    seed: u64,
+) -> Vec<FaceView> {
     let mut rng = SplitMix64::new(seed);
     rig.iter()
         .map(|camera| {
@@ -62,18 +68,18 @@ fn marked(truth: &[DVec3], normals: &[DVec3], rig: &[CalibratedCamera], sigma: f
                 let noise = DVec2::new(f64::from(rng.gaussian()), f64::from(rng.gaussian())) * sigma;
                 camera.pixel(truth[i]).filter(|_| seen).map(|p| p + noise)
             });
-            FaceView { camera: camera.clone(), points, sigma_px: sigma }
+            FaceView { camera: camera.clone(), points, outlines: Vec::new(), sigma_px: sigma }
         })
         .collect()
 }
 
-struct Case {
-    truth: Vec<DVec3>,
-    views: Vec<FaceView>,
-    face: Vec<usize>,
+pub(super) struct Case {
+    pub truth: Vec<DVec3>,
+    pub views: Vec<FaceView>,
+    pub face: Vec<usize>,
 }
 
-fn case(sex: Sex, seed: u64, angles: &[f64]) -> Case {
+pub(super) fn case(sex: Sex, seed: u64, angles: &[f64]) -> Case {
     let turn = DQuat::from_rotation_y(0.1) * DQuat::from_rotation_x(-0.06);
     let truth: Vec<DVec3> = stranger(sex, seed).iter().map(|p| turn * *p + DVec3::new(0.01, -0.02, 0.015)).collect();
     let base = Shapes::of(sex).base();
@@ -93,7 +99,7 @@ fn case(sex: Sex, seed: u64, angles: &[f64]) -> Case {
 }
 
 /// Mean distance of the face's vertices from the truth (mm); one photograph cannot tell a head's size, so that it is taken out.
-fn off(case: &Case, placed: &[DVec3], sized: bool) -> f64 {
+pub(super) fn off(case: &Case, placed: &[DVec3], sized: bool) -> f64 {
     let mean = |of: &[DVec3]| case.face.iter().map(|v| of[*v]).sum::<DVec3>() / case.face.len() as f64;
     let (a, b) = (mean(placed), mean(&case.truth));
     let spread = |of: &[DVec3], m: DVec3| case.face.iter().map(|v| of[*v].distance_squared(m)).sum::<f64>().sqrt();

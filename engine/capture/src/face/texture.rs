@@ -1,8 +1,9 @@
 //! The head's picture from the photographs, by inverse mapping: each texel of the body's atlas looks up where it was seen.
 //!
-//! A texel of the head is seen by a photograph where nothing hides it; photographs count by the square of the cosine between the surface
-//! and the line of sight, so that seams between them are feathered, and where none looks square on, the skin's own colour fades in: the
-//! median of what was seen well. All of the atlas that is not the head has that colour, which carries it to the body.
+//! A texel of the head is seen by a photograph where nothing hides it and the head goes on around it; photographs count by the square of
+//! the cosine between the surface and the line of sight and less towards the rim, so that seams between them are feathered. Where none
+//! looks square on, and towards the neck, the skin's own colour fades in: the median of what was seen well. All of the atlas that is not
+//! the head has that colour, which carries it to the body.
 
 use std::io::Cursor;
 
@@ -11,17 +12,25 @@ use image::{ImageFormat, Rgb, RgbImage};
 use toile_assets::body::shape::Shapes;
 use toile_assets::numeric::statistics::median_of;
 
-use super::adapt::{AdaptedHead, FaceView};
+use super::adapt::AdaptedHead;
+use super::head_mesh::HeadMesh;
+use super::view::FaceView;
 use crate::depth_buffer::DepthBuffer;
 
 /// Pixels along a side of the atlas.
-pub const ATLAS: usize = 1_024;
+pub const ATLAS: usize = 2_048;
 
 /// Weight at which the skin's colour and what was seen count alike: a cosine of .35.
 const SKIN: f64 = 0.12;
 
 /// How much deeper than the nearest surface a point may lie and be seen (m).
 const HIDDEN: f64 = 0.004;
+
+/// How near to the place where the head ends in a photograph nothing is taken from it (m), since what lies beyond may show there, and
+/// over how many times that it comes to count in full; the head goes on where it is at most so much deeper (m).
+const RIM: f64 = 0.0025;
+const FEATHER: usize = 6;
+const DEEPER: f64 = 0.02;
 
 /// Weight from which a texel tells the skin's colour.
 const WELL: f64 = 0.5;
@@ -37,11 +46,12 @@ pub struct HeadTexture {
     pub seen: f64,
 }
 
-/// A texel of the head: its place and normal before the cameras.
+/// A texel of the head: its place and normal before the cameras, and how far the head is its own there and not the neck's, 0 to 1.
 struct Texel {
     at: usize,
     place: DVec3,
     normal: DVec3,
+    own: f64,
 }
 
 /// Takes the head's picture from the photographs, one a view.
@@ -59,12 +69,16 @@ pub fn texture(head: &AdaptedHead, views: &[FaceView], photographs: &[RgbImage])
                 continue;
             }
             let in_buffer = buffer.project(&straight, texel.place);
-            if f64::from(buffer.nearest_around(in_buffer.truncate())) < in_buffer.z - HIDDEN {
+            let (at, depth) = (in_buffer.truncate(), in_buffer.z);
+            let reach = RIM * straight.focal().x / depth;
+            let goes_on = |k: &usize| buffer.goes_on(at, reach * *k as f64, depth + DEEPER);
+            let within = (1..=FEATHER).take_while(goes_on).count() as f64 / FEATHER as f64;
+            if within == 0.0 || f64::from(buffer.nearest_around(at)) < depth - HIDDEN {
                 continue;
             }
             let Some(pixel) = view.camera.pixel(texel.place) else { continue };
             let Some(colour) = sample(photograph, pixel) else { continue };
-            let weight = cosine * cosine;
+            let weight = cosine * cosine * within * within;
             sum.0.iter_mut().zip(colour).for_each(|(s, c)| *s += weight * c);
             sum.1 += weight;
         }
@@ -76,7 +90,10 @@ pub fn texture(head: &AdaptedHead, views: &[FaceView], photographs: &[RgbImage])
     let mut filled = vec![false; ATLAS * ATLAS];
     for (texel, (sum, weight)) in texels.iter().zip(&sums) {
         let faded = SKIN * SKIN / (SKIN + weight);
-        let colour = std::array::from_fn(|k| ((sum[k] + faded * skin[k]) / (weight + faded)).round() as u8);
+        // Towards the border with the body all of it becomes the skin's colour, which the body has.
+        let own = texel.own * texel.own * (3.0 - 2.0 * texel.own);
+        let seen = |k: usize| (sum[k] + faded * skin[k]) / (weight + faded);
+        let colour = std::array::from_fn(|k| (skin[k] + own * (seen(k) - skin[k])).round() as u8);
         picture.put_pixel((texel.at % ATLAS) as u32, (texel.at / ATLAS) as u32, Rgb(colour));
         filled[texel.at] = true;
     }
@@ -103,6 +120,7 @@ fn texels(head: &AdaptedHead) -> Vec<Texel> {
         let [a, b, c] = t.map(|v| head.placed[v as usize]);
         t.iter().for_each(|v| normals[*v as usize] += (b - a).cross(c - a));
     }
+    let share = HeadMesh::of(head.sex).share;
     let is_head: std::collections::BTreeSet<[u32; 3]> = head.triangles.iter().copied().collect();
     let mut found = Vec::new();
     let mut taken = vec![false; ATLAS * ATLAS];
@@ -129,7 +147,8 @@ fn texels(head: &AdaptedHead) -> Vec<Texel> {
                 }
                 taken[at] = true;
                 let of = |v: &[DVec3]| t.iter().zip(weights).map(|(i, w)| v[*i as usize] * w).sum::<DVec3>();
-                found.push(Texel { at, place: of(&head.placed), normal: of(&normals).normalize_or_zero() });
+                let own = t.iter().zip(weights).map(|(i, w)| share[*i as usize] * w).sum::<f64>().clamp(0.0, 1.0);
+                found.push(Texel { at, place: of(&head.placed), normal: of(&normals).normalize_or_zero(), own });
             }
         }
     }

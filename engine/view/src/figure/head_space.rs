@@ -19,10 +19,14 @@ pub struct HeadSpace {
 impl HeadSpace {
     /// Of a body at rest; none without a head.
     pub fn of(body: &Body) -> Option<Self> {
-        let head = body.mesh.positions.iter().zip(&body.regions).filter(|(_, r)| **r == Region::Head);
+        Self::around(&body.mesh.positions, &body.regions, body.skeleton.at(Joint::Head))
+    }
+
+    /// Of vertices at rest (m) with their parts of the body and the head's joint (m); none without a head.
+    pub fn around(positions: &[Vec3], regions: &[Region], joint: Vec3) -> Option<Self> {
+        let head = positions.iter().zip(regions).filter(|(_, r)| **r == Region::Head);
         let heights = head.map(|(p, _)| p.y);
         let (low, high) = heights.fold((f32::MAX, f32::MIN), |(low, high), y| (low.min(y), high.max(y)));
-        let joint = body.skeleton.at(Joint::Head);
         (high > low).then(|| Self { origin: Vec3::new(0.0, high, joint.z), unit: (high - low) / HEIGHT_MM })
     }
 

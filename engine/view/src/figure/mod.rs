@@ -20,7 +20,7 @@ mod placed_head;
 mod tests;
 
 use glam::Vec3;
-use toile_assets::body::{Body, base};
+use toile_assets::body::{Body, Region, base};
 use toile_assets::mesh::vertex_normals;
 
 use crate::base_layer::{HAIR_AT, base_layer};
@@ -71,16 +71,39 @@ impl Figure {
     }
 
     fn take_hair(&mut self, body: &Body, space: &HeadSpace, hair: Hair) {
-        let Some(cut) = hair.cut() else { return };
-        let scalp = body.mesh.triangles.iter().map(|t| t.map(|v| space.inwards(self.rest[v as usize])));
-        let Moulded { points, triangles } = Moulded::of(cut, scalp);
-        let points: Vec<Vec3> = points.into_iter().map(|p| space.outwards(p)).collect();
-        let mut normals = vec![Vec3::ZERO; points.len()];
-        vertex_normals(&points, &triangles, &mut normals);
+        let Some(hair) = HairMesh::on(&self.rest, &body.mesh.triangles, space, hair) else { return };
         let first = self.rest.len() as u32;
-        self.look.corners.extend(triangles.iter().map(|_| [HAIR_AT; 3]));
-        self.triangles.extend(triangles.into_iter().map(|t| t.map(|v| v + first)));
-        self.rest.extend(points);
-        self.normals.extend(normals);
+        self.look.corners.extend(hair.triangles.iter().map(|_| [HAIR_AT; 3]));
+        self.triangles.extend(hair.triangles.into_iter().map(|t| t.map(|v| v + first)));
+        self.rest.extend(hair.positions);
+        self.normals.extend(hair.normals);
+    }
+}
+
+/// Moulded hair as a mesh of its own.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HairMesh {
+    /// Vertices (m) `[vertices]`.
+    pub positions: Vec<Vec3>,
+    /// Their unit normals `[vertices]`.
+    pub normals: Vec<Vec3>,
+    /// Vertex indices.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+impl HairMesh {
+    /// On a head of any shape, of the drawn body at rest: its vertices (m) with their parts of the body, its triangles, the joint (m).
+    /// None for no hair.
+    pub fn of(positions: &[Vec3], regions: &[Region], triangles: &[[u32; 3]], joint: Vec3, hair: Hair) -> Option<Self> {
+        HeadSpace::around(positions, regions, joint).and_then(|space| Self::on(positions, triangles, &space, hair))
+    }
+
+    fn on(positions: &[Vec3], triangles: &[[u32; 3]], space: &HeadSpace, hair: Hair) -> Option<Self> {
+        let scalp = triangles.iter().map(|t| t.map(|v| space.inwards(positions[v as usize])));
+        let Moulded { points, triangles } = Moulded::of(hair.cut()?, scalp);
+        let positions: Vec<Vec3> = points.into_iter().map(|p| space.outwards(p)).collect();
+        let mut normals = vec![Vec3::ZERO; positions.len()];
+        vertex_normals(&positions, &triangles, &mut normals);
+        Some(Self { positions, normals, triangles })
     }
 }
