@@ -17,10 +17,10 @@ pub mod people;
 pub mod plot;
 mod random;
 pub mod reliability;
-pub mod skinning;
 
 pub mod ansur;
 pub mod latency;
+pub mod skinning;
 pub mod skirt;
 pub mod soak;
 pub mod torture;

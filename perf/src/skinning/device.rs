@@ -97,22 +97,22 @@ pub fn run(
         let mut job = SkinningJob::new(&surface.positions, &surface.normals, &surface.weights)?;
         job.width = width;
         for blend in Blend::ALL {
-            rows.push(row(&graphics, &Case { job: &job, surface: &surface, bodies, options: &options }, blend)?);
+            rows.push(row(&graphics, &SkinnedCase { job: &job, surface: &surface, bodies, options: &options }, blend)?);
         }
     }
     Ok(DeviceSkinning { adapter: Adapter::of(graphics.adapter()), rows })
 }
 
 /// What is skinned in a row.
-struct Case<'a> {
+struct SkinnedCase<'a> {
     job: &'a SkinningJob,
     surface: &'a Surface,
     bodies: usize,
     options: &'a SkinningOptions,
 }
 
-fn row(graphics: &Graphics, case: &Case<'_>, blend: Blend) -> Result<DeviceRow, SkinningError> {
-    let Case { job, surface, bodies, options } = *case;
+fn row(graphics: &Graphics, case: &SkinnedCase<'_>, blend: Blend) -> Result<DeviceRow, SkinningError> {
+    let SkinnedCase { job, surface, bodies, options } = *case;
     let mut skins = DeviceSkins::lay(graphics, &vec![job; bodies]).map_err(SkinningError::Device)?;
     let palettes = vec![&surface.palette; bodies];
     let mut failed = None;
@@ -163,7 +163,7 @@ fn kept_us(skins: &mut DeviceSkins, blend: Blend, palettes: &[&[Affine3A; BONES]
 }
 
 /// All bodies of a case by the processor (us).
-fn cpu_us(case: &Case<'_>, blend: Blend, threads: usize) -> Result<f64, SkinningError> {
+fn cpu_us(case: &SkinnedCase<'_>, blend: Blend, threads: usize) -> Result<f64, SkinningError> {
     let mut pool = WorkerPool::new(threads)?;
     let mut posed: Vec<_> = (0..case.bodies).map(|_| case.job.posed_mesh()).collect();
     Ok(timing::median_us(|| {
