@@ -8,8 +8,10 @@ use std::path::{Path, PathBuf};
 use glam::Vec3;
 use toile_assets::bake::bake;
 use toile_assets::body::{Body, Measures, Sex};
+use toile_assets::drafting;
 use toile_assets::draping::{self, DrapeError, DrapedPattern, SkinField, drape, ease, read_package};
 use toile_assets::fabric::Fabric;
+use toile_assets::garment::Garment;
 use toile_assets::import::pattern::{parse, read};
 use toile_assets::pattern::{Panel, Pattern};
 use toile_assets::sizes::{Girth, SizeTable};
@@ -288,4 +290,35 @@ fn grading_meets_the_draft_that_it_has_not_seen() {
         println!("{name}: {:.2} mm off, of {:.0} mm", worst * 1e3, moved * 1e3);
         assert!(worst < most, "{name}: {:.2} mm off", worst * 1e3);
     }
+}
+
+/// Where the vertices of a garment's mesh lie (m), in their order.
+fn in_mesh_order(garment: &Garment) -> Vec<Vec3> {
+    let mut at = vec![Vec3::ZERO; garment.particles()];
+    garment.source.iter().zip(&garment.start).for_each(|(v, p)| at[*v as usize] = *p);
+    at
+}
+
+#[test]
+fn what_hangs_on_the_body_of_its_size_comes_over_to_another() {
+    let package = drafting::style("pencil-skirt").unwrap().package().unwrap();
+    let hung = package.hang(None, "38").unwrap().expect("38 is a size of its table");
+    for size in ["38", "40"] {
+        let wearer = women(size);
+        let carried = package.dress_from(&hung, &wearer).unwrap();
+        let again = package.dress_from(&hung, &wearer).unwrap();
+        assert_eq!(carried.start, again.start, "the same bits whoever does it");
+        let sewn = package.dress("38", &wearer).unwrap();
+        let (one, other) = (in_mesh_order(&carried), in_mesh_order(&sewn));
+        let apart: Vec<f32> = one.iter().zip(&other).map(|(a, b)| a.distance(*b)).collect();
+        let mean = apart.iter().sum::<f32>() / apart.len() as f32;
+        let field = SkinField::new(&wearer);
+        let deepest = one.iter().filter_map(|p| field.nearest(*p)).map(|p| p.distance).fold(0.0, f32::min);
+        println!("38 on {size}: {:.1} mm apart in the mean, {:.2} mm in the skin", mean * 1e3, -deepest * 1e3);
+        assert!(mean < 0.015, "38 on {size}: {mean} m apart");
+        assert!(deepest > -1e-4, "38 on {size}: {deepest} m in the skin");
+    }
+    // A size of no table hangs on nobody.
+    let drafted = toile_assets::draping::AS_DRAFTED;
+    assert!(package.hang(None, drafted).unwrap().is_none());
 }
