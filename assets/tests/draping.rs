@@ -319,6 +319,6 @@ fn what_hangs_on_the_body_of_its_size_comes_over_to_another() {
         assert!(deepest > -1e-4, "38 on {size}: {deepest} m in the skin");
     }
     // A size of no table hangs on nobody.
-    let drafted = toile_assets::draping::AS_DRAFTED;
+    let drafted = draping::AS_DRAFTED;
     assert!(package.hang(None, drafted).unwrap().is_none());
 }

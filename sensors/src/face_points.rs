@@ -237,7 +237,7 @@ mod tests {
                 .map(|m| m.photographs[0].outlines.clone())
         };
         let curve = vec![DVec2::new(1.0, 2.0), DVec2::new(3.0, 4.0)];
-        assert_eq!(of("[[1, 2], [3, 4]]").unwrap(), [curve.clone()]);
+        assert_eq!(of("[[1, 2], [3, 4]]").unwrap(), std::slice::from_ref(&curve));
         assert_eq!(of("[[[1, 2], [3, 4]], [[1, 2], [3, 4]]]").unwrap(), [curve.clone(), curve]);
         let said = |outline: &str| of(outline).unwrap_err().at("p.json").to_string();
         assert!(said("[[1, 2]]").contains("a.png: an outline of 1 points is no curve; give a curve as"));
