@@ -11,10 +11,11 @@ use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::drafting;
 use toile_assets::draping::{self, DrapeError, DrapedPattern, SkinField, drape, ease, read_package};
 use toile_assets::fabric::Fabric;
-use toile_assets::garment::Garment;
+use toile_assets::garment::{Garment, Part};
 use toile_assets::import::pattern::{parse, read};
 use toile_assets::pattern::{Panel, Pattern};
 use toile_assets::sizes::{Girth, SizeTable};
+use toile_assets::skeleton::Joint;
 
 /// Spacing at which the laws are looked at (m): coarse, so that a test takes seconds.
 const SPACING: f64 = 0.03;
@@ -321,4 +322,17 @@ fn what_hangs_on_the_body_of_its_size_comes_over_to_another() {
     // A size of no table hangs on nobody.
     let drafted = draping::AS_DRAFTED;
     assert!(package.hang(None, drafted).unwrap().is_none());
+}
+
+#[test]
+fn what_lies_over_an_arm_is_not_carried_by_the_shoulder_and_meets_the_arm() {
+    let wearer = women("40");
+    let poncho = drafting::style("poncho").unwrap().package().unwrap().dress("40", &wearer).unwrap();
+    let tip = wearer.skeleton.at(Joint::LeftShoulder).x.abs();
+    let farthest = poncho.fixed.iter().map(|i| poncho.start[*i as usize].x.abs()).fold(0.0, f32::max);
+    assert!(farthest < tip + 0.02, "{farthest} m of a shoulder at {tip} m");
+    let over = |i: &usize| poncho.start[*i].x.abs() > tip + 0.1 && poncho.start[*i].y > wearer.levels.waist;
+    let over: Vec<usize> = (0..poncho.particles()).filter(over).collect();
+    let meets = over.iter().filter(|i| poncho.parts[**i] == Part::All).count();
+    assert!(over.len() > 100 && 10 * meets > 9 * over.len(), "{meets} of {}", over.len());
 }

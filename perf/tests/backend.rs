@@ -39,7 +39,7 @@ const SWING_M: f64 = 0.1;
 
 /// How much nearer to the oracle's equilibrium a settled skirt may be on a device, or farther, in parts: it creeps on for a while,
 /// and where it has got to in ten seconds is a matter of last bits; an NVIDIA H200 came 3 % nearer.
-const SETTLED: f64 = 0.1;
+const SETTLED: f64 = 0.05;
 
 /// Whatever steps on a device; none where this machine has none, which CI does not excuse.
 fn device() -> Option<Backends> {

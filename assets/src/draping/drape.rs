@@ -111,23 +111,13 @@ pub(super) fn drape_around(
             sewn = finer;
         }
         let own = Springs::new(&shape(&sewn, at.clone()), fabric, Vec::new());
-        let sides = sides(&sewn, &arranged);
-        let free = vec![false; at.len()];
-        held = if arranged.shoulders { free.clone() } else { upper_edge(&sewn, &arranged) };
-        let mut relaxed = Relaxation { at, springs: &own, field, sides: &sides, held: &free };
-        if k == 0 || k < last {
-            relaxed.run(&SMOOTHING);
-        } else {
-            relaxed.run(&RelaxRun { steps: SMOOTHING.steps / 3, ..SMOOTHING });
-        }
-        relaxed.held = &held;
-        if k + 1 >= last {
-            relaxed.run(&HANGING);
-        }
-        if k == last {
-            relaxed.run(&RESTING);
-        }
-        at = relaxed.at;
+        let smoothing = if k == 0 || k < last { SMOOTHING.steps } else { SMOOTHING.steps / 3 };
+        let hanging: &[RelaxRun] = match last - k {
+            0 => &[HANGING, RESTING],
+            1 => &[HANGING],
+            _ => &[],
+        };
+        (at, held) = come_down((&sewn, &arranged), at, (&own, field), smoothing, hanging);
         springs = Some(own);
         levels.push(DrapeLevel { spacing, seconds: start.elapsed().as_secs_f64() });
         start = Instant::now();
@@ -141,7 +131,7 @@ pub(super) fn drape_around(
 }
 
 /// Lets a pattern hang on a body that hangs on another one already: it is carried over with the skin and comes to rest.
-/// Some fifth of the time of [`drape`]; where it lies differs from that by folds that could lie either way.
+/// Where it lies differs from that by folds that could lie either way.
 ///
 /// # Errors
 /// As [`drape`].
@@ -156,21 +146,33 @@ pub(super) fn drape_on(
     let arranged = arrange(pattern, &sewn, body)?;
     let at = carry_over(from, body, &hung.at);
     let springs = Springs::new(&shape(&sewn, at.clone()), fabric, Vec::new());
-    let sides = sides(&sewn, &arranged);
-    let free = vec![false; at.len()];
-    let held = if arranged.shoulders { free.clone() } else { upper_edge(&sewn, &arranged) };
-    let mut relaxed = Relaxation { at, springs: &springs, field, sides: &sides, held: &free };
-    relaxed.run(&RelaxRun { steps: SMOOTHING.steps / 8, ..SMOOTHING });
-    relaxed.held = &held;
-    relaxed.run(&HANGING_ON);
-    relaxed.run(&RESTING);
-    let at = relaxed.at;
+    let smoothing = SMOOTHING.steps / 8;
+    let (at, held) = come_down((&sewn, &arranged), at, (&springs, field), smoothing, &[HANGING_ON, RESTING]);
     let spacing = hung.levels.last().map_or(0.0, |level| level.spacing);
     let levels = vec![DrapeLevel { spacing, seconds: start.elapsed().as_secs_f64() }];
     let quality = judged(body, field, &sewn, &springs, &at, hung.quality.seams_open);
     let draped = DrapedPattern { sewn, at, placed: hung.placed.clone(), levels, quality, arranged, held };
     check(pattern, &draped, &springs)?;
     Ok(draped)
+}
+
+/// Cloth takes its lengths in so many steps, nothing held; then it comes down in runs of steps, by its upper edge where it has no
+/// shoulders. Where it lies then (m), and what is held `[vertices]`.
+fn come_down(
+    (sewn, arranged): (&SewnMesh, &Arrangement),
+    at: Vec<Vec3>,
+    (springs, field): (&Springs, &SkinField),
+    smoothing: usize,
+    hanging: &[RelaxRun],
+) -> (Vec<Vec3>, Vec<bool>) {
+    let sides = sides(sewn, arranged);
+    let free = vec![false; at.len()];
+    let held = if arranged.shoulders { free.clone() } else { upper_edge(sewn, arranged) };
+    let mut relaxed = Relaxation { at, springs, field, sides: &sides, held: &free };
+    relaxed.run(&RelaxRun { steps: smoothing, ..SMOOTHING });
+    relaxed.held = &held;
+    hanging.iter().for_each(|run| relaxed.run(run));
+    (relaxed.at, held)
 }
 
 /// How well a pattern hangs whose seams were so far open (m).

@@ -242,8 +242,11 @@ impl PatternPackage {
     /// # Errors
     /// The panel or seam that is at fault.
     pub fn drape(&self, pattern: &Pattern, body: &Body, fabric: &Fabric) -> Result<DrapedPattern, PackageError> {
-        drape(pattern, body, fabric, self.spacing_mm * 1e-3)
-            .map_err(|source| PackageError::Drape { name: self.name.clone(), source })
+        drape(pattern, body, fabric, self.spacing_mm * 1e-3).map_err(|e| self.not_draped(e))
+    }
+
+    fn not_draped(&self, source: DrapeError) -> PackageError {
+        PackageError::Drape { name: self.name.clone(), source }
     }
 
     /// The garment in a size on the body that the size is for, from which many others can be dressed sooner
@@ -267,8 +270,7 @@ impl PatternPackage {
     pub fn dress_from(&self, hung: &HungPattern, body: &Body) -> Result<Garment, PackageError> {
         let HungPattern { size, body: from, fabric, pattern, draped } = hung;
         let field = SkinField::new(body);
-        let draped = drape_on((draped, from), pattern, (body, &field), fabric)
-            .map_err(|source| PackageError::Drape { name: self.name.clone(), source })?;
+        let draped = drape_on((draped, from), pattern, (body, &field), fabric).map_err(|e| self.not_draped(e))?;
         self.baked(&self.worn(&draped, body, &field), size, fabric)
     }
 
@@ -279,8 +281,8 @@ impl PatternPackage {
     pub fn draft(&self, size: &str, body: &Body, fabric: &Fabric) -> Result<Shape, PackageError> {
         let pattern = self.sized(size, &body.measures)?;
         let field = SkinField::new(body);
-        let draped = drape_around(&pattern, (body, &field), fabric, self.spacing_mm * 1e-3)
-            .map_err(|source| PackageError::Drape { name: self.name.clone(), source })?;
+        let draped =
+            drape_around(&pattern, (body, &field), fabric, self.spacing_mm * 1e-3).map_err(|e| self.not_draped(e))?;
         Ok(self.worn(&draped, body, &field))
     }
 
@@ -312,8 +314,8 @@ impl PatternPackage {
     }
 
     fn baked(&self, shape: &Shape, size: &str, fabric: &Fabric) -> Result<Garment, PackageError> {
-        let failed = |source| PackageError::Drape { name: self.name.clone(), source: DrapeError::Mesh(source) };
-        let mut garment = bake(&self.name, size, shape, fabric).map_err(failed)?;
+        let baked = bake(&self.name, size, shape, fabric);
+        let mut garment = baked.map_err(|e| self.not_draped(DrapeError::Mesh(e)))?;
         garment.layer = self.layer.unwrap_or(LAYER);
         Ok(garment)
     }

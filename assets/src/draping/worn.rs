@@ -11,9 +11,13 @@ use crate::bake::weights;
 use crate::body::Body;
 use crate::garment::{Part, Shape};
 use crate::rig::skin::SkinByHeight;
+use crate::skeleton::Joint;
 
 /// What lies nearer to the skin than this (m) on a shoulder rests there.
 const RESTS_M: f32 = 0.008;
+
+/// How far beyond the joint of a shoulder cloth rests on it (m): what lies farther out lies on the arm, which comes down.
+const BEYOND_SHOULDER_M: f32 = 0.02;
 
 /// Skin steeper than this (cosine of its normal with the vertical) carries nothing.
 const CARRIES: f32 = 0.6;
@@ -27,7 +31,9 @@ impl DrapedPattern {
         // Between an arm and the trunk cloth would be pinched; what hangs free below meets hands as well. Before and behind the
         // armhole it lies on both: the shoulder's tip would come through cloth that met the trunk alone.
         let sleeves = self.arranged.panels.iter().any(|p| matches!(p.around, Around::LeftArm | Around::RightArm));
-        let on_trunk = |p: Vec3| self.arranged.shoulders && (sleeves || p.y > body.levels.waist);
+        // What has no sleeves and lies over an arm, as a poncho does, meets that as well.
+        let on_trunk =
+            |p: Vec3| self.arranged.shoulders && (sleeves || (p.y > body.levels.waist && !skin.is_over_arm(p)));
         let armpit = |p: Vec3| self.arranged.shoulders && skin.in_armpit(p);
         let part = |(v, p): (usize, &Vec3)| match self.limb(v) {
             limb if armpit(*p) => {
@@ -61,9 +67,10 @@ impl DrapedPattern {
         if !self.arranged.shoulders {
             return self.held.clone();
         }
+        let tip = body.skeleton.at(Joint::LeftShoulder).x.abs() + BEYOND_SHOULDER_M;
         let rests = |p: &Vec3| {
             let near = field.nearest(*p).is_some_and(|n| n.distance < RESTS_M && n.normal.y > CARRIES);
-            near && p.y > body.levels.chest
+            near && p.y > body.levels.chest && p.x.abs() < tip
         };
         let trunk =
             |v: usize| self.sewn.members[v].iter().all(|m| self.arranged.panels[m[0] as usize].around == Around::Trunk);

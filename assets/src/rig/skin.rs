@@ -91,6 +91,14 @@ impl<'a> SkinByHeight<'a> {
         })
     }
 
+    /// Whether an arm is the nearest of the skin.
+    pub(crate) fn is_over_arm(&self, p: Vec3) -> bool {
+        let far = |admits: &dyn Fn(Region) -> bool| {
+            self.distance_of(p, |v| admits(self.body.regions[v])).map_or(f32::INFINITY, |(_, far)| far.abs())
+        };
+        far(&|region| matches!(region, Region::LeftArm | Region::RightArm)) < far(&|region| region == Region::Torso)
+    }
+
     /// Whether a point in the hollow of an armpit lies between arm and trunk, whose skins face each other there, rather than before or
     /// behind both.
     pub(crate) fn is_pinched(&self, p: Vec3) -> bool {

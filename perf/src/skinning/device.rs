@@ -63,7 +63,7 @@ pub struct DeviceRow {
 /// Skinning by the processor and by a device.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DeviceSkinning {
-    /// What skinned.
+    /// The graphics adapter that skinned.
     pub adapter: Adapter,
     /// Two rows a case: linear blending, dual quaternions.
     pub rows: Vec<DeviceRow>,
@@ -229,6 +229,8 @@ mod tests {
         let found = match run(&options, false, &mut |_| {}) {
             Ok(found) => found,
             Err(SkinningError::Device(reason)) => {
+                // Without a driver the library's own tests fail in CI already; what is built in and there has to skin.
+                assert!(!toile_gpu::BUILT_IN || toile_gpu::adapters().is_empty(), "{reason}");
                 assert!(reason.contains("build it with") || reason.contains("install"), "{reason}");
                 return;
             }

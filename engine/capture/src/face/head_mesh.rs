@@ -54,6 +54,17 @@ impl HeadMesh {
     }
 }
 
+/// Unit normals of vertices that lie here (m), of the triangles around each by their areas; zero where there is none `[vertices]`.
+pub(super) fn normals(places: &[DVec3], triangles: &[[u32; 3]]) -> Vec<DVec3> {
+    let mut normals = vec![DVec3::ZERO; places.len()];
+    for t in triangles {
+        let [a, b, c] = t.map(|v| places[v as usize]);
+        t.iter().for_each(|v| normals[*v as usize] += (b - a).cross(c - a));
+    }
+    normals.iter_mut().for_each(|n| *n = n.normalize_or_zero());
+    normals
+}
+
 /// The middle of a head: what places are counted from (m).
 pub(super) fn middle(sex: Sex) -> DVec3 {
     let joint = Shapes::of(sex).base().skeleton.at(Joint::Head).as_dvec3();

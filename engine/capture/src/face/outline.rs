@@ -6,7 +6,7 @@
 use glam::{DVec2, DVec3};
 use toile_assets::numeric::statistics::median_of;
 
-use super::head_mesh::HeadMesh;
+use super::head_mesh::{HeadMesh, normals};
 use super::sighting::{HeadPose, ROBUST, Sighting};
 use super::view::FaceView;
 use crate::depth_buffer::DepthBuffer;
@@ -138,12 +138,7 @@ fn rim(view: &FaceView, mesh: &HeadMesh, own: &[DVec3], placed: &[DVec3]) -> Vec
     let longer = f64::from(camera.size[0].max(camera.size[1]));
     let mut buffer = DepthBuffer::new(camera.size, (DRAWING / longer).min(1.0));
     buffer.draw(&camera, placed, &mesh.triangles);
-    let mut normals = vec![DVec3::ZERO; placed.len()];
-    for t in &mesh.triangles {
-        let [a, b, c] = t.map(|v| placed[v as usize]);
-        t.iter().for_each(|v| normals[*v as usize] += (b - a).cross(c - a));
-    }
-    normals.iter_mut().for_each(|n| *n = n.normalize_or_zero());
+    let normals = normals(placed, &mesh.triangles);
     let from = camera.position();
     let mut found = Vec::new();
     for t in mesh.triangles.iter().filter(|t| t.iter().all(|v| mesh.share[*v as usize] >= 1.0)) {

@@ -2,7 +2,7 @@ use glam::{DVec2, DVec3};
 use toile_assets::body::Sex;
 use toile_assets::numeric::random::SplitMix64;
 
-use super::head_mesh::HeadMesh;
+use super::head_mesh::{HeadMesh, normals};
 use super::tests::{Case, case, off};
 use super::*;
 use crate::depth_buffer::DepthBuffer;
@@ -33,17 +33,12 @@ fn outline(truth: &[DVec3], triangles: &[[u32; 3]], view: &FaceView, sigma: f64,
 /// Cranium, cheeks and jaw where a camera sees them at a flat angle, which is where outlines are: vertices above the neck without the middle
 /// of the face, with their true normals.
 fn rim_region(mesh: &HeadMesh, case: &Case) -> Vec<(usize, DVec3)> {
-    let mut normals = vec![DVec3::ZERO; mesh.positions.len()];
-    for t in &mesh.triangles {
-        let [a, b, c] = t.map(|v| case.truth[v as usize]);
-        t.iter().for_each(|v| normals[*v as usize] += (b - a).cross(c - a));
-    }
     let middle = |p: DVec3| p.z > 0.02 && p.x.abs() < 0.045 && p.y < 0.09;
     let flat = |v: usize, normal: DVec3| {
         let way = |view: &FaceView| (view.camera.position() - case.truth[v]).normalize();
         case.views.iter().any(|view| normal.dot(way(view)).abs() < 0.3)
     };
-    let all = normals.iter().enumerate().map(|(v, n)| (v, n.normalize_or_zero()));
+    let all = normals(&case.truth, &mesh.triangles).into_iter().enumerate();
     all.filter(|(v, n)| mesh.share[*v] >= 1.0 && !middle(mesh.positions[*v]) && flat(*v, *n)).collect()
 }
 

@@ -31,7 +31,7 @@ const ROUNDS: usize = 16;
 pub struct TrackedSequence {
     /// The head, where it stands in the first frame that shows it.
     pub head: AdaptedHead,
-    /// That frame.
+    /// Number of that frame, from 0.
     pub first: usize,
     /// Frames that the head was adapted to.
     pub kept: usize,

@@ -29,7 +29,7 @@ impl HeadPose {
 /// A place of the head that a photograph shows.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sighting {
-    /// Which photograph.
+    /// Number of the photograph among all, from 0.
     pub view: usize,
     /// The place on the mannequin's head, and on this one as far as it is known (m, from the middle).
     pub drawn: DVec3,

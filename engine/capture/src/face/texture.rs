@@ -13,7 +13,7 @@ use toile_assets::body::shape::Shapes;
 use toile_assets::numeric::statistics::median_of;
 
 use super::adapt::AdaptedHead;
-use super::head_mesh::HeadMesh;
+use super::head_mesh::{HeadMesh, normals};
 use super::view::FaceView;
 use crate::depth_buffer::DepthBuffer;
 
@@ -115,11 +115,7 @@ pub fn png(texture: &HeadTexture) -> Result<Vec<u8>, image::ImageError> {
 /// The texels of the head's triangles.
 fn texels(head: &AdaptedHead) -> Vec<Texel> {
     let base = Shapes::of(head.sex).base();
-    let mut normals = vec![DVec3::ZERO; head.placed.len()];
-    for t in &head.triangles {
-        let [a, b, c] = t.map(|v| head.placed[v as usize]);
-        t.iter().for_each(|v| normals[*v as usize] += (b - a).cross(c - a));
-    }
+    let normals = normals(&head.placed, &head.triangles);
     let share = HeadMesh::of(head.sex).share;
     let is_head: std::collections::BTreeSet<[u32; 3]> = head.triangles.iter().copied().collect();
     let mut found = Vec::new();

@@ -83,7 +83,9 @@ fn poses_and_expressions_of_a_sequence_come_back() {
         );
         assert!(own.frames.iter().chain(&known).all(|f| f.found.is_some()));
         for [turn, amplitude] in [one, three] {
-            assert!(turn[0] <= 0.5 && amplitude[0] <= 0.1, "{turn:?} {amplitude:?}");
+            // Half a degree is missed by the worst frame (docs/capture.md): no worse than it is.
+            assert!(turn[0] <= 0.4 && turn[1] <= 0.8, "{turn:?} degrees");
+            assert!(amplitude[0] <= 0.03 && amplitude[1] <= 0.1, "{amplitude:?}");
         }
     }
 }

@@ -12,7 +12,7 @@ const PORTRAIT: f64 = 1.6;
 /// One photograph with its camera.
 #[derive(Debug, Clone)]
 pub struct FaceView {
-    /// The camera.
+    /// Its lens, and where it stands in the world of all photographs.
     pub camera: CalibratedCamera,
     /// Where the 68 points are (px).
     pub points: [Option<DVec2>; FACE_POINTS],

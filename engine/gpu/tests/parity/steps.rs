@@ -15,7 +15,7 @@ const MOTION: Motion = Motion::Walk;
 /// How much farther from the processor a device that fuses products and sums may come than the processor itself does with last
 /// bits changed before every step, and what both may (m). A hem that swings free doubles what sets it off every few steps, and the
 /// device rounds otherwise in each phase of each substep.
-const OF_NUDGED: f32 = 8.0;
+const OF_NUDGED: f32 = 4.0;
 const ANY: f32 = 1e-5;
 
 /// Whether a device is no farther off than it may be: its distance and the nudged processor's (m).

@@ -87,7 +87,7 @@ pub struct HairMesh {
     pub positions: Vec<Vec3>,
     /// Their unit normals `[vertices]`.
     pub normals: Vec<Vec3>,
-    /// Vertex indices.
+    /// Indices of the vertices of each, counter-clockwise seen from outside `[triangles]`.
     pub triangles: Vec<[u32; 3]>,
 }
 

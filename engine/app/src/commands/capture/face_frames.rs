@@ -20,7 +20,7 @@ pub(super) struct SequenceReport {
     frames: Vec<FrameReport>,
 }
 
-/// One frame.
+/// What was found in one frame.
 #[derive(Debug, Serialize)]
 struct FrameReport {
     picture: String,
