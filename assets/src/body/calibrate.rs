@@ -102,6 +102,11 @@ impl SumOfSquares {
     }
 }
 
+/// The sum of products of two rows.
+fn along(a: &[f64; READINGS], b: &[f64; READINGS]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
 impl BodyModel {
     pub(super) fn new(base: BaseBody) -> Self {
         let sex = base.sex;
@@ -115,9 +120,17 @@ impl BodyModel {
     /// A person's readings (m), by independent standard normal numbers.
     pub(super) fn person(&self, normal: &[f64; READINGS]) -> [f32; READINGS] {
         let People { mean, factor } = &self.people;
+        std::array::from_fn(|i| (mean[i] + along(&factor[i], normal)) as f32)
+    }
+
+    /// The same of one who has a reading (m): drawn as anybody, then moved by what the others follow from the one.
+    pub(super) fn person_with(&self, normal: &[f64; READINGS], known: (Reading, f32)) -> [f32; READINGS] {
+        let People { factor, .. } = &self.people;
+        let drawn = self.person(normal);
+        let k = known.0.index();
+        let off = f64::from(known.1 - drawn[k]) / along(&factor[k], &factor[k]);
         std::array::from_fn(|i| {
-            let by: f64 = factor[i].iter().zip(normal).map(|(l, z)| l * z).sum();
-            (mean[i] + by) as f32
+            if i == k { known.1 } else { (f64::from(drawn[i]) + along(&factor[i], &factor[k]) * off) as f32 }
         })
     }
 

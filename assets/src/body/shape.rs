@@ -94,6 +94,11 @@ impl Shapes {
         Readings(self.model.person(normal))
     }
 
+    /// The same of a person with one measure (m): the others as they go with it.
+    pub fn person_with<V: Vocabulary>(&self, normal: &[f64; DRAWN], measure: V, value: f32) -> Readings {
+        Readings(self.model.person_with(normal, (measure.reading(), value)))
+    }
+
     /// The covariance of people's parameters about the mean: the inverse of [`Shapes::precision`].
     pub fn covariance(&self) -> [BodyShape; SHAPES] {
         let mut factor = self.precision;

@@ -1,15 +1,25 @@
-//! The truth: a cloth that hangs by four points and swings in the wind, stepped by the engine, with a print, before cameras on an arc.
+//! The truth: cloth that the engine steps, with a print, before cameras. A cloth hangs by four points and swings in the wind before
+//! cameras on an arc; the benchmark's skirt walks with cameras all around it.
 
 use glam::{DVec3, Vec2, Vec3};
 use image::RgbImage;
 use toile_assets::scene_file::{SceneFile, SceneSource};
 use toile_capture::render::{Bar, Lighting, Print, PrintedSurface, Sensor, look_at, take};
+use toile_engine::cloth::Quality;
+use toile_fitting::heap::HeapProbe;
 use toile_fitting::scene::{RunError, Runner};
 use toile_sensors::calibration::CalibratedCamera;
+
+use super::flow::FlowStudyError;
+use crate::skirt::SkirtScene;
+use crate::skirt::options::SkirtOptions;
 
 /// Vertices along a side, and the side (m): the 900 vertices of the source's cloth.
 pub const ALONG: usize = 30;
 const SIDE: f64 = 0.29;
+
+/// When the cameras' first frame of it is (s).
+pub const FROM: f64 = 0.1;
 
 /// Frames a second of the cameras, of which the engine steps twice as many.
 pub const RATE: f64 = 60.0;
@@ -23,6 +33,29 @@ const DISTANCE: f64 = 1.2;
 const APART: f64 = 30.0;
 const WIDEST: f64 = 100.0;
 
+/// Vertices along a side of the skirt, by rows and columns; every so many of these its print is mirrored, once around in an even
+/// number of times, so that nothing jumps where the columns close.
+pub const SKIRT_SIDE: usize = 64;
+const MIRRORED_COLUMNS: usize = 16;
+const MIRRORED_ROWS: usize = 42;
+
+/// The skirt is filmed at every step of 1/120 s, from when it walks as widely as it will (s).
+const SKIRT_FROM: f64 = 2.0;
+
+/// Pictures of 2 px a millimetre at the skirt's near side: sides (px), focal length (px), distance from its axis (m).
+const SKIRT_PICTURE: [u32; 2] = [2_200, 1_900];
+const SKIRT_FOCAL: f64 = 4_200.0;
+const SKIRT_DISTANCE: f64 = 2.4;
+
+/// What is filmed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Filmed {
+    /// The cloth that hangs by four points.
+    Hanging,
+    /// The benchmark's skirt, walking.
+    WalkingSkirt,
+}
+
 /// What disturbs the cameras.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Disturbance {
@@ -33,7 +66,7 @@ pub struct Disturbance {
 }
 
 /// A cloth with its motion and its cameras.
-pub struct HangingCloth {
+pub struct FilmedCloth {
     /// Positions of each frame (m, world).
     pub frames: Vec<Vec<DVec3>>,
     /// The triangles of the mesh.
@@ -79,31 +112,59 @@ pub fn play(text: &str, from: f64, frames: usize) -> Result<Vec<Vec<Vec3>>, RunE
     Ok(all)
 }
 
-impl HangingCloth {
-    /// The cloth's motion over some frames, before so many cameras.
+impl FilmedCloth {
+    /// The motion of what is filmed over some frames, before so many cameras.
     ///
     /// # Errors
-    /// As [`Runner::new`].
-    pub fn new(frames: usize, cameras: usize) -> Result<Self, RunError> {
-        let played = play(&scene(2_000.0, 60.0, 12.0, 0.5), 0.1, frames)?;
-        let frames: Vec<Vec<DVec3>> = played.iter().map(|f| f.iter().map(|p| p.as_dvec3()).collect()).collect();
+    /// As [`Runner::new`] and [`SkirtScene::new`].
+    pub fn new(filmed: Filmed, frames: usize, cameras: usize) -> Result<Self, FlowStudyError> {
+        match filmed {
+            Filmed::Hanging => Ok(Self::hanging(frames, cameras)?),
+            Filmed::WalkingSkirt => Self::walking_skirt(frames, cameras),
+        }
+    }
+
+    fn hanging(frames: usize, cameras: usize) -> Result<Self, RunError> {
+        let frames = in_f64(&play(&scene(2_000.0, 60.0, 12.0, 0.5), FROM, frames)?);
         let at = |i: usize| Vec2::new((i % ALONG) as f32, (ALONG - 1 - i / ALONG) as f32) / (ALONG - 1) as f32 * 0.5;
+        let uvs = (0..ALONG * ALONG).map(at).collect();
         let mut triangles = Vec::new();
         for i in 0..(ALONG - 1) * (ALONG - 1) {
             let v = (i / (ALONG - 1) * ALONG + i % (ALONG - 1)) as u32;
             let w = v + ALONG as u32;
             triangles.extend([[v, w, v + 1], [v + 1, w, w + 1]]);
         }
-        let middle = frames.iter().flatten().sum::<DVec3>() / (frames.len() * frames[0].len()) as f64;
         let apart = (WIDEST / (cameras - 1) as f64).min(APART).to_radians();
-        let camera = |k: usize| {
-            let angle = (k as f64 - 0.5 * (cameras - 1) as f64) * apart;
-            let lift = if k.is_multiple_of(2) { 0.15 } else { -0.15 };
-            let from = middle + DVec3::new(angle.sin(), lift, angle.cos()) * DISTANCE;
-            look_at(&format!("cam{}", k + 1), PICTURE, FOCAL, [from, middle], DVec3::Y)
+        let angle = |k: usize| (k as f64 - 0.5 * (cameras - 1) as f64) * apart;
+        let middle = middle(&frames);
+        let cameras = (0..cameras).map(|k| camera(k, angle(k), middle, (PICTURE, FOCAL, DISTANCE))).collect();
+        Ok(Self { frames, triangles, uvs, print: Print::new(11), cameras })
+    }
+
+    fn walking_skirt(frames: usize, cameras: usize) -> Result<Self, FlowStudyError> {
+        let options =
+            SkirtOptions { verts: SKIRT_SIDE * SKIRT_SIDE, quality: Some(Quality::Fine), ..SkirtOptions::default() };
+        let mut scene = SkirtScene::new(&options, &HeapProbe::none())?;
+        let particles = scene.particle_of();
+        let step = |scene: &mut SkirtScene| {
+            scene.prepare();
+            scene.step();
         };
-        let uvs = (0..ALONG * ALONG).map(at).collect();
-        Ok(Self { frames, triangles, uvs, print: Print::new(11), cameras: (0..cameras).map(camera).collect() })
+        (0..(SKIRT_FROM / f64::from(options.step_s)) as usize).for_each(|_| step(&mut scene));
+        let mut played = Vec::with_capacity(frames);
+        for _ in 0..frames {
+            played.push(particles.iter().map(|p| Vec3::from(scene.cloths[0].positions[*p as usize])).collect());
+            step(&mut scene);
+        }
+        let frames = in_f64(&played);
+        let uvs = (0..options.verts)
+            .map(|v| Vec2::new(mirrored(v % SKIRT_SIDE, MIRRORED_COLUMNS), mirrored(v / SKIRT_SIDE, MIRRORED_ROWS)));
+        let middle = middle(&frames);
+        let angle = |k: usize| std::f64::consts::TAU * k as f64 / cameras as f64;
+        let view = (SKIRT_PICTURE, SKIRT_FOCAL, SKIRT_DISTANCE);
+        let cameras = (0..cameras).map(|k| camera(k, angle(k), middle, view)).collect();
+        let triangles = scene.shape.triangles();
+        Ok(Self { frames, triangles, uvs: uvs.collect(), print: Print::new(11), cameras })
     }
 
     /// The pictures of a frame, drawn by a thread a camera.
@@ -131,4 +192,25 @@ impl HangingCloth {
             threads.into_iter().map(|t| t.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
         })
     }
+}
+
+fn in_f64(frames: &[Vec<Vec3>]) -> Vec<Vec<DVec3>> {
+    frames.iter().map(|f| f.iter().map(|p| p.as_dvec3()).collect()).collect()
+}
+
+fn middle(frames: &[Vec<DVec3>]) -> DVec3 {
+    frames.iter().flatten().sum::<DVec3>() / (frames.len() * frames[0].len()) as f64
+}
+
+/// A camera at an angle about the vertical through a point, in turns above and below it.
+fn camera(k: usize, angle: f64, middle: DVec3, (size, focal, distance): ([u32; 2], f64, f64)) -> CalibratedCamera {
+    let lift = if k.is_multiple_of(2) { 0.15 } else { -0.15 };
+    let from = middle + DVec3::new(angle.sin(), lift, angle.cos()) * distance;
+    look_at(&format!("cam{}", k + 1), size, focal, [from, middle], DVec3::Y)
+}
+
+/// 0 to 1 over a period, back to 0 over the next.
+fn mirrored(k: usize, period: usize) -> f32 {
+    let along = k % (2 * period);
+    along.min(2 * period - along) as f32 / period as f32
 }

@@ -1,15 +1,17 @@
 //! Model flowing against the truth: cameras, disturbances, springs and references, each with its error over time.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use image::RgbImage;
 use serde::Serialize;
 use thiserror::Error;
 use toile_capture::error::CaptureError;
 use toile_capture::flow::{FlowSettings, FlowTracker, Reference, Springs};
+use toile_capture::recover::{Recovered, VALUES, recover};
 use toile_capture::surface::Surface;
 use toile_fitting::scene::RunError;
 
-use super::cloth::{Disturbance, HangingCloth};
+use super::cloth::{Disturbance, FROM, Filmed, FilmedCloth, play, scene};
+use crate::skirt::SkirtError;
 
 /// Goals: mean error without and with the arm (mm), the last ten frames over the first ten, an iteration (s).
 pub const GOALS: [f64; 4] = [0.25, 1.0, 1.5, 0.030];
@@ -23,7 +25,18 @@ pub enum FlowStudyError {
     /// The cloth could not be stepped.
     #[error(transparent)]
     Scene(#[from] RunError),
+    /// The skirt could not be made.
+    #[error(transparent)]
+    Skirt(#[from] SkirtError),
 }
+
+/// The fabric of the hanging cloth, and where the search for it starts, as parts of it: stretch and shear (N/m), bending (uN m),
+/// damping (1/s).
+const FABRIC: [f64; VALUES] = [2_000.0, 60.0, 12.0, 0.5];
+const FABRIC_START: [f64; VALUES] = [0.6, 1.5, 1.7, 0.6];
+
+/// Largest part by which a value of the fabric may be off.
+pub const FABRIC_GOAL: f64 = 0.1;
 
 /// One row of the study.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -48,8 +61,25 @@ pub struct FlowRow {
     pub iterations: f64,
     /// Time of an iteration (s).
     pub seconds_per_iteration: f64,
+    /// The fabric that moves as what was followed, where that was looked for.
+    pub fabric: Option<FoundFabric>,
     /// Whether it meets its goals; absent where it has none.
     pub met: Option<bool>,
+}
+
+/// A fabric found in a motion: stretch and shear (N/m), bending (uN m), damping (1/s).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct FoundFabric {
+    /// What the cloth was stepped with.
+    pub truth: [f64; VALUES],
+    /// Where the search started.
+    pub start: [f64; VALUES],
+    /// What was found.
+    pub found: [f64; VALUES],
+    /// Standard deviation of each, as a part of it.
+    pub sigma: [f64; VALUES],
+    /// Mean distance of a vertex from the simulation before and after (mm).
+    pub error_mm: [f64; 2],
 }
 
 /// A distance in its summary.
@@ -68,8 +98,12 @@ pub struct ErrorMm {
 pub struct FlowCase {
     /// What it is called.
     pub name: &'static str,
+    /// What is filmed.
+    pub filmed: Filmed,
     /// Cameras.
     pub cameras: usize,
+    /// Whether the fabric is looked for in what was followed.
+    pub fabric: bool,
     /// What disturbs them.
     pub disturbed: Disturbance,
     /// How it is followed.
@@ -84,10 +118,17 @@ pub fn cases() -> Vec<FlowCase> {
     let (none, shadow) = (Disturbance::default(), Disturbance { shadow: true, arm: false });
     let both = Disturbance { shadow: true, arm: true };
     let [mean, arm, drift, _] = GOALS;
-    let case = |name, cameras, disturbed, settings, goals| FlowCase { name, cameras, disturbed, settings, goals };
+    let case = |name, cameras, disturbed, settings, goals| {
+        let filmed = Filmed::Hanging;
+        FlowCase { name, filmed, cameras, fabric: false, disturbed, settings, goals }
+    };
+    // Its pictures have thirty times the pixels of the cloth's: every other one of its samples, in each direction, will do.
+    let sparse = FlowSettings { spacing: 2.0 * plain.spacing, ..plain };
+    let skirt =
+        FlowCase { filmed: Filmed::WalkingSkirt, ..case("walking skirt", 8, none, sparse, Some([mean, drift])) };
     vec![
         case("plain", 2, none, plain, Some([mean, drift])),
-        case("plain", 4, none, plain, Some([mean, drift])),
+        FlowCase { fabric: true, ..case("plain", 4, none, plain, Some([mean, drift])) },
         case("plain", 8, none, plain, Some([mean, drift])),
         case("shadow", 4, shadow, plain, Some([mean, drift])),
         case("shadow and arm", 4, both, plain, Some([arm, f64::INFINITY])),
@@ -98,6 +139,7 @@ pub fn cases() -> Vec<FlowCase> {
         case("linear springs, arm", 4, both, FlowSettings { springs: Springs::Linear, ..plain }, None),
         case("no springs, arm", 4, both, FlowSettings { springs: Springs::Off, ..plain }, None),
         case("frame before as reference", 4, none, FlowSettings { reference: Reference::Previous, ..plain }, None),
+        skirt,
         case("three channels", 4, none, FlowSettings { channels: 3, ..plain }, None),
     ]
 }
@@ -113,7 +155,7 @@ pub struct FollowedMoment<'a> {
     /// Distance of each vertex from the truth (m).
     pub off: &'a [f64],
     /// The truth.
-    pub cloth: &'a HangingCloth,
+    pub cloth: &'a FilmedCloth,
 }
 
 /// Runs one row over so many frames; `see` is called after each.
@@ -121,11 +163,12 @@ pub struct FollowedMoment<'a> {
 /// # Errors
 /// A cloth that cannot be stepped, a capture that was refused.
 pub fn run(case: &FlowCase, frames: usize, mut see: impl FnMut(FollowedMoment<'_>)) -> Result<FlowRow, FlowStudyError> {
-    let cloth = HangingCloth::new(frames, case.cameras)?;
+    let cloth = FilmedCloth::new(case.filmed, frames, case.cameras)?;
     let surface = Surface::new("the cloth", cloth.frames[0].clone(), Vec::new(), cloth.triangles.clone())?;
     let mut tracker = FlowTracker::new(surface, cloth.cameras.clone(), case.settings)?;
     tracker.start(&cloth.pictures(0, case.disturbed))?;
     let (mut all, mut over_time) = (Vec::new(), Vec::new());
+    let mut followed = vec![cloth.frames[0].clone()];
     let (mut residual, mut placed, mut iterations, mut seconds) = (0.0, 1.0_f64, 0, 0.0);
     for frame in 1..frames {
         let pictures = cloth.pictures(frame, case.disturbed);
@@ -133,6 +176,9 @@ pub fn run(case: &FlowCase, frames: usize, mut see: impl FnMut(FollowedMoment<'_
         let off: Vec<f64> = cloth.frames[frame].iter().zip(tracker.positions()).map(|(a, b)| a.distance(*b)).collect();
         over_time.push(off.iter().sum::<f64>() / off.len() as f64 * 1e3);
         see(FollowedMoment { frame, pictures: &pictures, found: tracker.positions(), off: &off, cloth: &cloth });
+        if case.fabric {
+            followed.push(tracker.positions().to_vec());
+        }
         all.extend(off.iter().map(|d| d * 1e3));
         residual += outcome.residual / (frames - 1) as f64;
         placed = placed.min(outcome.placed);
@@ -145,7 +191,9 @@ pub fn run(case: &FlowCase, frames: usize, mut see: impl FnMut(FollowedMoment<'_
     let drift = mean(&over_time[over_time.len() - ten..]) / mean(&over_time[..ten]);
     let error_mm = ErrorMm { mean: mean(&all), p95: all[all.len() * 95 / 100], max: all[all.len() - 1] };
     let seconds_per_iteration = seconds / iterations as f64;
-    let met = case.goals.map(|[most, drifts]| error_mm.mean <= most && drift <= drifts);
+    let fabric = if case.fabric { Some(fabric_of(&followed)?) } else { None };
+    let found = fabric.is_none_or(|f| f.found.iter().zip(f.truth).all(|(v, t)| (v / t - 1.0).abs() <= FABRIC_GOAL));
+    let met = case.goals.map(|[most, drifts]| error_mm.mean <= most && drift <= drifts && found);
     Ok(FlowRow {
         name: case.name.to_owned(),
         cameras: case.cameras,
@@ -157,6 +205,16 @@ pub fn run(case: &FlowCase, frames: usize, mut see: impl FnMut(FollowedMoment<'_
         least_placed: placed,
         iterations: iterations as f64 / (frames - 1) as f64,
         seconds_per_iteration,
+        fabric,
         met,
     })
+}
+
+/// The fabric of the hanging cloth that moves as what was followed.
+fn fabric_of(followed: &[Vec<DVec3>]) -> Result<FoundFabric, RunError> {
+    let observed: Vec<Vec<Vec3>> = followed.iter().map(|f| f.iter().map(|p| p.as_vec3()).collect()).collect();
+    let start = std::array::from_fn(|k| FABRIC[k] * FABRIC_START[k]);
+    let simulate = |v: &[f64; VALUES], frames| play(&scene(v[0], v[1], v[2], v[3]), FROM, frames);
+    let Recovered { values, sigma, error_mm, .. } = recover(start, &observed, simulate)?;
+    Ok(FoundFabric { truth: FABRIC, start, found: values, sigma, error_mm })
 }

@@ -2,16 +2,7 @@
 
 use toile_assets::body::shape::{BodyShape, Shapes};
 use toile_assets::body::{En, Wanted};
-use toile_assets::numeric::linear::{self, Pivot};
 use toile_assets::numeric::random::SplitMix64;
-use toile_track::fit::measuring::MEASURES;
-use toile_track::tape_readings::BodyEstimate;
-
-/// Number of measures that go together.
-pub(super) const COUNT: usize = MEASURES.len();
-
-/// Directions in which nobody strays.
-const LEAST_PIVOT: f64 = 1e-12;
 
 /// What numbers are drawn for: each purpose has numbers of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,24 +39,21 @@ const GIVEN: [En; 10] = [
 /// Draws until there is somebody whom a body can be built for: one of a million is not.
 const DRAWS: usize = 16;
 
-/// A body of the survey: measures drawn from its means and covariance, and the shape that has them as nearly as any has.
-pub(super) fn shape(shapes: &Shapes, random: &mut SplitMix64) -> BodyShape {
+/// A body of the survey: measures drawn from its means and covariance, with one of them as given (m) where that is so, and the shape
+/// that has them as nearly as any has.
+pub(super) fn shape(shapes: &Shapes, known: Option<(En, f32)>, random: &mut SplitMix64) -> BodyShape {
     let drawn = (0..DRAWS).find_map(|_| {
-        let person = shapes.person(&std::array::from_fn(|_| f64::from(random.gaussian())));
+        let normal = std::array::from_fn(|_| f64::from(random.gaussian()));
+        let person = match known {
+            None => shapes.person(&normal),
+            Some((measure, value)) => shapes.person_with(&normal, measure, value),
+        };
         let wanted = GIVEN.iter().fold(Wanted::<En>::new(), |all, of| all.with(*of, person.of(*of)));
         shapes.wanted(&wanted).ok()
     });
-    drawn.unwrap_or(*shapes.mean())
-}
-
-/// Measures drawn from what is known of them (m).
-pub(super) fn measures(known: &BodyEstimate, random: &mut SplitMix64) -> [f32; COUNT] {
-    let mut factor: [[f64; COUNT]; COUNT] = known.covariance.map(|row| row.map(f64::from));
-    linear::factor(&mut factor, Pivot::AtLeast(LEAST_PIVOT));
-    let normal: [f64; COUNT] = std::array::from_fn(|_| f64::from(random.gaussian()));
-    std::array::from_fn(|i| {
-        let by: f64 = factor[i][..=i].iter().zip(&normal).map(|(l, z)| l * z).sum();
-        (f64::from(known.mean[i]) + by) as f32
+    drawn.unwrap_or_else(|| {
+        let wanted = known.into_iter().fold(Wanted::<En>::new(), |all, (measure, value)| all.with(measure, value));
+        shapes.wanted(&wanted).unwrap_or(*shapes.mean())
     })
 }
 
@@ -84,7 +72,7 @@ mod tests {
         ];
         for (sex, measures) in survey {
             let shapes = Shapes::of(sex);
-            let drawn = |n: u64| shapes.read(&shape(shapes, &mut generator(5, Purpose::Person, n))).readings;
+            let drawn = |n: u64| shapes.read(&shape(shapes, None, &mut generator(5, Purpose::Person, n))).readings;
             let people: Vec<_> = (0..400).map(drawn).collect();
             for (measure, mean, deviation) in measures {
                 let all: Vec<f64> = people.iter().map(|p| f64::from(p.of(measure)) * 1e3).collect();
@@ -95,6 +83,34 @@ mod tests {
                 assert!((found - mean).abs() < 0.2 * deviation, "{sex:?} {measure:?}: mean {found}, not {mean}");
                 assert!((0.86..1.14).contains(&(spread / deviation)), "{sex:?} {measure:?}: {spread}, not {deviation}");
             }
+        }
+    }
+
+    #[test]
+    fn people_of_one_girth_are_as_various_in_all_else_as_the_survey_s_people_of_it() {
+        let shapes = Shapes::of(Sex::Female);
+        let normal = |n: u64, salt: u64| {
+            let mut random = generator(7 + salt, Purpose::Person, n);
+            std::array::from_fn(|_| f64::from(random.gaussian()))
+        };
+        // What is left of waist and hip once the bust is known, by regression over people of any bust, and by people of this bust.
+        let anybody: Vec<_> = (0..4_000).map(|n| shapes.person(&normal(n, 0))).collect();
+        let of_bust: Vec<_> = (0..4_000).map(|n| shapes.person_with(&normal(n, 1), En::BustGirth, 0.9)).collect();
+        assert!(of_bust.iter().all(|p| p.of(En::BustGirth) == 0.9));
+        for measure in [En::WaistGirth, En::HipGirth, En::Stature] {
+            let pairs = anybody.iter().map(|p| [p.of(En::BustGirth), p.of(measure)].map(f64::from));
+            let n = anybody.len() as f64;
+            let [mx, my] = pairs.clone().fold([0.0; 2], |m, [x, y]| [m[0] + x / n, m[1] + y / n]);
+            let [xx, xy] =
+                pairs.clone().fold([0.0; 2], |s, [x, y]| [s[0] + (x - mx).powi(2), s[1] + (x - mx) * (y - my)]);
+            let slope = xy / xx;
+            let left = (pairs.map(|[x, y]| (y - my - slope * (x - mx)).powi(2)).sum::<f64>() / n).sqrt();
+            let expected = my + slope * (0.9 - mx);
+            let mean = of_bust.iter().map(|p| f64::from(p.of(measure))).sum::<f64>() / n;
+            let spread = (of_bust.iter().map(|p| (f64::from(p.of(measure)) - mean).powi(2)).sum::<f64>() / n).sqrt();
+            println!("{measure:?}: {mean:.4} of {expected:.4}, deviation {spread:.4} of {left:.4}");
+            // Six standard errors.
+            assert!((mean - expected).abs() < 0.1 * left && (spread / left - 1.0).abs() < 0.07, "{measure:?}");
         }
     }
 

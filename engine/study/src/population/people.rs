@@ -105,17 +105,7 @@ impl Population {
         match &self.way {
             Way::Drawn { women } => {
                 let sex = if random.uniform_f64() < *women { Sex::Female } else { Sex::Male };
-                let shapes = Shapes::of(sex);
-                let shape = draw::shape(shapes, &mut random);
-                let readings = shapes.read(&shape).readings;
-                let measures = Measures {
-                    stature: readings.of(En::Stature),
-                    shoulder_breadth: readings.of(En::ShoulderBreadth),
-                    chest_girth: readings.of(En::BustGirth),
-                    waist_girth: readings.of(En::WaistGirth),
-                    hip_girth: readings.of(En::HipGirth),
-                };
-                Person { number, weight: 1.0, sex, measures, origin: Origin::Shape(Box::new(shape)) }
+                drawn_person(number, sex, None, &mut random)
             }
             Way::Listed { rows, drawn } => {
                 let at = drawn.as_ref().map_or(number as usize, |upto| place(upto, &mut random));
@@ -126,13 +116,7 @@ impl Population {
             Way::Sized { table, girth, sex, upto } => {
                 let [least, most] = table.sizes[place(upto, &mut random)].range(*girth);
                 let value = least + (most - least) * random.uniform();
-                let known = expected(*sex, [(measure_of(*girth), value)].into_iter());
-                let drawn = draw::measures(&known, &mut random);
-                let standard = MEASURES.iter().zip(drawn).filter_map(|((_, measure, _), value)| match measure {
-                    FittedMeasure::Standard(measure) => Some((*measure, value)),
-                    FittedMeasure::Torso => None,
-                });
-                given(number, 1.0, *sex, standard.collect())
+                drawn_person(number, *sex, Some((measure_of(*girth), value)), &mut random)
             }
         }
     }
@@ -146,6 +130,21 @@ impl PeopleFrom {
             Self::Sizes => "sizes",
         }
     }
+}
+
+/// Somebody of the survey, with one measure as given (m) where that is so.
+fn drawn_person(number: u64, sex: Sex, known: Option<(En, f32)>, random: &mut SplitMix64) -> Person {
+    let shapes = Shapes::of(sex);
+    let shape = draw::shape(shapes, known, random);
+    let readings = shapes.read(&shape).readings;
+    let measures = Measures {
+        stature: readings.of(En::Stature),
+        shoulder_breadth: readings.of(En::ShoulderBreadth),
+        chest_girth: readings.of(En::BustGirth),
+        waist_girth: readings.of(En::WaistGirth),
+        hip_girth: readings.of(En::HipGirth),
+    };
+    Person { number, weight: 1.0, sex, measures, origin: Origin::Shape(Box::new(shape)) }
 }
 
 /// Somebody of given measures: those that are missing are what people with the others have in the mean.
