@@ -20,9 +20,13 @@ class Page(HTMLParser):
         super().__init__()
         self.links: list[str] = []
         self.places: set[str] = set()
+        self.sends_on_to: str | None = None
         self.feed(path.read_text(encoding="utf-8", errors="replace"))
 
     def handle_starttag(self, tag, attributes):
+        # Where rustdoc moves a page, its script takes the fragment along.
+        if tag == "meta" and ("http-equiv", "refresh") in attributes:
+            self.sends_on_to = dict(attributes).get("content", "").partition("URL=")[2] or None
         for key, value in attributes:
             if key in ("href", "src") and value and not (tag == "link" and key == "href" and value.startswith("data:")):
                 self.links.append(value)
@@ -49,9 +53,16 @@ def broken(site: Path) -> tuple[int, int, list[str]]:
             where = f"{path.relative_to(site.resolve())}: {link}"
             if not to.is_file():
                 sentences.append(f"{where} leads to no file")
-            elif parts.fragment and to in pages and not named(pages[to], parts.fragment):
+            elif parts.fragment and to in pages and not named(sent_on(pages, to), parts.fragment):
                 sentences.append(f"{where} names no place there")
     return len(pages), followed, sentences
+
+
+def sent_on(pages: dict[Path, Page], path: Path) -> Page:
+    """The page that a reader comes to see in the end."""
+    page = pages[path]
+    to = (path.parent / page.sends_on_to).resolve() if page.sends_on_to else path
+    return pages.get(to, page)
 
 
 def named(page: Page, fragment: str) -> bool:
