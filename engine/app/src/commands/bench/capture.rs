@@ -21,7 +21,7 @@ use crate::terminal;
 /// its goal makes the exit code 3.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(
-    after_help = "Example: the table and the contact sheets of docs/capture.md, a quarter of an hour\n  toile bench capture --pictures sheets"
+    after_help = "Example: the table and the contact sheets of docs/capture.md, an hour, half of it the walking skirt\n  toile bench capture --pictures sheets"
 )]
 pub struct CaptureBenchArgs {
     /// Frames of each row
