@@ -10,7 +10,7 @@ use toile_fitting::heap::HeapProbe;
 use toile_fitting::scene::{RunError, Runner};
 use toile_sensors::calibration::CalibratedCamera;
 
-use super::flow::FlowStudyError;
+use super::error::FlowStudyError;
 use crate::skirt::SkirtScene;
 use crate::skirt::options::SkirtOptions;
 

@@ -3,32 +3,16 @@
 use glam::{DVec3, Vec3};
 use image::RgbImage;
 use serde::Serialize;
-use thiserror::Error;
-use toile_capture::error::CaptureError;
 use toile_capture::flow::{FlowSettings, FlowTracker, Reference, Springs};
 use toile_capture::recover::{Recovered, VALUES, recover};
 use toile_capture::surface::Surface;
 use toile_fitting::scene::RunError;
 
 use super::cloth::{Disturbance, FROM, Filmed, FilmedCloth, play, scene};
-use crate::skirt::SkirtError;
+use super::error::FlowStudyError;
 
 /// Goals: mean error without and with the arm (mm), the last ten frames over the first ten, an iteration (s).
 pub const GOALS: [f64; 4] = [0.25, 1.0, 1.5, 0.030];
-
-/// Why a study could not be run.
-#[derive(Debug, Error)]
-pub enum FlowStudyError {
-    /// The capture was refused.
-    #[error(transparent)]
-    Capture(#[from] CaptureError),
-    /// The cloth could not be stepped.
-    #[error(transparent)]
-    Scene(#[from] RunError),
-    /// The skirt could not be made.
-    #[error(transparent)]
-    Skirt(#[from] SkirtError),
-}
 
 /// The fabric of the hanging cloth, and where the search for it starts, as parts of it: stretch and shear (N/m), bending (uN m),
 /// damping (1/s).
