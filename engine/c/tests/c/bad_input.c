@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <toile.h>
 
 static int faults;
@@ -545,7 +546,9 @@ static atomic_int busy_for_steps;
 
 static void *steps(void *nothing)
 {
-    for (;;) {
+    /* Where only one thread runs at a time, as under valgrind, the scene would be at work whenever the third looks. */
+    const struct timespec pause = { 0, 1000000 };
+    for (;; nanosleep(&pause, NULL)) {
         toile_code code = toile_scene_step_many(shared, 50);
         if (code == TOILE_CODE_USAGE && strstr(toile_last_error(), "another call is at work"))
             atomic_fetch_add(&busy_for_steps, 1);
