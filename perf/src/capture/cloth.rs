@@ -4,6 +4,7 @@
 use glam::{DVec3, Vec2, Vec3};
 use image::RgbImage;
 use toile_assets::scene_file::{SceneFile, SceneSource};
+use toile_capture::recover::VALUES;
 use toile_capture::render::{Bar, Lighting, Print, PrintedSurface, Sensor, look_at, take};
 use toile_engine::cloth::Quality;
 use toile_fitting::heap::HeapProbe;
@@ -17,6 +18,9 @@ use crate::skirt::options::SkirtOptions;
 /// Vertices along a side, and the side (m): the 900 vertices of the source's cloth.
 pub const ALONG: usize = 30;
 const SIDE: f64 = 0.29;
+
+/// The fabric of the hanging cloth: stretch of warp and weft and shear (N/m), bending (uN m), damping (1/s).
+pub const FABRIC: [f64; VALUES] = [2_000.0, 60.0, 12.0, 0.5];
 
 /// When the cameras' first frame of it is (s).
 pub const FROM: f64 = 0.1;
@@ -77,8 +81,8 @@ pub struct FilmedCloth {
     pub cameras: Vec<CalibratedCamera>,
 }
 
-/// The scene of the cloth with the fabric's values as given: stretch of warp and weft and shear (N/m), bending (uN m), damping (1/s).
-pub fn scene(stretch: f64, shear: f64, bending: f64, damping: f64) -> String {
+/// The scene of the hanging cloth with a fabric's values as [`FABRIC`] has them.
+pub fn scene([stretch, shear, bending, damping]: [f64; VALUES]) -> String {
     format!(
         "duration = 10\nstep_hz = 120\n[wind]\nvelocity = [0.3, 0.0, 0.8]\ndrag = 0.1\nlift = 0.05\n[settings]\nquality = \"fine\"\n\
          [garment]\ngrid = {{ rows = {ALONG}, columns = {ALONG}, width = {SIDE}, height = {SIDE} }}\nposition = [{}, {}, 0]\n\
@@ -125,7 +129,7 @@ impl FilmedCloth {
     }
 
     fn hanging(frames: usize, cameras: usize) -> Result<Self, RunError> {
-        let frames = in_f64(&play(&scene(2_000.0, 60.0, 12.0, 0.5), FROM, frames)?);
+        let frames = in_f64(&play(&scene(FABRIC), FROM, frames)?);
         let at = |i: usize| Vec2::new((i % ALONG) as f32, (ALONG - 1 - i / ALONG) as f32) / (ALONG - 1) as f32 * 0.5;
         let uvs = (0..ALONG * ALONG).map(at).collect();
         let mut triangles = Vec::new();

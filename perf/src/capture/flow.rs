@@ -8,15 +8,13 @@ use toile_capture::recover::{Recovered, VALUES, recover};
 use toile_capture::surface::Surface;
 use toile_fitting::scene::RunError;
 
-use super::cloth::{Disturbance, FROM, Filmed, FilmedCloth, play, scene};
+use super::cloth::{Disturbance, FABRIC, FROM, Filmed, FilmedCloth, play, scene};
 use super::error::FlowStudyError;
 
 /// Goals: mean error without and with the arm (mm), the last ten frames over the first ten, an iteration (s).
 pub const GOALS: [f64; 4] = [0.25, 1.0, 1.5, 0.030];
 
-/// The fabric of the hanging cloth, and where the search for it starts, as parts of it: stretch and shear (N/m), bending (uN m),
-/// damping (1/s).
-const FABRIC: [f64; VALUES] = [2_000.0, 60.0, 12.0, 0.5];
+/// Where the search for the hanging cloth's fabric starts, as parts of it.
 const FABRIC_START: [f64; VALUES] = [0.6, 1.5, 1.7, 0.6];
 
 /// Largest part by which a value of the fabric may be off.
@@ -198,7 +196,7 @@ pub fn run(case: &FlowCase, frames: usize, mut see: impl FnMut(FollowedMoment<'_
 fn fabric_of(followed: &[Vec<DVec3>]) -> Result<FoundFabric, RunError> {
     let observed: Vec<Vec<Vec3>> = followed.iter().map(|f| f.iter().map(|p| p.as_vec3()).collect()).collect();
     let start = std::array::from_fn(|k| FABRIC[k] * FABRIC_START[k]);
-    let simulate = |v: &[f64; VALUES], frames| play(&scene(v[0], v[1], v[2], v[3]), FROM, frames);
+    let simulate = |v: &[f64; VALUES], frames| play(&scene(*v), FROM, frames);
     let Recovered { values, sigma, error_mm, .. } = recover(start, &observed, simulate)?;
     Ok(FoundFabric { truth: FABRIC, start, found: values, sigma, error_mm })
 }
