@@ -236,6 +236,10 @@ impl ClothLook<'_> {
 /// How much of the light the groove of a seam and a line of stitches leave, seen by a pixel so wide (m).
 fn sewn(far: Vec2, pixel: f32) -> f32 {
     let line = |distance: f32, half: f32| {
+        // Most of a garment is far from any seam.
+        if distance >= half + 0.5 * pixel {
+            return 0.0;
+        }
         let seen = ((half + 0.5 * pixel - distance) / pixel.max(1e-6)).clamp(0.0, 1.0);
         seen * (2.0 * half / pixel.max(1e-6)).min(1.0)
     };

@@ -32,7 +32,7 @@ pub enum Error {
 }
 
 /// Width and height (pixels).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub struct Size {
     /// Width (pixels).
     pub width: u32,

@@ -1,6 +1,7 @@
 //! The camera's picture in the mirror: mirrored, and as large as the mirror.
 
 use glam::Vec2;
+use toile_engine::lanes::{Kernel, Lanes, Width};
 use toile_sensors::source::live::ColourImage;
 
 use super::framing::Framing;
@@ -9,19 +10,22 @@ use super::framing::Framing;
 const BESIDE: [u8; 3] = [28, 29, 32];
 
 /// Shares are of so many parts.
-const ONE: u32 = 256;
+const ONE: u32 = 64;
 
-/// A column of the mirror: the byte of the column left of it and right of it in a row of the picture, and the share of the latter.
-type Column = (u32, u32, u32);
+/// Parts of a share between two rows: 15 bits, so that a product's upper half is what is kept.
+const ROW_ONE: f32 = 32_768.0;
+
+/// A column of the mirror: the byte of the column left of it in a row of the picture, and the share of the one right of that.
+type Column = (u32, u32);
 
 /// Columns of the mirror, kept from picture to picture.
 #[derive(Debug, Clone, Default)]
 pub struct Background {
     columns: Vec<Option<Column>>,
     made_for: Option<(Framing, [u32; 2])>,
-    /// Two rows of the picture at the mirror's columns, in parts of 1/256, and which they are: a row is looked at once, and shows in
+    /// Two rows of the picture at the mirror's columns, in parts of 1/64, and which they are: a row is looked at once, and shows in
     /// several of the mirror's `[3 * width]`.
-    rows: [(Option<usize>, Vec<u16>); 2],
+    rows: [(Option<usize>, Vec<i16>); 2],
 }
 
 impl Background {
@@ -42,7 +46,7 @@ impl Background {
                 continue;
             }
             let at = at.clamp(0.0, last);
-            let (upper, part) = (at as usize, (at.fract() * ONE as f32) as u32);
+            let (upper, part) = (at as usize, (at.fract() * ROW_ONE) as i16);
             let lower = (upper + 1).min(last as usize);
             self.spread(picture, upper, lower);
             self.spread(picture, lower, upper);
@@ -50,9 +54,7 @@ impl Background {
             let (a, b) = if *first == Some(upper) { (one, other) } else { (other, one) };
             // Both are one row at the picture's end.
             let b = if upper == lower { a } else { b };
-            for ((to, a), b) in row.iter_mut().zip(a).zip(b) {
-                *to = ((u32::from(*a) * (ONE - part) + u32::from(*b) * part + ONE * ONE / 2) / (ONE * ONE)) as u8;
-            }
+            Width::Eight.run(Between { a, b, share: part, out: row });
         }
     }
 
@@ -68,7 +70,7 @@ impl Background {
         places.clear();
         for column in &self.columns {
             places.extend_from_slice(
-                &column.map_or(BESIDE.map(|c| u16::from(c) * ONE as u16), |column| at(colours, column)),
+                &column.map_or(BESIDE.map(|c| i16::from(c) * ONE as i16), |column| at(colours, column)),
             );
         }
     }
@@ -81,16 +83,47 @@ fn column(framing: &Framing, x: u32, width: u32) -> Option<Column> {
         return None;
     }
     let at = at.clamp(0.0, last);
-    let left = at as u32;
-    Some((3 * left, 3 * (left + 1).min(width - 1), (at.fract() * ONE as f32) as u32))
+    // The last column is the one right of the last but one.
+    let left = (at as u32).min(width.saturating_sub(2));
+    Some((3 * left, ((at - left as f32) * ONE as f32) as u32))
 }
 
-/// A row of the picture at a column of the mirror, in parts of 1/256.
+/// A row of the picture at a column of the mirror, in parts of 1/64.
 #[inline]
-fn at(row: &[u8], (left, right, share): Column) -> [u16; 3] {
-    let (left, right) = (left as usize, right as usize);
-    // At most 255 times 256.
-    std::array::from_fn(|c| (u32::from(row[left + c]) * (ONE - share) + u32::from(row[right + c]) * share) as u16)
+fn at(row: &[u8], (left, share): Column) -> [i16; 3] {
+    let Some(two) = row.get(left as usize..).and_then(|r| r.first_chunk::<6>()) else {
+        return BESIDE.map(|c| i16::from(c) * ONE as i16);
+    };
+    // At most 255 times 64.
+    std::array::from_fn(|c| (u32::from(two[c]) * (ONE - share) + u32::from(two[c + 3]) * share) as i16)
+}
+
+/// A row of the mirror between two of the picture: plain code, compiled for each width that processors have.
+struct Between<'a> {
+    a: &'a [i16],
+    b: &'a [i16],
+    share: i16,
+    out: &'a mut [u8],
+}
+
+impl Kernel for Between<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        for ((to, a), b) in self.out.iter_mut().zip(self.a).zip(self.b) {
+            *to = between(*a, *b, self.share);
+        }
+    }
+}
+
+/// A byte between two values in parts of 1/64, at a share in parts of 1/32768: to one step of a byte, in numbers of 16 bits, of which a
+/// processor has many at once.
+#[inline(always)]
+fn between(a: i16, b: i16, share: i16) -> u8 {
+    // The upper half of the product is half of what goes from a to b: at most 8160.
+    let half = ((i32::from(b - a) * i32::from(share)) >> 16) as i16;
+    ((a + 2 * half + (ONE / 2) as i16) >> ONE.ilog2()) as u8
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use toile_sensors::person_mask::PersonMask;
 use toile_sensors::source::live::ColourImage;
 
 use super::background::Background;
-use super::canvas::{Canvas, NOTHING, Seen};
+use super::canvas::{Canvas, Faces, NOTHING, Seen};
 use super::framing::Framing;
 use super::light::LightMeter;
 use super::model::OwnPictureModel;
@@ -230,10 +230,10 @@ impl OwnPicture {
 
     fn raster(&mut self, model: &OwnPictureModel, size: Size) {
         self.body.clear(size);
-        self.body.draw(&self.seen, &model.triangles, 0);
+        self.body.draw(&self.seen, &model.triangles, 0, Faces::Outer);
         self.cloth.clear(size);
         for (garment, own) in self.garments.iter().zip(&model.garments) {
-            self.cloth.draw(&garment.seen, &own.triangles, garment.first);
+            self.cloth.draw(&garment.seen, &own.triangles, garment.first, Faces::Both);
         }
     }
 
@@ -277,9 +277,9 @@ impl OwnPicture {
         let [on_cloth, on_body] = &mut self.maps;
         on_cloth.begin(light.toward(), middle, 1.05);
         on_body.begin(light.toward(), middle, 1.05);
-        on_body.draw(&self.points, &model.triangles);
+        on_body.draw(&self.points, &model.triangles, Faces::Outer);
         for (garment, own) in self.garments.iter().zip(&model.garments) {
-            on_cloth.draw(&garment.points, &own.triangles);
+            on_cloth.draw(&garment.points, &own.triangles, Faces::Both);
         }
         for garment in &mut self.garments {
             let SeenGarment { points, normals, light: lit, .. } = garment;

@@ -55,6 +55,8 @@ pub struct OwnPictureModel {
     pub(super) weights: Vec<SkinWeights>,
     /// How much farther off each counts (m): what lies under a garment `[vertices]`.
     pub(super) recess: Vec<f32>,
+    /// Whether a garment covers it `[triangles]`.
+    pub(super) is_covered: Vec<bool>,
     /// The garments, inner first.
     pub(super) garments: Vec<OwnGarment>,
 }
@@ -84,6 +86,7 @@ impl OwnPictureModel {
             skeleton: body.skeleton.clone(),
             triangles: body.mesh.triangles.clone(),
             parts: body.mesh.triangles.iter().map(part).collect(),
+            is_covered: body.mesh.triangles.iter().map(|t| covered[t[0] as usize]).collect(),
             weights: body.weights.clone(),
             recess: covered.into_iter().map(|under| if under { RECESS_M } else { 0.0 }).collect(),
             garments: garments.iter().map(worn).collect(),

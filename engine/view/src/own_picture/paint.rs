@@ -1,15 +1,20 @@
 //! Cloth into the picture: its colour in the picture's light, what lies before it left out, edges soft, shadows around it.
 
+use std::ops::Range;
+
 use glam::{Vec2, Vec3};
 use toile_sensors::colour_camera::ColourCamera;
 use toile_sensors::person_mask::PersonMask;
 
 use super::canvas::{self, Canvas, NOTHING, Seen};
 use super::framing::Framing;
+use super::garment_colour::ClothFacet;
 use super::light::LightEstimate;
 use super::model::OwnPictureModel;
 use super::occlusion::{self, BodyThere, DepthInPicture};
+use super::rays::Rays;
 use super::shadow::ShadowMap;
+use crate::image::Size;
 use crate::tone_mapping;
 
 /// Steps of linear light in the table of sRGB bytes.
@@ -17,6 +22,9 @@ const TONES: usize = 4096;
 
 /// Pixels between two places at which a shadow is looked up.
 const SHADED: usize = 4;
+
+/// A shadow that takes less of the light changes no byte.
+const LEAST_DARK: f32 = 0.004;
 
 /// Farthest from the garment that a shadow falls (pixels of 1000 rows).
 const AROUND: u32 = 160;
@@ -66,8 +74,21 @@ pub struct SeenGarment {
 pub struct Painter {
     /// What the cloth shows where it is seen, and whether it is `[pixels]`.
     cloth: Vec<([u8; 3], bool)>,
+    /// Columns and rows of it that were painted on.
+    painted: [Range<usize>; 2],
+    size: Size,
     tones: Vec<u8>,
     shaded: Vec<f32>,
+    rays: Rays,
+}
+
+/// A triangle of cloth that is seen: what is the same at all of its pixels.
+struct SeenFacet<'a> {
+    cloth: ClothFacet<'a>,
+    corners: [Seen; 3],
+    /// Light on the corners, on the face that is seen.
+    light: [Vec3; 3],
+    ground: Vec3,
 }
 
 impl Layers<'_> {
@@ -77,8 +98,7 @@ impl Layers<'_> {
         if triangle == NOTHING {
             return None;
         }
-        let first = self.model.triangles[triangle as usize][0] as usize;
-        Some(BodyThere { z: 1.0 / self.body.near[at], is_covered: self.model.recess[first] > 0.0 })
+        Some(BodyThere { z: 1.0 / self.body.near[at], is_covered: self.model.is_covered[triangle as usize] })
     }
 
     /// The garment and the triangle of it that is nearest at a pixel.
@@ -86,6 +106,28 @@ impl Layers<'_> {
         let triangle = self.cloth.triangle[at];
         let worn = self.garments.iter().rposition(|g| g.first <= triangle)?;
         (triangle != NOTHING).then(|| (worn, (triangle - self.garments[worn].first) as usize))
+    }
+
+    /// A triangle that is seen, by its number among all garments'.
+    fn facet(&self, triangle: u32) -> Option<SeenFacet<'_>> {
+        let worn = self.garments.iter().rposition(|g| g.first <= triangle)?;
+        let (garment, own) = (&self.garments[worn], &self.model.garments[worn]);
+        let number = (triangle - garment.first) as usize;
+        let vertices = own.triangles[number].map(|v| v as usize);
+        let corners = vertices.map(|v| garment.seen[v]);
+        let [a, b, c] = vertices.map(|v| garment.points[v]);
+        let size = (b - a).cross(c - a).length().sqrt();
+        let near = corners[0].z.max(1e-3);
+        let wide = 1.0 / (near * self.camera.intrinsics.fx * self.framing.scale);
+        let [p, q, r] = corners.map(Vec3::truncate);
+        // The mirror shows a front face so: it turns left and right.
+        let is_front = (q - p).perp_dot(r - p) > 0.0;
+        Some(SeenFacet {
+            cloth: own.colour.facet(number, size, wide),
+            corners,
+            light: vertices.map(|v| garment.light[v][usize::from(!is_front)]),
+            ground: self.colours.get(worn).map_or(own.colour.ground, |c| Vec3::from_array(*c)),
+        })
     }
 
     fn is_hidden(&self, at: usize, pixel: Vec2) -> bool {
@@ -103,28 +145,49 @@ impl Painter {
     /// Paints the cloth into the mirror `[3 * width * height]`.
     pub fn cloth(&mut self, layers: &Layers<'_>, out: &mut [u8]) {
         self.prepare();
-        let width = layers.cloth.size.width as usize;
-        let [columns, rows] = layers.cloth.drawn().map(|r| r.map(|n| n as usize));
-        self.cloth.clear();
-        self.cloth.resize(layers.cloth.near.len(), ([0; 3], false));
-        // A border of one, so that the neighbours of every pixel are of this picture.
-        let grown = |[a, b]: [usize; 2], end: u32| a.saturating_sub(2)..(b + 2).min(end as usize);
-        let (columns, rows) = (grown(columns, layers.cloth.size.width), grown(rows, layers.cloth.size.height));
+        self.clear(layers.cloth.size);
+        let size = layers.cloth.size;
+        let width = size.width as usize;
+        // A border, so that the neighbours of every pixel are of this picture.
+        let grown = |[a, b]: [u32; 2], end: u32| a.saturating_sub(2) as usize..(b + 2).min(end) as usize;
+        let [columns, rows] = layers.cloth.drawn();
+        let (columns, rows) = (grown(columns, size.width), grown(rows, size.height));
+        self.painted = [columns.clone(), rows.clone()];
+        let mut last = None;
         for y in rows.clone() {
             for x in columns.clone() {
-                let at = y * width + x;
-                let pixel = Vec2::new(x as f32, y as f32);
-                self.cloth[at] = match layers.cloth_at(at).filter(|_| !layers.is_hidden(at, pixel)) {
-                    Some((worn, triangle)) => (self.colour(layers, worn, triangle, pixel), true),
-                    None => ([0; 3], false),
-                };
+                let (at, pixel) = (y * width + x, Vec2::new(x as f32, y as f32));
+                let triangle = layers.cloth.triangle[at];
+                if triangle == NOTHING || layers.is_hidden(at, pixel) {
+                    continue;
+                }
+                // Neighbours are mostly of one triangle.
+                if last.as_ref().is_none_or(|(number, _)| *number != triangle) {
+                    last = layers.facet(triangle).map(|facet| (triangle, facet));
+                }
+                if let Some((_, facet)) = &last {
+                    self.cloth[at] = (self.colour(facet, pixel), true);
+                }
             }
         }
         for y in rows.start + 1..rows.end.saturating_sub(1) {
-            for x in columns.start + 1..columns.end.saturating_sub(1) {
-                let at = y * width + x;
-                self.blend(at, width, layers, &mut out[3 * at..3 * at + 3]);
+            self.blend_row(y, columns.clone(), layers, out);
+        }
+    }
+
+    /// Empties what was painted; all of it where the size changes.
+    fn clear(&mut self, size: Size) {
+        let nothing = ([0; 3], false);
+        if self.size == size {
+            let [columns, rows] = &self.painted;
+            for y in rows.clone() {
+                let row = y * size.width as usize;
+                self.cloth[row + columns.start..row + columns.end].fill(nothing);
             }
+        } else {
+            self.size = size;
+            self.cloth.clear();
+            self.cloth.resize(size.width as usize * size.height as usize, nothing);
         }
     }
 
@@ -141,55 +204,42 @@ impl Painter {
     }
 
     /// Colour of the cloth at a pixel, as sRGB bytes.
-    fn colour(&self, layers: &Layers<'_>, worn: usize, number: usize, pixel: Vec2) -> [u8; 3] {
-        let (garment, own) = (&layers.garments[worn], &layers.model.garments[worn]);
-        let corners = own.triangles[number].map(|v| v as usize);
-        let seen = corners.map(|v| garment.seen[v]);
-        let weights = canvas::weights(seen, pixel);
-        let [a, b, c] = corners.map(|v| garment.points[v]);
-        let size = (b - a).cross(c - a).length().sqrt();
-        let near = seen[0].z.max(1e-3);
-        let wide = 1.0 / (near * layers.camera.intrinsics.fx * layers.framing.scale);
-        let ground = layers.colours.get(worn).map_or(own.colour.ground, |c| Vec3::from_array(*c));
-        let base = own.colour.at(number, weights, ground, [size, wide]);
-        // The mirror shows a front face counter-clockwise with rows downwards.
-        let front =
-            (seen[1].x - seen[0].x) * (seen[2].y - seen[0].y) - (seen[1].y - seen[0].y) * (seen[2].x - seen[0].x) > 0.0;
-        let light: Vec3 = corners.iter().zip(weights).map(|(v, w)| garment.light[*v][usize::from(!front)] * w).sum();
+    fn colour(&self, facet: &SeenFacet<'_>, pixel: Vec2) -> [u8; 3] {
+        let weights = canvas::weights(facet.corners, pixel);
+        let base = facet.cloth.at(weights, facet.ground);
+        let light = facet.light[0] * weights[0] + facet.light[1] * weights[1] + facet.light[2] * weights[2];
         let tone = |x: f32| self.tones[((x / 1.25 * (TONES - 1) as f32) as usize).min(TONES - 1)];
         (base * light).to_array().map(tone)
     }
 
-    /// A pixel is as much cloth as its neighbourhood is.
-    fn blend(&self, at: usize, width: usize, layers: &Layers<'_>, out: &mut [u8]) {
-        let nine = [
-            at - width - 1,
-            at - width,
-            at - width + 1,
-            at - 1,
-            at,
-            at + 1,
-            at + width - 1,
-            at + width,
-            at + width + 1,
-        ];
-        let count: u32 = nine.iter().map(|i| u32::from(self.cloth[*i].1)).sum();
-        if count == 0 {
-            return;
+    /// Each pixel of a row is as much cloth as its neighbourhood is.
+    fn blend_row(&self, y: usize, columns: Range<usize>, layers: &Layers<'_>, out: &mut [u8]) {
+        let width = layers.cloth.size.width as usize;
+        let rows = [y - 1, y, y + 1].map(|y| &self.cloth[y * width..(y + 1) * width]);
+        let in_column = |x: usize| rows.iter().map(|row| u32::from(row[x].1)).sum::<u32>();
+        let is_sheer = layers.model.garments.iter().any(|g| g.colour.opacity() < 1.0);
+        let (mut before, mut here) = (in_column(columns.start), in_column(columns.start + 1));
+        for x in columns.start + 1..columns.end - 1 {
+            let after = in_column(x + 1);
+            let count = before + here + after;
+            (before, here) = (here, after);
+            if count == 0 {
+                continue;
+            }
+            let at = y * width + x;
+            let to = &mut out[3 * at..3 * at + 3];
+            let (colour, is) = rows[1][x];
+            if count == 9 && !is_sheer {
+                to.copy_from_slice(&colour);
+                continue;
+            }
+            let colour = if is { colour } else { mean_around(rows, x, count) };
+            let opacity = layers.cloth_at(at).map_or(1.0, |(worn, _)| layers.model.garments[worn].colour.opacity());
+            let alpha = (count as f32 / 9.0 * opacity * 256.0) as u32;
+            to.iter_mut().zip(colour).for_each(|(to, c)| {
+                *to = ((u32::from(*to) * (256 - alpha) + u32::from(c) * alpha) / 256) as u8;
+            });
         }
-        let (colour, is) = self.cloth[at];
-        let colour = if is {
-            colour
-        } else {
-            let seen = nine.iter().map(|i| &self.cloth[*i]).filter(|(_, is)| *is);
-            let sum = seen.fold([0_u32; 3], |sum, (colour, _)| [0, 1, 2].map(|c| sum[c] + u32::from(colour[c])));
-            sum.map(|s| (s / count) as u8)
-        };
-        let opacity = layers.cloth_at(at).map_or(1.0, |(worn, _)| layers.model.garments[worn].colour.opacity());
-        let alpha = (count as f32 / 9.0 * opacity * 256.0) as u32;
-        out.iter_mut().zip(colour).for_each(|(to, c)| {
-            *to = ((u32::from(*to) * (256 - alpha) + u32::from(c) * alpha) / 256) as u8;
-        });
     }
 
     /// Darkens skin and floor where the garment's shadow falls, before the cloth is painted.
@@ -203,38 +253,55 @@ impl Painter {
             return;
         }
         let [across, down] = [x1 - x0, y1 - y0].map(|n| n as usize / SHADED + 2);
+        let strength = light.shadow_strength();
+        self.rays.make(layers.camera);
         self.shaded.clear();
         for k in 0..across * down {
             let pixel =
                 Vec2::new((x0 as usize + k % across * SHADED) as f32, (y0 as usize + k / across * SHADED) as f32);
-            self.shaded.push(dark(layers, pixel, maps) * light.shadow_strength());
+            self.shaded.push(dark(layers, &self.rays, pixel, maps) * strength);
         }
         for y in y0 as usize..y1 as usize {
-            for x in x0 as usize..x1 as usize {
-                let dark = self.dark_between(x - x0 as usize, y - y0 as usize, across);
-                if dark > 0.004 {
-                    // A share of linear light is about the root of it in bytes.
-                    let keeps = ((1.0 - dark).sqrt() * 256.0) as u32;
-                    let at = 3 * (y * size.width as usize + x);
-                    out[at..at + 3].iter_mut().for_each(|c| *c = (u32::from(*c) * keeps / 256) as u8);
+            let row = (y - y0 as usize) / SHADED * across;
+            let part = (y - y0 as usize) % SHADED;
+            for (block, first) in (x0 as usize..x1 as usize).step_by(SHADED).enumerate() {
+                let at = row + block;
+                let corners = [at, at + 1, at + across, at + across + 1].map(|i| self.shaded[i]);
+                // Most places are not in the shadow.
+                if corners.iter().all(|dark| *dark <= LEAST_DARK) {
+                    continue;
+                }
+                for x in first..(first + SHADED).min(x1 as usize) {
+                    let dark = between(corners, [x - first, part]);
+                    if dark > LEAST_DARK {
+                        // A share of linear light is about the root of it in bytes.
+                        let keeps = ((1.0 - dark).sqrt() * 256.0) as u32;
+                        let at = 3 * (y * size.width as usize + x);
+                        out[at..at + 3].iter_mut().for_each(|c| *c = (u32::from(*c) * keeps / 256) as u8);
+                    }
                 }
             }
         }
     }
+}
 
-    fn dark_between(&self, x: usize, y: usize, across: usize) -> f32 {
-        let at = y / SHADED * across + x / SHADED;
-        let [dx, dy] = [x, y].map(|n| (n % SHADED) as f32 / SHADED as f32);
-        let of = |i: usize| self.shaded.get(i).copied().unwrap_or(0.0);
-        let (upper, lower) =
-            (of(at) + (of(at + 1) - of(at)) * dx, of(at + across) + (of(at + across + 1) - of(at + across)) * dx);
-        upper + (lower - upper) * dy
-    }
+/// How dark it is between four places, upper and lower ones, at a pixel right and down of the first.
+fn between([a, b, c, d]: [f32; 4], at: [usize; 2]) -> f32 {
+    let [dx, dy] = at.map(|n| n as f32 / SHADED as f32);
+    let (upper, lower) = (a + (b - a) * dx, c + (d - c) * dx);
+    upper + (lower - upper) * dy
+}
+
+/// The mean colour of the cloth, of which there are `count` pixels, among nine.
+fn mean_around(rows: [&[([u8; 3], bool)]; 3], x: usize, count: u32) -> [u8; 3] {
+    let seen = rows.iter().flat_map(|row| &row[x - 1..=x + 1]).filter(|(_, is)| *is);
+    let sum = seen.fold([0_u32; 3], |sum, (colour, _)| [0, 1, 2].map(|c| sum[c] + u32::from(colour[c])));
+    sum.map(|s| (s / count) as u8)
 }
 
 /// How dark the garment makes what is seen at a pixel of the mirror: skin of the fitted body, or the floor, which the body itself shades
 /// in the picture already.
-fn dark(layers: &Layers<'_>, pixel: Vec2, [cloth, body]: [&ShadowMap; 2]) -> f32 {
+fn dark(layers: &Layers<'_>, rays: &Rays, pixel: Vec2, [cloth, body]: [&ShadowMap; 2]) -> f32 {
     let size = layers.cloth.size;
     let inside = pixel.x >= 0.0 && pixel.y >= 0.0 && pixel.x < size.width as f32 && pixel.y < size.height as f32;
     if !inside {
@@ -242,7 +309,7 @@ fn dark(layers: &Layers<'_>, pixel: Vec2, [cloth, body]: [&ShadowMap; 2]) -> f32
     }
     let at = pixel.y as usize * size.width as usize + pixel.x as usize;
     let seen = layers.framing.to_picture(pixel);
-    let ray = layers.camera.ray(seen);
+    let ray = rays.at(layers.camera, seen);
     let to_world = &layers.camera.camera_to_world;
     let measured = layers.depth.at(seen);
     if let Some(there) = layers.body_at(at).filter(|b| !b.is_covered) {
@@ -263,5 +330,7 @@ fn dark(layers: &Layers<'_>, pixel: Vec2, [cloth, body]: [&ShadowMap; 2]) -> f32
         return 0.0;
     }
     let place = origin + way * z;
-    ((1.0 - cloth.open(place)) - (1.0 - body.open(place))).max(0.0)
+    let open = cloth.open(place);
+    // What is open to the garment is so to the light, whatever the body does.
+    if open < 1.0 { (body.open(place) - open).max(0.0) } else { 0.0 }
 }

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use super::canvas::{Canvas, Seen};
+use super::canvas::{Canvas, Faces, Seen};
 use crate::image::Size;
 
 /// Side of a map (pixels): 10 mm each over a whole person.
@@ -34,18 +34,20 @@ pub struct ShadowMap {
 impl ShadowMap {
     /// Looks from a direction (unit) at what lies within a ball (m).
     pub fn begin(&mut self, toward: Vec3, middle: Vec3, radius: f32) {
-        (self.right, self.up) = toward.any_orthonormal_pair();
+        let (right, up) = toward.any_orthonormal_pair();
+        // A frame of the right hand, so that outer faces are counter-clockwise.
+        (self.right, self.up) = if right.cross(up).dot(toward) > 0.0 { (right, up) } else { (up, right) };
         (self.toward, self.middle) = (toward, middle);
         self.scale = SIDE as f32 / (2.0 * radius.max(0.1));
         self.canvas.clear(Size::new(SIDE, SIDE));
     }
 
     /// Draws a surface (m).
-    pub fn draw(&mut self, points: &[Vec3], triangles: &[[u32; 3]]) {
+    pub fn draw(&mut self, points: &[Vec3], triangles: &[[u32; 3]], faces: Faces) {
         let mut seen = std::mem::take(&mut self.seen);
         seen.clear();
         seen.extend(points.iter().map(|p| self.place(*p)));
-        self.canvas.draw(&seen, triangles, 0);
+        self.canvas.draw(&seen, triangles, 0, faces);
         self.seen = seen;
     }
 
@@ -93,7 +95,7 @@ mod tests {
             Vec3::new(-0.3, 1.0, 0.3),
         ];
         map.begin(Vec3::Y, Vec3::Y, 1.0);
-        map.draw(&sheet, &[[0, 1, 2], [0, 2, 3]]);
+        map.draw(&sheet, &[[0, 1, 2], [0, 2, 3]], Faces::Both);
         assert!(map.open(Vec3::new(0.0, 0.8, 0.0)) < 0.25);
         assert_eq!((map.open(Vec3::new(0.0, 1.2, 0.0)), map.open(Vec3::new(0.6, 0.8, 0.0))), (1.0, 1.0));
         let edge = map.open(Vec3::new(0.3, 0.9, 0.0));
