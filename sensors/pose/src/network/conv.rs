@@ -7,6 +7,7 @@
 use toile_engine::lanes::{Kernel, Lanes, MOST, ReadColumn, Store, WriteColumn};
 
 use super::op::Sliding;
+use super::single;
 use crate::tflite::Activation;
 
 /// Output channels of a panel.
@@ -51,8 +52,11 @@ pub fn is_direct(sliding: &Sliding) -> bool {
     sliding.size == [1, 1] && sliding.stride == [1, 1] && sliding.before == [0, 0]
 }
 
-/// Numbers of scratch memory that a convolution needs: the windows of one row of the output.
+/// Numbers of scratch memory that a convolution needs: the windows of one row of the output, or what [`single`] lays out.
 pub fn scratch(sliding: &Sliding) -> usize {
+    if single::is_single(sliding) {
+        return single::scratch(sliding);
+    }
     let window = sliding.size[0] * sliding.size[1] * sliding.input.channels;
     if is_direct(sliding) { 0 } else { sliding.output.width * window }
 }

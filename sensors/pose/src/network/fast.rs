@@ -6,6 +6,7 @@ use super::conv::{self, PackedConv, Product};
 use super::kernels::{AddKernel, DepthwiseKernel, ResizeKernel};
 use super::op::Op;
 use super::reference;
+use super::single::{self, Single};
 
 /// Runs an operator; a convolution with its packed weights and the memory that [`conv::scratch`] asks for.
 pub fn run(
@@ -20,6 +21,10 @@ pub fn run(
         (Op::Add(activation), _) => {
             width.run(AddKernel { from: [inputs[0], inputs[1]], to: out, activation: *activation });
         }
+        (Op::Conv { sliding, weights, bias }, Some(_)) if single::is_single(sliding) => {
+            let scratch = &mut scratch[..single::scratch(sliding)];
+            width.run(Single { sliding, weights, bias: bias[0], from: inputs[0], to: out, scratch });
+        }
         (Op::Conv { sliding, .. }, Some(packed)) => {
             let (outs, activation) = (sliding.output.channels, sliding.activation);
             if conv::is_direct(sliding) {
@@ -33,12 +38,23 @@ pub fn run(
             }
         }
         (Op::Depthwise { sliding, weights, bias }, _) => {
-            width.run(DepthwiseKernel { sliding, weights, bias, from: inputs[0], to: out });
+            narrow(width, sliding.input.channels).run(DepthwiseKernel {
+                sliding,
+                weights,
+                bias,
+                from: inputs[0],
+                to: out,
+            });
         }
         (Op::Resize(small, large), _) => {
-            width.run(ResizeKernel { shapes: [*small, *large], from: inputs[0], to: out });
+            narrow(width, small.channels).run(ResizeKernel { shapes: [*small, *large], from: inputs[0], to: out });
         }
         // These copy, or are a handful of numbers: their twin is as fast as can be.
         _ => reference::run(op, inputs, out),
     }
+}
+
+/// No more lanes than there are channels, where a whole vector of them would be half empty.
+fn narrow(width: Width, channels: usize) -> Width {
+    if channels <= Width::Eight.lanes() { width.min(Width::Eight) } else { width }
 }

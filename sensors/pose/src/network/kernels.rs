@@ -10,6 +10,9 @@ use crate::tflite::Activation;
 /// Pixels that a vector of weights serves at once.
 const PIXELS: usize = 4;
 
+/// Columns of a larger image whose places are found at once.
+const COLUMNS: usize = 64;
+
 /// Numbers after their activation; of a NaN it makes the lower bound, as its twin does.
 #[inline(always)]
 pub fn activated<L: Lanes>(x: L, activation: Activation) -> L {
@@ -160,18 +163,32 @@ impl Kernel for ResizeKernel<'_> {
     fn run<L: Lanes>(self) {
         let ([small, large], from, to) = (self.shapes, ReadColumn::new(self.from), WriteColumn::new(self.to));
         let channels = small.channels;
-        for y in 0..large.height {
-            let (top, bottom, down) = reference::between(y, small.height, large.height);
-            for x in 0..large.width {
-                let (left, right, across) = reference::between(x, small.width, large.width);
-                let at = |row: usize, column: usize| (row * small.width + column) * channels;
-                let places = [at(top, left), at(bottom, left), at(top, right), at(bottom, right)];
-                let shares = reference::shares(down, across).map(L::splat);
-                let pixel = (y * large.width + x) * channels;
-                vectors::<L>(channels, |c, n| {
-                    let [a, b, d, e] = places.map(|place| load::<L>(from, place + c, n));
-                    store(a * shares[0] + b * shares[1] + d * shares[2] + e * shares[3], to, pixel + c, n);
-                });
+        // Where a column lies is the same in every row.
+        for first in (0..large.width).step_by(COLUMNS) {
+            let mut columns = [(0, 0, 0.0); COLUMNS];
+            let count = COLUMNS.min(large.width - first);
+            for (i, column) in columns[..count].iter_mut().enumerate() {
+                let (left, right, across) = reference::between(first + i, small.width, large.width);
+                *column = (left * channels, right * channels, across);
+            }
+            for y in 0..large.height {
+                let (top, bottom, down) = reference::between(y, small.height, large.height);
+                let [top, bottom] = [top, bottom].map(|row| row * small.width * channels);
+                let mut pixel = (y * large.width + first) * channels;
+                for (left, right, across) in &columns[..count] {
+                    // One by one: an array's `map` is called, and not compiled for this width.
+                    let [s0, s1, s2, s3] = reference::shares(down, *across);
+                    let (s0, s1, s2, s3) = (L::splat(s0), L::splat(s1), L::splat(s2), L::splat(s3));
+                    let mut c = 0;
+                    while c < channels {
+                        let n = L::N.min(channels - c);
+                        let (a, b) = (load::<L>(from, top + left + c, n), load::<L>(from, bottom + left + c, n));
+                        let (d, e) = (load::<L>(from, top + right + c, n), load::<L>(from, bottom + right + c, n));
+                        store(a * s0 + b * s1 + d * s2 + e * s3, to, pixel + c, n);
+                        c += n;
+                    }
+                    pixel += channels;
+                }
             }
         }
     }

@@ -12,6 +12,7 @@ mod plan;
 mod reference;
 mod running;
 mod shape;
+mod single;
 
 pub use reference::logistic;
 pub use running::Network;

@@ -133,6 +133,7 @@ fn pad(input: Shape, output: Shape, before: [usize; 2], from: &[f32], out: &mut 
 }
 
 /// Two neighbouring rows or columns, and how far between them a place of the larger image lies.
+#[inline(always)]
 pub fn between(at: usize, from: usize, to: usize) -> (usize, usize, f32) {
     let place = (at as f32 + 0.5) * (from as f32 / to as f32) - 0.5;
     let low = place.floor().max(0.0);
@@ -161,6 +162,7 @@ fn resize(from_shape: Shape, to_shape: Shape, from: &[f32], out: &mut [f32]) {
 }
 
 /// Shares of the four neighbours: above left, below left, above right, below right.
+#[inline(always)]
 pub fn shares(down: f32, across: f32) -> [f32; 4] {
     [(1.0 - down) * (1.0 - across), down * (1.0 - across), (1.0 - down) * across, down * across]
 }

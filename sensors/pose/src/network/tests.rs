@@ -66,6 +66,21 @@ fn convolutions_are_those_of_their_twin_to_the_bit() {
 }
 
 #[test]
+fn convolutions_to_one_channel_are_those_of_their_twin_to_the_bit() {
+    let mut random = SplitMix64::new(4);
+    let all = windows().into_iter().filter(|(window, ..)| window.stride == [1, 1]);
+    let wide = Shape { height: 4, width: 131, channels: 8 };
+    let window = Window { padding: Padding::Same, stride: [1, 1], activation: Activation::None };
+    for (window, size, input) in all.chain([(window, [3, 3], wide), (window, [5, 2], wide), (window, [1, 7], wide)]) {
+        let output = after(window, size, input, 1);
+        let sliding = slide(window, size, input, output).unwrap();
+        let weights = drawn(&mut random, size[0] * size[1] * input.channels);
+        let op = Op::Conv { sliding, weights, bias: drawn(&mut random, 1) };
+        agrees(&op, &[&drawn(&mut random, input.numbers())], output);
+    }
+}
+
+#[test]
 fn depthwise_convolutions_are_those_of_their_twin_to_the_bit() {
     let mut random = SplitMix64::new(2);
     for (window, size, input) in windows() {
@@ -88,6 +103,9 @@ fn sums_and_other_sizes_are_those_of_their_twin_to_the_bit() {
     for (height, width) in [(10, 14), (5, 7), (3, 20)] {
         let large = Shape { height, width, ..small };
         agrees(&Op::Resize(small, large), &[&a], large);
+        // As few channels as the mask has.
+        let [few, more] = [small, large].map(|shape| Shape { channels: 8, ..shape });
+        agrees(&Op::Resize(few, more), &[&a[..few.numbers()]], more);
     }
 }
 
