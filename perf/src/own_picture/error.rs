@@ -2,6 +2,7 @@
 
 use toile_fitting::FittingError;
 use toile_pose::files::PoseError;
+use toile_track::tape_readings::TapeError;
 
 /// Why it cannot be measured.
 #[derive(Debug, thiserror::Error)]
@@ -12,4 +13,7 @@ pub enum OwnPictureError {
     /// The network is there, and is another one.
     #[error(transparent)]
     Pose(#[from] PoseError),
+    /// What the shopper tells is nobody's.
+    #[error(transparent)]
+    Tape(#[from] TapeError),
 }

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
+use toile_assets::body::Measures;
 use toile_assets::scene::SHOPPER;
 use toile_engine::cloth::Quality;
 use toile_engine::frame::{Frame, Snapshot};
@@ -22,6 +23,7 @@ use toile_sensors::person_mask::PersonMask;
 use toile_sensors::segment::Zone;
 use toile_track::fit::FitOptions;
 use toile_track::fit::tracker::BodyTracker;
+use toile_track::tape_readings::{TapeError, TapeReadings};
 use toile_view::image::Size;
 use toile_view::own_picture::{OwnPicture, OwnPictureInput, OwnPictureModel, OwnPictureOptions, Plain};
 
@@ -45,6 +47,8 @@ toile_assets::named! {
         Depth = "depth and colour",
         /// The pose network.
         Webcam = "webcam",
+        /// The pose network, and a tape, which it asks for.
+        Tape = "webcam and tape",
     }
 }
 
@@ -54,6 +58,7 @@ impl Seer {
         match self {
             Self::Depth => "depth",
             Self::Webcam => "webcam",
+            Self::Tape => "tape",
         }
     }
 
@@ -61,7 +66,8 @@ impl Seer {
     pub fn all(network: Option<&Path>, standing: &[TruthMoment]) -> Result<Vec<MeasuredShopper>, OwnPictureError> {
         let mut all = vec![MeasuredShopper::by_depth(standing)?];
         if let Some(folder) = network {
-            all.push(MeasuredShopper::by_webcam(folder, standing)?);
+            all.push(MeasuredShopper::by_webcam(folder, standing, None)?);
+            all.push(MeasuredShopper::by_webcam(folder, standing, Some(told()?))?);
         }
         Ok(all)
     }
@@ -72,6 +78,13 @@ pub struct MeasuredShopper {
     kind: Seer,
     sensor: FollowerSensor,
     measured: Measured,
+}
+
+/// What the shopper tells of herself, to the centimetre.
+fn told() -> Result<TapeReadings, TapeError> {
+    let Measures { stature, chest_girth, waist_girth, hip_girth, .. } = SHOPPER.1;
+    let named = [("stature", stature), ("chest", chest_girth), ("waist", waist_girth), ("hips", hip_girth)];
+    named.iter().try_fold(TapeReadings::default(), |told, (name, m)| told.and(&format!("{name}={:.0}cm", 100.0 * m)))
 }
 
 fn facts() -> ShopperFacts {
@@ -87,17 +100,23 @@ impl MeasuredShopper {
         Ok(Self { kind: Seer::Depth, sensor: FollowerSensor::Depth(Box::new(tracker)), measured })
     }
 
-    fn by_webcam(folder: &Path, standing: &[TruthMoment]) -> Result<Self, OwnPictureError> {
-        let options =
-            WebcamOptions { sex: SHOPPER.0, mount: scene::mount(), own_picture: true, ..WebcamOptions::default() };
+    fn by_webcam(folder: &Path, standing: &[TruthMoment], told: Option<TapeReadings>) -> Result<Self, OwnPictureError> {
+        let (kind, tape) = (if told.is_some() { Seer::Tape } else { Seer::Webcam }, told.unwrap_or_default());
+        let options = WebcamOptions {
+            sex: SHOPPER.0,
+            mount: scene::mount(),
+            stature_m: tape.stature(),
+            own_picture: true,
+            ..WebcamOptions::default()
+        };
         let mut webcam = WebcamJoints::load(folder, options)?;
         let joints: Vec<Joints> = standing.iter().map(|m| webcam.push(&m.picture, m.time_ns)).collect();
-        let measured = measured::measure(&session::of_directions(joints), facts())?;
+        let measured = measured::measure(&session::of_directions(joints), ShopperFacts { tape, ..facts() })?;
         let webcam = WebcamJoints::load(
             folder,
             WebcamOptions { stature_m: measured.best.measures.stature.map(|s| s.value), ..options },
         )?;
-        Ok(Self { kind: Seer::Webcam, sensor: FollowerSensor::Webcam(Box::new(webcam)), measured })
+        Ok(Self { kind, sensor: FollowerSensor::Webcam(Box::new(webcam)), measured })
     }
 
     /// The garment in the size that fits them.

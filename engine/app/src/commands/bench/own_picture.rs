@@ -64,6 +64,7 @@ pub fn run(args: &OwnPictureArgs) -> Result<(), AppError> {
     let table = table.map_err(|error| match error {
         OwnPictureError::Fitting(error) => error.into(),
         OwnPictureError::Pose(error) => AppError::Device(error.to_string()),
+        OwnPictureError::Tape(error) => AppError::Input(error.to_string()),
     })?;
     let met = table.is_met();
     if !args.json {
