@@ -52,7 +52,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut text =
             format!("name = \"{}\"\nlayer = \"{layer}\"\nlevel = \"{word}\"\n\n[stretches]\n{limits}\n", style.title());
         for (side, yaw) in [("front", 0.0), ("side", FRAC_PI_2), ("back", PI)] {
-            let shot = Photograph::take(&body, &garment, yaw);
+            let shot = Photograph::take(&body, &garment, yaw, level);
             let sleeves = shot.arms.iter().any(|a| *a > 0.0);
             shot.write(&out, &format!("{name}-{side}"), sleeves)?;
             let row = SIZE.height as f32 * 0.5 - (level.height(&body.levels) - 0.5 * SHOWN) * per_metre();
@@ -84,12 +84,12 @@ struct Photograph {
     pixels: Vec<[u8; 4]>,
     /// How much of it lies on an arm.
     arms: Vec<f32>,
-    /// Where the trunk's middle is at the level of the chest, right of the picture's (px).
+    /// Where the trunk's middle is at the garment's level, right of the picture's (px).
     middle: f32,
 }
 
 impl Photograph {
-    fn take(body: &Body, garment: &Garment, yaw: f32) -> Self {
+    fn take(body: &Body, garment: &Garment, yaw: f32, level: FittingLevel) -> Self {
         let skin: Vec<Vec3> = body.mesh.positions.iter().zip(&body.normals).map(|(p, n)| *p - *n * WITHIN).collect();
         let mut normals = vec![Vec3::ZERO; garment.start.len()];
         vertex_normals(&garment.start, &garment.triangles, &mut normals);
@@ -133,8 +133,9 @@ impl Photograph {
             let opacity = if inside.is_some() { seen.cover[i] } else { 0.0 };
             [r, g, b, (255.0 * opacity).round() as u8]
         });
-        let trunk = body.mesh.positions.iter().zip(&body.regions).filter(|(_, r)| **r == Region::Torso);
-        let near = trunk.filter(|(p, _)| (p.y - body.levels.chest).abs() < 0.02).map(|(p, _)| p.z);
+        let is_arm = |r: &Region| matches!(r, Region::LeftArm | Region::RightArm);
+        let trunk = body.mesh.positions.iter().zip(&body.regions).filter(|(_, r)| !is_arm(r));
+        let near = trunk.filter(|(p, _)| (p.y - level.height(&body.levels)).abs() < 0.01).map(|(p, _)| p.z);
         let (low, high) = near.fold((f32::MAX, f32::MIN), |(l, h), z| (l.min(z), h.max(z)));
         Self { pixels: pixels.collect(), arms: seen.arms, middle: -0.5 * (low + high) * per_metre() }
     }

@@ -9,7 +9,7 @@ use toile_assets::file::{self, FileKind};
 use toile_assets::sizes::SizeTable;
 use toile_view::collage::{BodyLayers, CollageError, CollageSide, WornPhotographs, collage};
 use toile_view::contact_sheet::contact_sheet;
-use toile_view::image::{Image, Size};
+use toile_view::image::Image;
 
 use super::tailor::wearer;
 use crate::arguments::{AppearanceArgs, Printing, count, one_of};
@@ -110,8 +110,7 @@ pub fn run(args: &CollageArgs) -> Result<(), AppError> {
         true => CollageSide::ALL.into_iter().filter(there).collect(),
         false => args.sides.clone(),
     };
-    let rows = args.rows as u32;
-    let size = Size::new(rows * 3 / 5, rows);
+    let size = BodyLayers::size(&body, args.rows as u32);
     let mut images = Vec::new();
     for side in &sides {
         let layers = BodyLayers::new(&body, args.look.appearance(), *side, size);

@@ -57,7 +57,19 @@ pub struct BodyLayers {
     floor: f32,
 }
 
+/// Narrowest picture, in parts of its height, and what is left beside a body (parts of its height).
+const NARROWEST: f32 = 0.6;
+const BESIDE: f32 = 0.06;
+
 impl BodyLayers {
+    /// The size of a picture of so many rows on which this body is whole from every side, its arms half raised.
+    pub fn size(body: &Body, rows: u32) -> Size {
+        let Bounds { min, max } = Bounds::of(&body.mesh.positions);
+        let wide = FILL * (max.x - min.x) / (max.y - min.y).max(0.1) + 2.0 * BESIDE;
+        // Even, so that videos and sheets take it.
+        Size::new((rows as f32 * wide.clamp(NARROWEST, 2.0) * 0.5).ceil() as u32 * 2, rows)
+    }
+
     /// The picture of a body at rest from one side.
     pub fn new(body: &Body, appearance: Appearance, side: CollageSide, size: Size) -> Self {
         let figure = Figure::of(body, appearance);

@@ -4,9 +4,9 @@
 //! Budget: not in the frame; half a second a side of 800 rows, nearly all of it the body's picture.
 //! Thread: the caller's, which lends every core for the body's picture.
 //!
-//! After Ugur (2008, sections 6.1.2 and 6.2). In painting order: the body, the garments' parts beside the arms in wearing order, the body's
-//! arms once more, the garments' parts on the arms. A garment hangs at its level, is as large as two points of known distance say,
-//! and its rows are stretched to the body within limits.
+//! After Ugur (2008, sections 6.1.2 and 6.2). In painting order: the body, the garments in wearing order, the body's arms once more, the
+//! garments' sleeves with what lies around them. A garment hangs at its level, is as large as two points of known distance say, and its
+//! rows are stretched to the body within limits.
 
 mod body_layers;
 mod paint;

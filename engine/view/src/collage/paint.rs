@@ -23,6 +23,21 @@ const SMOOTH: f32 = 0.02;
 /// Opacity from which a pixel is the garment's outline.
 const OPAQUE: f32 = 0.5;
 
+/// How far around a sleeve cloth lies before the arm too (m): a photograph's armhole is never quite where the body's is.
+const AROUND_SLEEVE: f32 = 0.06;
+
+/// How far a garment may reach out of the one over it, beside the body, and is pressed in (m): more hangs out.
+const PRESSED: f32 = 0.08;
+
+/// Widest slit between two garments that belong together (px).
+const SLIT: usize = 5;
+
+/// How far below its beginning a sleeve has an armhole (m): farther down there are hands.
+const ARMHOLE: f32 = 0.24;
+
+/// Rows over which the widest counts, as a share of those over which they are smoothed.
+const WIDEST: f32 = 0.35;
+
 /// Why garments cannot be shown on a body.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum CollageError {
@@ -70,92 +85,211 @@ pub fn collage(
     }
     // Stable: within one layer the order of wearing stays.
     order.sort_by_key(|(garment, _)| garment.layer);
-    let placed: Vec<[Layer; 2]> = order.iter().map(|(g, p)| placed(body, layers, g, p)).collect();
+    let mut placed: Vec<PlacedGarment> = order.iter().map(|(g, p)| PlacedGarment::of(body, layers, g, p)).collect();
+    press_in(layers, &mut placed);
     let mut picture = layers.picture.clone();
-    placed.iter().for_each(|[beside, _]| lay(&mut picture, beside));
+    let all = |_: usize| 1.0;
+    placed.iter().for_each(|garment| lay(&mut picture, &garment.whole, all));
     let bare = layers.picture.bytes();
     for ((to, own), cover) in picture.pixels_mut().zip(bare.as_chunks::<3>().0).zip(&layers.arms) {
         for (t, o) in to.iter_mut().zip(own) {
             *t = (f32::from(*t) * (1.0 - cover) + f32::from(*o) * cover).round() as u8;
         }
     }
-    placed.iter().for_each(|[_, on_arms]| lay(&mut picture, on_arms));
+    for (i, garment) in placed.iter().enumerate() {
+        // What is worn over a sleeve hides it where it has sleeves itself, and hides the trunk's cloth anyhow.
+        let free = |at: usize, sleeved: bool| -> f32 {
+            let over = placed[i + 1..].iter().filter(|g| g.has_sleeves || !sleeved);
+            over.map(|g| 1.0 - g.whole.pixels[at][3]).product()
+        };
+        lay(&mut picture, &garment.around, |at| free(at, false));
+        lay(&mut picture, &garment.sleeves, |at| free(at, true));
+    }
     Ok(picture)
 }
 
-fn lay(picture: &mut Image, layer: &Layer) {
-    for (to, p) in picture.pixels_mut().zip(&layer.pixels).filter(|(_, p)| p[3] > 0.0) {
+/// Lays a layer on a picture, as much of each pixel as `share` says.
+fn lay(picture: &mut Image, layer: &Layer, share: impl Fn(usize) -> f32) {
+    for (at, (to, p)) in picture.pixels_mut().zip(&layer.pixels).enumerate().filter(|(_, (_, p))| p[3] > 0.0) {
+        let part = share(at);
         for (t, c) in to.iter_mut().zip(p) {
-            *t = (f32::from(*t) * (1.0 - p[3]) + 255.0 * c).round().clamp(0.0, 255.0) as u8;
+            *t = (f32::from(*t) * (1.0 - part * p[3]) + 255.0 * part * c).round().clamp(0.0, 255.0) as u8;
         }
     }
 }
 
-/// A garment at its place on the body's picture: the part beside the arms, and the part on them.
-fn placed(body: &Body, layers: &BodyLayers, garment: &CollageGarment, pictures: &CollagePictures) -> [Layer; 2] {
-    let [a, b] = pictures.points;
-    let apart = (a[0] - b[0]).hypot(a[1] - b[1]).max(1.0);
-    let scale = layers.per_metre * pictures.distance / apart;
-    let anchor = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
-    let row = layers.row(garment.level.height(&body.levels));
-    let middle = layers.middle(row);
-    let top = row - anchor[1] * scale;
+/// A garment at its place on the body's picture.
+struct PlacedGarment {
+    /// All of it.
+    whole: Layer,
+    /// Its sleeves, which lie before the arms.
+    sleeves: Layer,
+    /// What lies around them and before the arms too.
+    around: Layer,
+    /// Whether it has sleeves in this picture.
+    has_sleeves: bool,
+    /// Whether what is worn beneath stays within it.
+    holds: bool,
+}
+
+impl PlacedGarment {
+    fn of(body: &Body, layers: &BodyLayers, garment: &CollageGarment, pictures: &CollagePictures) -> Self {
+        let [a, b] = pictures.points;
+        let apart = (a[0] - b[0]).hypot(a[1] - b[1]).max(1.0);
+        let scale = layers.per_metre * pictures.distance / apart;
+        let anchor = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
+        let row = layers.row(garment.level.height(&body.levels));
+        let middle = layers.middle(row);
+        let top = row - anchor[1] * scale;
+        let size = layers.picture.size();
+        let (columns, rows) = (size.width as usize, size.height as usize);
+        let arm = |i: usize| pictures.arms.get(i).map_or(0.0, |m| f32::from(*m) / 255.0);
+        let trunk = Layer::of(&pictures.picture, |i| 1.0 - arm(i));
+        let outlines = outlines(&trunk, rows, (top, scale), anchor[0]);
+        let factors = stretches(layers, garment, &outlines, scale, middle);
+        let span =
+            |(stretch, edges): (&[f32; 2], &[f32; 2])| RowSpan { middle, scale, stretch: *stretch, edges: *edges };
+        let spans: Vec<RowSpan> = factors.iter().zip(&outlines).map(span).collect();
+        let per_metre = apart / pictures.distance;
+        let near = around_sleeves(&trunk, arm, [AROUND_SLEEVE, ARMHOLE].map(|m| (m * per_metre) as usize));
+        let at = |layer: Layer| scaled(&layer, [columns, rows], (top, scale), anchor[0], &spans);
+        Self {
+            whole: at(Layer::of(&pictures.picture, |_| 1.0)),
+            sleeves: at(Layer::of(&pictures.picture, arm)),
+            around: at(Layer::of(&pictures.picture, |i| (near[i] - arm(i)).max(0.0))),
+            has_sleeves: pictures.arms.iter().any(|m| *m > 0),
+            holds: is_tight(garment),
+        }
+    }
+}
+
+/// Belts, scarves and shoes hold nothing beneath them and are not stretched.
+fn is_tight(garment: &CollageGarment) -> bool {
+    !matches!(garment.layer, WearingLayer::Belts | WearingLayer::Scarves | WearingLayer::Shoes)
+}
+
+/// Takes away what reaches a little out of an outer garment beside the body: photographs are each stretched by themselves, and what is worn
+/// beneath stays within.
+fn press_in(layers: &BodyLayers, placed: &mut [PlacedGarment]) {
     let size = layers.picture.size();
     let (columns, rows) = (size.width as usize, size.height as usize);
-    let arm = |i: usize| pictures.arms.get(i).map_or(0.0, |m| f32::from(*m) / 255.0);
-    let beside = Layer::of(&pictures.picture, |i| 1.0 - arm(i));
-    let on_arms = Layer::of(&pictures.picture, arm);
-    let width = beside.width as f32;
-    let factors = stretches(layers, garment, &beside, (top, scale), [anchor[0], middle]);
-    let spans: Vec<RowSpan> = factors
-        .iter()
-        .map(|[l, r]| RowSpan {
-            ends: [middle - anchor[0] * scale * l, middle, middle + (width - anchor[0]) * scale * r],
-        })
-        .collect();
-    [beside, on_arms].map(|layer| scaled(&layer, [columns, rows], (top, scale), anchor[0], &spans))
+    let most = (PRESSED * layers.per_metre) as usize;
+    for i in 0..placed.len() {
+        let (inner, outer) = placed.split_at_mut(i + 1);
+        let inner = &mut inner[i];
+        for y in 0..rows {
+            let row = y * columns;
+            let covers = |x: usize| outer.iter().any(|g| g.holds && g.whole.pixels[row + x][3] >= OPAQUE);
+            let on_body = |x: usize| {
+                let within = layers.trunk[y].is_some_and(|[left, right]| (left..right).contains(&(x as f32 + 0.5)));
+                within || layers.arms[row + x] >= OPAQUE
+            };
+            let sticks_out = |x: usize| inner.whole.pixels[row + x][3] > 0.0 && !covers(x) && !on_body(x);
+            let mut out = Vec::new();
+            let mut x = 0;
+            while x < columns {
+                let end = (x..columns).find(|x| !sticks_out(*x)).unwrap_or(columns);
+                let beside = (x.saturating_sub(SLIT)..x).chain(end..(end + SLIT).min(columns)).any(covers);
+                if end > x && end - x <= most && beside {
+                    out.push(x..end);
+                }
+                x = end.max(x + 1);
+            }
+            for at in out.into_iter().flatten() {
+                for layer in [&mut inner.whole, &mut inner.sleeves, &mut inner.around] {
+                    layer.pixels[row + at] = [0.0; 4];
+                }
+            }
+        }
+    }
+}
+
+/// Sleeves with what lies around them, by so many pixels, for so many rows from where each column of them begins: share of each pixel.
+fn around_sleeves(picture: &Layer, arm: impl Fn(usize) -> f32, [around, armhole]: [usize; 2]) -> Vec<f32> {
+    let (width, height) = (picture.width, picture.height);
+    let own: Vec<f32> = (0..width * height).map(arm).collect();
+    let begins = (0..height).find(|y| own[y * width..][..width].iter().any(|m| *m >= OPAQUE));
+    let Some(begins) = begins else { return own };
+    let rows = begins.saturating_sub(around)..(begins + armhole).min(height);
+    // A square of the greatest: across, then down.
+    let span = |at: usize, end: usize| at.saturating_sub(around)..(at + around + 1).min(end);
+    let mut across = own.clone();
+    for y in 0..height {
+        let row = &own[y * width..][..width];
+        for x in (0..width).filter(|_| row.iter().any(|m| *m > 0.0)) {
+            across[y * width + x] = row[span(x, width)].iter().fold(0.0, |most, m| most.max(*m));
+        }
+    }
+    let mut all = own;
+    for y in rows {
+        for x in 0..width {
+            all[y * width + x] = span(y, height).fold(0.0, |most: f32, y| most.max(across[y * width + x]));
+        }
+    }
+    all
+}
+
+/// How far each row's outline reaches left and right of the anchor (px of the garment's picture): the widest of its neighbours, so that a
+/// hem that ends aslant is as wide as what hangs above it `[rows]`.
+fn outlines(trunk: &Layer, rows: usize, (top, scale): (f32, f32), anchor: f32) -> Vec<[f32; 2]> {
+    let outline = |y: usize| -> Option<[f32; 2]> {
+        let from = (y as f32 + 0.5 - top) / scale;
+        if from < 0.0 || from >= trunk.height as f32 {
+            return None;
+        }
+        let row = &trunk.pixels[from as usize * trunk.width..][..trunk.width];
+        let first = row.iter().position(|p| p[3] >= OPAQUE)? as f32;
+        let last = row.iter().rposition(|p| p[3] >= OPAQUE)? as f32 + 1.0;
+        Some([(anchor - first).max(0.0), (last - anchor).max(0.0)])
+    };
+    let own: Vec<Option<[f32; 2]>> = (0..rows).map(outline).collect();
+    let (first, last) = (own.iter().position(Option::is_some), own.iter().rposition(Option::is_some));
+    let (Some(first), Some(last)) = (first, last) else { return vec![[0.0; 2]; rows] };
+    // Above and below it goes on as it ends; a hem that ends aslant is as wide as what hangs just above it.
+    let hem = last.saturating_sub((SMOOTH * rows as f32) as usize).max(first);
+    let mut whole = vec![own[first].unwrap_or_default(); rows];
+    for y in first + 1..rows {
+        let now = own[y.min(last)].unwrap_or(whole[y - 1]);
+        whole[y] = if y > hem { [0, 1].map(|k| now[k].max(whole[hem][k])) } else { now };
+    }
+    smooth(&whole)
+}
+
+/// The most of a row's nearest neighbours, then the mean of more of them: a row that needs more has it, and none jumps.
+fn smooth(own: &[[f32; 2]]) -> Vec<[f32; 2]> {
+    let rows = own.len();
+    let reach = ((SMOOTH * rows as f32) as usize).max(1);
+    let around = |y: usize, reach: usize| y.saturating_sub(reach)..(y + reach + 1).min(rows);
+    let nearest = (reach as f32 * WIDEST) as usize;
+    let most = |y: usize| own[around(y, nearest)].iter().fold([0.0f32; 2], |m, r| [m[0].max(r[0]), m[1].max(r[1])]);
+    let wide: Vec<[f32; 2]> = (0..rows).map(most).collect();
+    let mean = |y: usize| {
+        let part = &wide[around(y, reach)];
+        [0, 1].map(|k| part.iter().map(|r| r[k]).sum::<f32>() / part.len() as f32)
+    };
+    (0..rows).map(mean).collect()
 }
 
 /// How much each row is stretched left and right of the middle, so that cloth that is meant to covers the body, within its limits.
 fn stretches(
     layers: &BodyLayers,
     garment: &CollageGarment,
-    beside: &Layer,
-    (top, scale): (f32, f32),
-    [anchor, middle]: [f32; 2],
+    outlines: &[[f32; 2]],
+    scale: f32,
+    middle: f32,
 ) -> Vec<[f32; 2]> {
-    let rows = layers.trunk.len();
-    let tight = !matches!(garment.layer, WearingLayer::Belts | WearingLayer::Scarves | WearingLayer::Shoes);
+    let tight = is_tight(garment);
     let most = garment.stretches.most().unwrap_or(STRETCH).max(1.0);
     let ease = EASE * layers.per_metre;
-    let wanted = |y: usize| -> Option<[f32; 2]> {
-        let from = (y as f32 + 0.5 - top) / scale;
-        if from < 0.0 || from >= beside.height as f32 {
-            return None;
-        }
-        let from = from as usize;
-        let row = &beside.pixels[from * beside.width..][..beside.width];
-        let first = row.iter().position(|p| p[3] >= OPAQUE)? as f32;
-        let last = row.iter().rposition(|p| p[3] >= OPAQUE)? as f32 + 1.0;
-        let [left, right] = layers.trunk[y]?;
-        let half = [(anchor - first) * scale, (last - anchor) * scale];
+    let wanted = |(half, trunk): (&[f32; 2], &Option<[f32; 2]>)| -> Option<[f32; 2]> {
+        let [left, right] = (*trunk)?;
         let need = [middle - left + ease, right - middle + ease];
         Some([0, 1].map(|k| {
-            let covers = half[k] > COVERS * need[k] && need[k] > 0.0;
-            if tight && covers { (need[k] / half[k]).clamp(1.0, most) } else { 1.0 }
+            let half = half[k] * scale;
+            let covers = half > COVERS * need[k] && need[k] > 0.0;
+            if tight && covers { (need[k] / half).clamp(1.0, most) } else { 1.0 }
         }))
     };
-    let raw: Vec<[f32; 2]> = (0..rows).map(|y| wanted(y).unwrap_or([1.0; 2])).collect();
-    let reach = ((SMOOTH * rows as f32) as usize).max(1);
-    let around = |y: usize, k: usize| y.saturating_sub(k)..(y + k + 1).min(rows);
-    // The most of the neighbours, then their mean: a row that needs more has it, and none jumps.
-    let wide: Vec<[f32; 2]> = (0..rows)
-        .map(|y| raw[around(y, reach)].iter().fold([1.0f32; 2], |m, r| [m[0].max(r[0]), m[1].max(r[1])]))
-        .collect();
-    (0..rows)
-        .map(|y| {
-            let part = &wide[around(y, reach)];
-            [0, 1].map(|k| part.iter().map(|r| r[k]).sum::<f32>() / part.len() as f32)
-        })
-        .collect()
+    let own: Vec<[f32; 2]> = outlines.iter().zip(&layers.trunk).map(|row| wanted(row).unwrap_or([1.0; 2])).collect();
+    smooth(&own)
 }

@@ -1,7 +1,7 @@
 //! Scaling in two passes: vertically, then horizontally, each by a filter of a tent as wide as a pixel of the smaller picture.
 //!
-//! Pixels are colour times opacity, so that what is transparent lends no colour. The horizontal pass may stretch each row to other
-//! ends: that is how a garment's outline is laid on the body's.
+//! Pixels are colour times opacity, so that what is transparent lends no colour. The horizontal pass may stretch each row: that is how a
+//! garment's outline is laid on the body's. What lies beyond that outline, the sleeves, goes along and keeps its size.
 
 use toile_assets::catalogue::Picture;
 
@@ -16,11 +16,30 @@ pub struct Layer {
     pub pixels: Vec<[f32; 4]>,
 }
 
-/// Where a row of the picture comes to lie: its left and right end (px of what it is laid on, which may lie outside).
+/// Where a row of a picture comes to lie, and how it is stretched, left and right of the picture's anchor each by itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RowSpan {
-    /// Place of the picture's left end, of its anchor, and of its right end: left and right of the anchor are stretched apart.
-    pub ends: [f32; 3],
+    /// Place of the anchor (px of what it is laid on).
+    pub middle: f32,
+    /// Pixels of what it is laid on across one of the picture.
+    pub scale: f32,
+    /// How much what lies within the edges is stretched beyond that.
+    pub stretch: [f32; 2],
+    /// How far the outline that is stretched reaches from the anchor (px of the picture).
+    pub edges: [f32; 2],
+}
+
+impl RowSpan {
+    /// The place of the picture that comes to lie so far right of the anchor (px, right of its own), and pixels across one of its there.
+    fn seen_at(&self, off: f32) -> (f32, f32) {
+        let side = usize::from(off > 0.0);
+        let [within, beyond] = [(self.scale * self.stretch[side]).max(1e-3), self.scale.max(1e-3)];
+        let edge = self.edges[side].max(0.0);
+        let far = off.abs();
+        let (at, by) =
+            if far <= edge * within { (far / within, within) } else { (edge + (far - edge * within) / beyond, beyond) };
+        (at.copysign(off), by)
+    }
 }
 
 impl Layer {
@@ -63,8 +82,8 @@ fn vertically(layer: &Layer, top: f32, scale: f32, rows: usize) -> Layer {
     Layer { width: layer.width, height: rows, pixels }
 }
 
-/// A picture laid on another of so many columns and rows: its rows from `top` on at `scale`, each row between its own ends; `anchor`
-/// is the column of the picture that lies at the middle of the three.
+/// A picture laid on another of so many columns and rows: its rows from `top` on at `scale`, each stretched by itself; `anchor` is the
+/// column of the picture that lies at the middle of each.
 pub fn scaled(
     layer: &Layer,
     [columns, rows]: [usize; 2],
@@ -76,18 +95,13 @@ pub fn scaled(
     let mut pixels = vec![[0.0; 4]; columns * rows];
     let width = layer.width as f32;
     for (y, span) in spans.iter().enumerate().take(rows) {
-        let [left, middle, right] = span.ends;
         let row = &tall.pixels[y * layer.width..][..layer.width];
         if row.iter().all(|p| p[3] == 0.0) {
             continue;
         }
-        let stretch = [(middle - left) / anchor.max(1e-3), (right - middle) / (width - anchor).max(1e-3)];
-        let from = left.floor().max(0.0) as usize;
-        let to = (right.ceil().max(0.0) as usize).min(columns);
-        for x in from..to {
-            let off = x as f32 + 0.5 - middle;
-            let by = stretch[usize::from(off > 0.0)].max(1e-3);
-            let at = anchor + off / by - 0.5;
+        for x in 0..columns {
+            let (off, by) = span.seen_at(x as f32 + 0.5 - span.middle);
+            let at = anchor + off - 0.5;
             if at < -0.5 || at > width - 0.5 {
                 continue;
             }

@@ -120,7 +120,8 @@ fn two_passes_keep_means_and_places() {
     // A ramp across, scaled to half its rows and to three parts of its columns.
     let pixels = (0..40 * 60).map(|i| [(i % 40) as f32 / 40.0, 0.5, 0.0, 1.0]).collect();
     let layer = Layer { width: 40, height: 60, pixels };
-    let spans = vec![RowSpan { ends: [10.0, 25.0, 40.0] }; 50];
+    let span = RowSpan { middle: 25.0, scale: 0.5, stretch: [1.5; 2], edges: [20.0; 2] };
+    let spans = vec![span; 50];
     let out = scaled(&layer, [50, 50], (5.0, 0.5), 20.0, &spans);
     let at = |x: usize, y: usize| out.pixels[y * 50 + x];
     assert_eq!(at(25, 2)[3], 0.0);
@@ -129,4 +130,37 @@ fn two_passes_keep_means_and_places() {
         let expected = ((x as f32 + 0.5 - 10.0) / 0.75 - 0.5) / 40.0;
         assert!((at(x, 20)[0] - expected).abs() < 0.01, "{x}: {} {expected}", at(x, 20)[0]);
     }
+}
+
+#[test]
+fn what_lies_beyond_the_outline_goes_along_and_keeps_its_size() {
+    // A trunk of 20 pixels with a sleeve of 10 on either side, stretched by a half: the sleeves lie 5 farther out, 10 wide.
+    let pixels = (0..60 * 4)
+        .map(|i| [f32::from((20..40).contains(&(i % 60))), 0.0, 0.0, f32::from((10..50).contains(&(i % 60)))]);
+    let layer = Layer { width: 60, height: 4, pixels: pixels.collect() };
+    let span = RowSpan { middle: 40.0, scale: 1.0, stretch: [1.5, 1.0], edges: [10.0; 2] };
+    let out = scaled(&layer, [80, 4], (0.0, 1.0), 30.0, &[span; 4]);
+    let row = &out.pixels[2 * 80..3 * 80];
+    let covered: Vec<usize> = (0..80).filter(|x| row[*x][3] > 0.5).collect();
+    let trunk: Vec<usize> = (0..80).filter(|x| row[*x][0] > 0.5).collect();
+    assert_eq!((covered[0], covered[covered.len() - 1]), (15, 59));
+    assert_eq!((trunk[0], trunk[trunk.len() - 1]), (25, 49));
+}
+
+#[test]
+fn what_reaches_a_little_out_of_an_outer_garment_is_pressed_in_and_what_hangs_out_stays() {
+    let body = woman();
+    let layers = BodyLayers::new(&body, Appearance::default(), CollageSide::Front, SIZE);
+    let (shirt, coat) = (garment("shirt", "shirts", "waist", ""), garment("coat", "coats", "waist", ""));
+    let reds = |distance: f32| {
+        let [red, blue] = [([255, 0, 0], distance), ([0, 0, 255], 0.36)].map(|(c, d)| [Some(cloth(c, d)), None, None]);
+        let worn =
+            [WornPhotographs { garment: &shirt, pictures: &red }, WornPhotographs { garment: &coat, pictures: &blue }];
+        let image = collage(&body, &layers, CollageSide::Front, &worn).unwrap();
+        let row = layers.row(body.levels.waist - 0.03) as u32;
+        (0..SIZE.width).filter(|x| image.pixel(*x, row).is_some_and(|[r, _, b]| r > 200 && b < 60)).count()
+    };
+    assert_eq!(reds(0.44), 0);
+    let hangs = (0.76 - 0.36) * layers.per_metre;
+    assert!((reds(0.76) as f32 - hangs).abs() < 6.0, "{} of {hangs}", reds(0.76));
 }
