@@ -214,6 +214,10 @@ impl Painter {
 
     /// Each pixel of a row is as much cloth as its neighbourhood is.
     fn blend_row(&self, y: usize, columns: Range<usize>, layers: &Layers<'_>, out: &mut [u8]) {
+        // A mirror so narrow has no pixel with neighbours.
+        if columns.len() < 3 {
+            return;
+        }
         let width = layers.cloth.size.width as usize;
         let rows = [y - 1, y, y + 1].map(|y| &self.cloth[y * width..(y + 1) * width]);
         let in_column = |x: usize| rows.iter().map(|row| u32::from(row[x].1)).sum::<u32>();
