@@ -204,7 +204,7 @@ fn press_in(layers: &BodyLayers, placed: &mut [PlacedGarment]) {
     }
 }
 
-/// Sleeves with what lies around them, by so many pixels, for so many rows from where each column of them begins: share of each pixel.
+/// Sleeves with what lies around them, by so many pixels, for so many rows from the highest of them: share of each pixel.
 fn around_sleeves(picture: &Layer, arm: impl Fn(usize) -> f32, [around, armhole]: [usize; 2]) -> Vec<f32> {
     let (width, height) = (picture.width, picture.height);
     let own: Vec<f32> = (0..width * height).map(arm).collect();
