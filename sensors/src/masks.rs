@@ -4,6 +4,8 @@
 //! its alpha, any other by its brightness: white is the person. With backgrounds (the same pictures without the person), a pixel is
 //! the person as far as it differs.
 
+mod sequence;
+
 use std::path::{Path, PathBuf};
 
 use image::DynamicImage;
@@ -18,6 +20,8 @@ const DIFFERS: [f32; 2] = [14.0, 42.0];
 
 /// Least and most of a picture that a person covers.
 const COVERED: [f64; 2] = [0.002, 0.9];
+
+pub use sequence::MaskSequence;
 
 const CURE: &str = "give one PNG or JPEG for each camera, in the order of the cameras' names";
 
@@ -131,10 +135,23 @@ fn without_speckles(mask: &Mask) -> Vec<f32> {
     out
 }
 
+/// How much of a picture a mask covers, 0 to 1.
+struct Covered(f64);
+
+fn covered(mask: &Mask) -> Covered {
+    Covered(mask.coverage.iter().filter(|c| **c >= 0.5).count() as f64 / mask.coverage.len().max(1) as f64)
+}
+
+impl Covered {
+    /// Whether that is a person before something else.
+    fn is_person(&self) -> bool {
+        (COVERED[0]..=COVERED[1]).contains(&self.0)
+    }
+}
+
 fn check(mask: &Mask) -> Result<(), Fault> {
-    let covered = mask.coverage.iter().filter(|c| **c >= 0.5).count() as f64 / mask.coverage.len().max(1) as f64;
     let fault = |problem: String, cure| Err(Fault::new(Place::Whole, problem, cure));
-    match covered {
+    match covered(mask).0 {
         c if c < COVERED[0] => fault(
             format!("{:.2} % of it is a person's", 100.0 * c),
             "give a mask that is white where the person is, or the pictures without the person as backgrounds",

@@ -99,6 +99,11 @@ impl PictureSequence {
         &self.views[camera].name
     }
 
+    /// The file of a frame.
+    pub(crate) fn file(&self, camera: usize, frame: usize) -> &Path {
+        &self.views[camera].files[frame]
+    }
+
     /// Decodes one picture.
     ///
     /// # Errors

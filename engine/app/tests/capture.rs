@@ -1,4 +1,4 @@
-//! `toile capture body` and `toile capture face` with input that cannot be used, as a script meets them.
+//! `toile capture body` and `toile capture face` as a script meets them: sequences, and input that cannot be used.
 
 mod common;
 
@@ -8,6 +8,7 @@ use common::{Scratch, sentence};
 use glam::DVec3;
 use toile_assets::body::Sex;
 use toile_assets::body::shape::Shapes;
+use toile_capture::depth_buffer::DepthBuffer;
 use toile_capture::face::FaceLandmarks;
 
 /// Two cameras at a right angle, 3 m from the middle, in the format of Pose2Sim.
@@ -64,6 +65,57 @@ fn silhouettes_of_nobody_are_one_sentence() {
     }
     let output = scratch.toile(&["capture", "body", "box", "--calibration", "cams.toml", "--up", "w"]);
     assert!(output.status.code() == Some(2) && sentence(&output).contains("x, y or z"));
+}
+
+#[test]
+fn a_sequence_of_silhouettes_is_followed_and_written() {
+    let scratch = Scratch::new("capture-body-frames");
+    // Pictures of 240 x 320 pixels.
+    let larger =
+        CAMERAS.replace("80.0", "320.0").replace("60.0", "240.0").replace("29.5", "119.5").replace("39.5", "159.5");
+    fs::write(scratch.path().join("cams.toml"), larger).unwrap();
+    let rig = toile_sensors::calibration::open(&scratch.path().join("cams.toml")).unwrap();
+    let body = Shapes::of(Sex::Female).base();
+    for (frame, camera) in (0..4).flat_map(|frame| [0, 1].map(|camera| (frame, camera))) {
+        let along = DVec3::new(0.02, 0.0, 0.03) * f64::from(frame);
+        let positions: Vec<DVec3> = body.positions.iter().map(|p| p.as_dvec3() + along).collect();
+        let mut buffer = DepthBuffer::new([240, 320], 1.0);
+        buffer.draw(&rig.cameras[camera], &positions, &body.triangles);
+        // Nobody is there in the third frame.
+        let white = |x: u32, y: u32| frame != 2 && buffer.triangle[(y * 240 + x) as usize] != u32::MAX;
+        png(&scratch, &format!("masks/cam{}/{frame:03}.png", camera + 1), [240, 320], white);
+    }
+    let said = scratch.toile(&[
+        "capture",
+        "body",
+        "masks",
+        "--calibration",
+        "cams.toml",
+        "--sex",
+        "female",
+        "--rate",
+        "60",
+        "--out",
+        "moved",
+        "--json",
+    ]);
+    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+    let report: serde_json::Value = serde_json::from_slice(&said.stdout).unwrap();
+    let frames = report["motion"]["frames"].as_array().unwrap();
+    let found: Vec<bool> = frames.iter().map(|f| f["found"].as_bool().unwrap()).collect();
+    assert_eq!(found, [true, false, true]);
+    let pelvis = |k: usize| frames[k]["places"][0][2].as_f64().unwrap();
+    assert!((pelvis(2) - pelvis(0) - 0.06).abs() < 0.02, "{} {}", pelvis(0), pelvis(2));
+    assert_eq!(pelvis(1), pelvis(0), "who is not seen stands where they were");
+    let trc = fs::read_to_string(scratch.path().join("moved/joints.trc")).unwrap();
+    assert!(trc.lines().nth(2).unwrap().starts_with("60\t60\t3\t23\tm") && trc.contains("leftUpperArm"));
+    for file in ["body.ply", "silhouettes.png", "motion.glb", "last.png"] {
+        assert!(scratch.path().join("moved").join(file).is_file(), "{file}");
+    }
+    // A frame that one camera has not.
+    fs::remove_file(scratch.path().join("masks/cam2/001.png")).unwrap();
+    let output = scratch.toile(&["capture", "body", "masks", "--calibration", "cams.toml"]);
+    assert!(output.status.code() == Some(4) && sentence(&output).contains("camera cam2 has no frame 1"));
 }
 
 #[test]

@@ -9,3 +9,5 @@ pub mod error;
 pub mod flow;
 pub mod sheet;
 pub mod silhouettes;
+
+pub mod followed;

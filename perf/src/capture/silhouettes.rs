@@ -6,7 +6,7 @@
 use std::f64::consts::TAU;
 use std::path::PathBuf;
 
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DMat3, DQuat, DVec3, Vec3};
 use serde::Serialize;
 use thiserror::Error;
 use toile_assets::body::Sex;
@@ -145,7 +145,7 @@ pub fn study(
 }
 
 /// People of a survey's sex, each with the random numbers of how they stand.
-fn people(
+pub(super) fn people(
     survey: &Survey,
     options: &SilhouetteStudyOptions,
 ) -> Result<Vec<(StudyPerson, SplitMix64)>, SilhouetteStudyError> {
@@ -191,7 +191,7 @@ fn seen(
 }
 
 /// Cameras all round, each as it is said to be and as it is.
-fn rig(cameras: usize, rng: &mut SplitMix64) -> Vec<(CalibratedCamera, CalibratedCamera)> {
+pub(super) fn rig(cameras: usize, rng: &mut SplitMix64) -> Vec<(CalibratedCamera, CalibratedCamera)> {
     let about = f64::from(rng.uniform()) * TAU;
     // Two cameras stand at a right angle: opposite ones see the same outline.
     let apart = if cameras == 2 { TAU / 4.0 } else { TAU / cameras as f64 };
@@ -228,11 +228,21 @@ fn rig(cameras: usize, rng: &mut SplitMix64) -> Vec<(CalibratedCamera, Calibrate
         .collect()
 }
 
-/// What a segmenter makes of the person in each picture: black and white, ragged at the edge.
+/// The masks of somebody who stands and faces anywhere.
 fn masks(person: &StudyPerson, rig: &[(CalibratedCamera, CalibratedCamera)], rng: &mut SplitMix64) -> Vec<Mask> {
     let mut positions = Vec::new();
     let facing = rng.uniform() * std::f32::consts::TAU;
     person.stand(Moment { time: 0.0, turned: facing }, rng, &mut positions);
+    segmented(person, &positions, rig, rng)
+}
+
+/// What a segmenter makes of a surface in each picture: black and white, ragged at the edge.
+pub(super) fn segmented(
+    person: &StudyPerson,
+    positions: &[Vec3],
+    rig: &[(CalibratedCamera, CalibratedCamera)],
+    rng: &mut SplitMix64,
+) -> Vec<Mask> {
     let positions: Vec<DVec3> = positions.iter().map(|p| p.as_dvec3()).collect();
     let mut take = |(_, camera): &(CalibratedCamera, CalibratedCamera)| {
         let mut buffer = DepthBuffer::new(camera.size, 2.0);

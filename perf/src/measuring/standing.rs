@@ -70,6 +70,23 @@ const SWAYS: [(Joint, f32); 7] = [
 /// How far the feet's middle wanders on the floor (m).
 const WANDER: f32 = 0.006;
 
+/// What somebody does who performs: a joint, the axis about which it turns, how far (rad) and how often a second.
+const PERFORMS: [(Joint, Vec3, f32, f32); 10] = [
+    (Joint::LeftShoulder, Vec3::Z, 1.2, 0.37),
+    (Joint::RightShoulder, Vec3::NEG_X, 1.3, 0.29),
+    (Joint::LeftElbow, Vec3::NEG_X, 1.1, 0.53),
+    (Joint::RightElbow, Vec3::NEG_X, 1.0, 0.61),
+    (Joint::Spine, Vec3::Y, 0.35, 0.31),
+    (Joint::Neck, Vec3::Y, 0.5, 0.43),
+    (Joint::LeftHip, Vec3::NEG_X, 0.7, 0.9),
+    (Joint::LeftKnee, Vec3::X, 1.0, 0.9),
+    (Joint::RightHip, Vec3::NEG_X, 0.7, 0.9),
+    (Joint::RightKnee, Vec3::X, 1.0, 0.9),
+];
+
+/// Joints that do it half a period later.
+const LAGS: [Joint; 2] = [Joint::RightHip, Joint::RightKnee];
+
 impl StudyPerson {
     /// Triangles of the surface.
     pub fn triangles(&self) -> &[[u32; 3]] {
@@ -99,8 +116,27 @@ impl StudyPerson {
             }
         };
         on_both_feet(&self.body, &mut pose);
+        self.skinned(&pose, moment, positions)
+    }
+
+    /// The same of somebody who moves: lifts the arms, bends them, walks on the spot, each at a pace of its own, beginning and ending at rest.
+    pub fn perform(&self, moment: Moment, positions: &mut Vec<Vec3>) -> JointPositions {
+        let mut pose = self.pose;
+        let begun = (moment.time / 0.5).min(1.0);
+        for (joint, axis, by, hz) in PERFORMS {
+            // From nothing to `by` and back; legs take turns.
+            let lag = if LAGS.contains(&joint) { std::f32::consts::PI } else { 0.0 };
+            let phase = TAU * hz * moment.time + lag;
+            let turn = by * begun * (0.5 - 0.5 * phase.cos());
+            pose.local[joint.index()] = Quat::from_axis_angle(axis, turn) * pose.local[joint.index()];
+        }
+        self.skinned(&pose, moment, positions)
+    }
+
+    /// The surface in a pose, its lowest point on the floor, and where its joints are.
+    fn skinned(&self, pose: &Pose, moment: Moment, positions: &mut Vec<Vec3>) -> JointPositions {
         let mut bones = [Affine3A::IDENTITY; BONES];
-        palette(&self.body.skeleton, &pose, &mut bones);
+        palette(&self.body.skeleton, pose, &mut bones);
         let breath = self.breath(moment.time);
         let rest = self.body.mesh.positions.iter().zip(&self.body.normals).zip(&self.body.regions);
         positions.clear();
@@ -112,7 +148,7 @@ impl StudyPerson {
         let lowest = positions.iter().map(|p| p.y).fold(f32::MAX, f32::min);
         let turned = Quat::from_rotation_y(moment.turned);
         positions.iter_mut().for_each(|p| *p = turned * (*p - Vec3::Y * lowest));
-        JointFrames::new(&self.body.skeleton, &pose).position.map(|p| turned * (p - Vec3::Y * lowest))
+        JointFrames::new(&self.body.skeleton, pose).position.map(|p| turned * (p - Vec3::Y * lowest))
     }
 
     /// How far the breath moves the chest's skin at a time (m).

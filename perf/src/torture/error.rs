@@ -14,4 +14,7 @@ pub enum TortureError {
     /// A piece whose equilibrium is not found.
     #[error("a piece of cloth has no equilibrium: {0}")]
     Oracle(#[from] OracleError),
+    /// A case that the oracle cannot step.
+    #[error("the oracle cannot step `{0}`: it knows no contact of cloth with cloth and no time; leave out --oracle")]
+    NotExact(&'static str),
 }

@@ -8,6 +8,7 @@ mod cases;
 mod crossed;
 mod elements;
 mod error;
+mod exact;
 mod folded;
 mod layer_trial;
 mod layered;

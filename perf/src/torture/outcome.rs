@@ -4,6 +4,7 @@ use glam::Vec3;
 use serde::Serialize;
 
 use super::crossed::CrossedEdges;
+use super::error::TortureError;
 use super::piece;
 use super::trial::{self, BACK_M, RECOVER_S, Trial, TrialFigures, TrialRecovery};
 use crate::backend::SteppedBy;
@@ -24,6 +25,8 @@ pub struct TrialFindings {
     pub crossings: Option<u64>,
     /// What else was to be met and was not.
     pub miss: Option<String>,
+    /// Whether it is at rest in a fold that stays, a minimum of the energy.
+    pub folded: bool,
     /// Figures of the case's own.
     pub note: String,
 }
@@ -36,20 +39,28 @@ impl TrialFindings {
 
     /// Lets a trial come to rest and compares.
     pub fn back(mut trial: Trial<'_>, rest: &[Vec3]) -> Self {
-        let recovery = Some(trial.recover(rest));
-        Self { recovery, crossings: trial.crossed().map(|crossed| crossed.now), ..Self::of(&trial) }
+        let recovery = trial.recover(rest);
+        let mut found = Self { recovery: Some(recovery), crossings: trial.crossings(), ..Self::of(&trial) };
+        if recovery.after_s.is_none() && trial.crossings().is_none() {
+            found.note = match off_equilibrium(&trial) {
+                Ok(off) if off <= BACK_M => {
+                    found.folded = true;
+                    "in a fold that stays".into()
+                }
+                Ok(off) => format!("in a fold {:.1} mm from one that stays", off * 1e3),
+                Err(error) => error.to_string(),
+            };
+        }
+        found
     }
 
     /// The same for what may have other places of rest: one that the oracle finds downhill from where the cloth ended,
     /// and stable, is as good.
     pub fn back_anywhere(mut trial: Trial<'_>, rest: &[Vec3]) -> Self {
         let recovery = trial.recover(rest);
-        let crossings = trial.crossed().map(|crossed| crossed.now);
-        let mut found = Self { recovery: Some(recovery), crossings, ..Self::of(&trial) };
+        let mut found = Self { recovery: Some(recovery), crossings: trial.crossings(), ..Self::of(&trial) };
         if recovery.after_s.is_none() {
-            let end: Vec<Vec3> = trial.cloth.positions.iter().map(|p| Vec3::from(*p)).collect();
-            let near = piece::equilibrium(trial.garment, &trial.settings, &end);
-            match near.map(|x| trial::hausdorff(&trial.cloth.positions, &x)) {
+            match off_equilibrium(&trial) {
                 Ok(off) => {
                     let after_s = (off <= BACK_M).then_some(RECOVER_S);
                     found.recovery = Some(TrialRecovery { after_s, hausdorff_m: off });
@@ -104,6 +115,13 @@ impl TrialFindings {
     }
 }
 
+/// How far a cloth is from the equilibrium that the oracle finds downhill from where it is (m).
+fn off_equilibrium(trial: &Trial<'_>) -> Result<f64, TortureError> {
+    let end: Vec<Vec3> = trial.cloth.positions.iter().map(|p| Vec3::from(*p)).collect();
+    let near = piece::equilibrium(trial.garment, &trial.settings, &end)?;
+    Ok(trial::hausdorff(&trial.cloth.positions, &near))
+}
+
 /// One seed of one case.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SeedOutcome {
@@ -125,6 +143,10 @@ pub struct SeedOutcome {
     pub hausdorff_mm: Option<f64>,
     /// Edges that pass through faces at the end, where they are counted.
     pub crossings: Option<u64>,
+    /// Substeps that the oracle did not solve as exactly as asked for, where it stepped.
+    pub unsolved: u64,
+    /// Whether it is at rest in a fold that stays: a minimum of the energy, from which no exact solver leads away.
+    pub folded: bool,
     /// Whether all was as it has to be.
     pub pass: bool,
     /// What was not as it has to be; none where all was.
@@ -147,6 +169,8 @@ impl SeedOutcome {
             recovered_s: found.recovery.and_then(|r| r.after_s),
             hausdorff_mm: found.recovery.map(|r| r.hausdorff_m * 1e3),
             crossings: found.crossings,
+            unsolved: found.seen.unsolved,
+            folded: found.folded,
             pass: cause.is_none(),
             cause,
             note: found.note,
@@ -176,6 +200,8 @@ pub struct CaseSummary {
     pub seeds: usize,
     /// Seeds in which all was as it has to be.
     pub passed: usize,
+    /// Seeds that ended in a fold that stays.
+    pub folded: usize,
     /// Positions and velocities published that were not finite.
     pub nonfinite: u64,
     /// Greatest speed of a free particle (m/s).
@@ -203,6 +229,7 @@ impl CaseSummary {
             about,
             seeds: outcomes.len(),
             passed: outcomes.iter().filter(|o| o.pass).count(),
+            folded: outcomes.iter().filter(|o| o.folded).count(),
             nonfinite: outcomes.iter().map(|o| o.nonfinite).sum(),
             max_speed: outcomes.iter().map(|o| o.max_speed).fold(0.0, f32::max),
             recovered_s: outcomes.iter().filter_map(|o| o.recovered_s).reduce(f32::max),
@@ -220,6 +247,8 @@ pub struct TortureReport {
     pub quality: &'static str,
     /// What stepped the cloth.
     pub stepped_by: SteppedBy,
+    /// Whether the oracle stepped it, in place of that.
+    pub oracle: bool,
     /// How far curtain, lawn, patch and tube are from the oracle's equilibrium when nothing is done to them (mm).
     pub undisturbed_mm: [f64; 4],
     /// One row a case.

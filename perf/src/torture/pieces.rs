@@ -17,6 +17,8 @@ pub struct Pieces {
     pub backends: Backends,
     /// How they are stepped.
     pub settings: Settings,
+    /// Whether the oracle steps them instead.
+    pub exact: bool,
     /// A sheet of denim.
     pub curtain: Piece,
     /// The same of thin cotton.
@@ -32,7 +34,7 @@ impl Pieces {
     ///
     /// # Errors
     /// Where a piece cannot be baked or has no equilibrium.
-    pub fn new(quality: Quality, backends: Backends) -> Result<Self, TortureError> {
+    pub fn new(quality: Quality, backends: Backends, exact: bool) -> Result<Self, TortureError> {
         let settings = Settings { quality, workers: 1, ..Settings::default() };
         let fabric = piece::denim();
         Ok(Self {
@@ -41,6 +43,7 @@ impl Pieces {
             patch: Piece::new(&piece::sheet(PATCH), &fabric, &settings)?,
             tube: Piece::new(&piece::tube(TUBE, TUBE_RADIUS_M, 2.0 * TUBE_RADIUS_M), &fabric, &settings)?,
             settings,
+            exact,
             backends,
         })
     }

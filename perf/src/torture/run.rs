@@ -32,24 +32,36 @@ pub struct TortureOptions {
     pub quality: Quality,
     /// What steps it.
     pub backend: Backend,
+    /// Whether the oracle steps it instead, exactly and slowly.
+    pub exact: bool,
 }
 
 impl Default for TortureOptions {
     fn default() -> Self {
-        Self { case: None, seeds: 0..SEEDS, quality: Quality::default(), backend: Backend::Cpu }
+        Self { case: None, seeds: 0..SEEDS, quality: Quality::default(), backend: Backend::Cpu, exact: false }
     }
 }
 
 /// Runs the cases that are asked for; `progress` is given the summary of each as it ends.
 ///
 /// # Errors
-/// Where a piece cannot be baked or has no equilibrium, which would be an error of the bake or of the oracle.
+/// Where a piece cannot be baked or has no equilibrium, which would be an error of the bake or of the oracle; where the oracle
+/// cannot step the case that is asked for.
 pub fn run(options: &TortureOptions, progress: &mut dyn FnMut(&CaseSummary)) -> Result<TortureReport, TortureError> {
-    let pieces = Pieces::new(options.quality, Backends::open(options.backend))?;
+    let pieces = Pieces::new(options.quality, Backends::open(options.backend), options.exact)?;
     let off = |piece: &Piece| piece.off() * 1e3;
     let undisturbed_mm = [off(&pieces.curtain), off(&pieces.lawn), off(&pieces.patch), off(&pieces.tube)];
-    let mut report = TortureReport { quality: options.quality.name(), undisturbed_mm, ..TortureReport::default() };
-    for case in CASES.iter().filter(|c| options.case.as_ref().is_none_or(|name| c.name == name)) {
+    let mut report = TortureReport {
+        quality: options.quality.name(),
+        oracle: options.exact,
+        undisturbed_mm,
+        ..TortureReport::default()
+    };
+    let asked = |c: &&TortureCase| options.case.as_ref().map_or(c.exact || !options.exact, |name| c.name == name);
+    for case in CASES.iter().filter(asked) {
+        if options.exact && !case.exact {
+            return Err(TortureError::NotExact(case.name));
+        }
         let outcomes = of_seeds(case, &pieces, options.seeds.clone());
         let summary = CaseSummary::of(case.name, case.about, &outcomes);
         progress(&summary);

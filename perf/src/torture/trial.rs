@@ -12,6 +12,7 @@ use toile_gpu::backend::ClothStepper;
 use toile_gpu::cloth_batch::ClothBatch;
 
 use super::crossed::CrossedEdges;
+use super::exact::ExactStepper;
 use super::piece::{self, Piece};
 use super::pieces::Pieces;
 
@@ -31,6 +32,8 @@ pub struct TrialFigures {
     /// Greatest way of a free particle in a step, over the step (m/s): what contact pushes out of a collider moves without
     /// having that speed.
     pub max_way: f32,
+    /// Substeps that the oracle did not solve as exactly as asked for, where it stepped.
+    pub unsolved: u64,
 }
 
 /// How a cloth came back.
@@ -69,6 +72,8 @@ pub struct Trial<'a> {
     pub seen: TrialFigures,
     stepper: ClothStepper,
     folds: Option<Folds>,
+    /// What steps it once more and exactly, where that is asked for.
+    exact: Option<ExactStepper>,
     before: Box<[Vec3A]>,
     /// The events up to which jumps were explained.
     explained: GuardEvents,
@@ -105,11 +110,13 @@ impl<'a> Trial<'a> {
     }
 
     fn with(pieces: &Pieces, garment: &'a Garment, cloth: Cloth, colliders: Colliders, settings: &Settings) -> Self {
+        let exact = || ExactStepper::new(garment, settings, &cloth).expect("the figures of what was baked are sound");
         Self {
             before: cloth.positions.clone(),
             explained: cloth.events,
             stepper: pieces.backends.stepper(),
             folds: None,
+            exact: pieces.exact.then(exact),
             garment,
             cloth,
             colliders,
@@ -133,6 +140,11 @@ impl<'a> Trial<'a> {
     /// Crossings of the cloth with itself, where they are counted.
     pub fn crossed(&mut self) -> Option<&mut CrossedEdges> {
         self.folds.as_mut().map(|folds| &mut folds.crossed)
+    }
+
+    /// Edges that pass through faces now, where they are counted.
+    pub fn crossings(&self) -> Option<u64> {
+        self.folds.as_ref().map(|folds| folds.crossed.now)
     }
 
     /// Counts the crossings of the cloth as it is, and forgets those before.
@@ -160,6 +172,7 @@ impl<'a> Trial<'a> {
             None => self.colliders.place(&self.palette),
         }
         self.before.copy_from_slice(&self.cloth.positions);
+        self.exact.iter_mut().for_each(|exact| exact.take(&self.cloth));
         let step = Step { palette: &self.palette, colliders: &self.colliders, settings: &self.settings };
         let cloths = std::slice::from_mut(&mut self.cloth);
         // Without another worker there is none that could panic.
@@ -167,6 +180,10 @@ impl<'a> Trial<'a> {
             Some(folds) => folds.layers.step(&mut folds.pool, cloths, std::slice::from_ref(self.garment), &step),
             None => self.stepper.step(&mut ClothBatch { cloths, garments: &[self.garment], steps: &[step] }, None),
         };
+        if let Some(exact) = &mut self.exact {
+            exact.step(&mut self.cloth, self.garment, &self.settings, &self.colliders);
+            self.seen.unsolved = exact.unsolved;
+        }
         self.folds.iter_mut().for_each(|folds| folds.crossed.after_step(&[&self.cloth.positions]));
         self.look();
     }

@@ -9,6 +9,7 @@ use clap::Subcommand;
 use crate::exit::AppError;
 
 pub(crate) mod body;
+mod body_frames;
 pub(crate) mod compare;
 mod fabric_scene;
 pub(crate) mod face;

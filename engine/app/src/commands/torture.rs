@@ -7,7 +7,7 @@ use clap::builder::PossibleValuesParser;
 use clap::value_parser;
 use serde::Serialize;
 use toile_engine::cloth::Quality;
-use toile_perf::torture::{self, CASES, CaseSummary, SEEDS, TortureOptions, TortureReport};
+use toile_perf::torture::{self, CASES, CaseSummary, SEEDS, TortureError, TortureOptions, TortureReport};
 
 use super::bench::backend;
 use crate::arguments::{BackendArg, Printing, quality};
@@ -40,6 +40,9 @@ pub struct TortureArgs {
     /// Settings of the cloth where a case does not choose its own: draft, shop or fine
     #[arg(long, value_name = "Q", value_parser = quality(), default_value = Quality::default().name())]
     pub quality: Quality,
+    /// Step by the oracle: exact implicit steps in f64, as long as the engine's, where cloth meets no cloth; a minute a seed
+    #[arg(long, conflicts_with = "backend")]
+    pub oracle: bool,
     #[command(flatten)]
     backend: BackendArg,
     #[command(flatten)]
@@ -53,7 +56,13 @@ impl TortureArgs {
             Some(seed) => seed..seed + 1,
             None => 0..self.seeds.unwrap_or(SEEDS),
         };
-        TortureOptions { case: self.case.clone(), seeds, quality: self.quality, backend: self.backend.choice }
+        TortureOptions {
+            case: self.case.clone(),
+            seeds,
+            quality: self.quality,
+            backend: self.backend.choice,
+            exact: self.oracle,
+        }
     }
 }
 
@@ -75,7 +84,10 @@ pub fn run(args: &TortureArgs) -> Result<(), AppError> {
     let words = args.printing.words();
     let begun = Instant::now();
     let mut progress = |s: &CaseSummary| words.print_line(&format!("{}: {} of {} seeds", s.name, s.passed, s.seeds));
-    let report = torture::run(&args.options(), &mut progress).map_err(AppError::internal)?;
+    let report = torture::run(&args.options(), &mut progress).map_err(|error| match error {
+        TortureError::NotExact(_) => AppError::Usage(error.to_string()),
+        _ => AppError::internal(error),
+    })?;
     backend::print_fallback(&report.stepped_by);
     let wall_s = begun.elapsed().as_secs_f64();
     let failed: Vec<&str> = report.failed().map(|s| s.name).collect();
@@ -99,8 +111,8 @@ pub fn run(args: &TortureArgs) -> Result<(), AppError> {
 /// The report as people read it: one row a case.
 fn table(report: &TortureReport, wall_s: f64, paint: Paint) -> String {
     let mut text = format!(
-        "{:<18} {:>9} {:>9} {:>8} {:>8} {:>10}  {}\n",
-        "case", "passed", "NaN", "m/s", "back s", "off mm", "worst seed"
+        "{:<18} {:>9} {:>6} {:>9} {:>8} {:>8} {:>10}  {}\n",
+        "case", "passed", "folds", "NaN", "m/s", "back s", "off mm", "worst seed"
     );
     for s in &report.summary {
         let tone = if s.passed == s.seeds { Tone::Good } else { Tone::Warn };
@@ -108,9 +120,10 @@ fn table(report: &TortureReport, wall_s: f64, paint: Paint) -> String {
         let (back, off) = (figure(s.recovered_s.map(f64::from), 2), figure(s.hausdorff_mm, 3));
         let _ = writeln!(
             text,
-            "{:<18} {} {:>9} {:>8.2} {back:>8} {off:>10}  {}: {}",
+            "{:<18} {} {:>6} {:>9} {:>8.2} {back:>8} {off:>10}  {}: {}",
             s.name,
             paint.tone(&passed, tone),
+            s.folded,
             s.nonfinite,
             s.max_speed,
             s.worst_seed,
@@ -118,7 +131,8 @@ fn table(report: &TortureReport, wall_s: f64, paint: Paint) -> String {
         );
     }
     let seeds: usize = report.summary.iter().map(|s| s.seeds).sum();
-    let _ = writeln!(text, "\n{seeds} runs in quality {}, {wall_s:.0} s", report.quality);
+    let by = if report.oracle { ", its substeps solved exactly by the oracle" } else { "" };
+    let _ = writeln!(text, "\n{seeds} runs in quality {}{by}, {wall_s:.0} s", report.quality);
     text
 }
 

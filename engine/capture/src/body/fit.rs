@@ -4,10 +4,12 @@
 //! residual is `n . (x - c)`: how far the body reaches out of the silhouette there, from inside and outside alike. The prior of the
 //! shape is the population (ANSUR II), that of the pose somebody who stands.
 
+use std::sync::Arc;
+
 use glam::{DVec3, Vec3};
 use toile_assets::body::Sex;
 use toile_assets::body::shape::{BodyShape, Shapes};
-use toile_assets::skeleton::Joint;
+use toile_assets::skeleton::{JOINTS, Joint};
 use toile_track::fit::{
     BodyModel, FitState, NormalEquations, PosePrior, PosedBody, SeenSurface, ShapeFilter, ShapeQuadratic, Stance,
     add_priors, limit_step,
@@ -43,9 +45,11 @@ const RIM_WORTH: f32 = 3.0;
 const SKIN: f64 = 0.03;
 
 /// Views and joints, and one sex's body between them.
-pub(super) struct BodyFitter<'a> {
-    pub views: &'a [View],
-    pub joints: &'a [JointPoint],
+pub(super) struct BodyFitter {
+    pub views: Arc<[View]>,
+    pub joints: Vec<JointPoint>,
+    /// The state of the frame before, where somebody is followed.
+    pub before: Option<FitState>,
     pub model: BodyModel,
     pub filter: ShapeFilter,
     posed: PosedBody,
@@ -60,8 +64,8 @@ pub(super) struct BodyFitter<'a> {
     shaped: Option<BodyShape>,
 }
 
-impl<'a> BodyFitter<'a> {
-    pub(super) fn new(sex: Sex, views: &'a [View], joints: &'a [JointPoint]) -> Self {
+impl BodyFitter {
+    pub(super) fn new(sex: Sex, views: Arc<[View]>, joints: Vec<JointPoint>) -> Self {
         let shapes = Shapes::of(sex);
         let model = BodyModel::new(shapes, 0.0);
         let faces: Vec<[u32; 4]> = model.samples.iter().map(|s| s.corners).collect();
@@ -79,6 +83,7 @@ impl<'a> BodyFitter<'a> {
             model,
             views,
             joints,
+            before: None,
         }
     }
 
@@ -184,7 +189,7 @@ impl<'a> BodyFitter<'a> {
     }
 
     fn add_joints(&mut self) {
-        for point in self.joints {
+        for point in &self.joints {
             let off = self.posed.place[point.joint.index()] - point.place.as_vec3();
             let weight = (point.confidence / JOINT_SIGMA).powi(2);
             for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
@@ -195,9 +200,10 @@ impl<'a> BodyFitter<'a> {
     }
 
     fn add_pose_prior(&mut self, state: &FitState) {
-        // With joints seen, people may stand as they like.
-        let stance = if self.joints.is_empty() { Stance::Held } else { Stance::Moving };
-        let prior = PosePrior { stance, before: None, held: None };
+        // With joints seen, or where they have moved, people may stand as they like.
+        let held = self.joints.is_empty() && self.before.is_none();
+        let stance = if held { Stance::Held } else { Stance::Moving };
+        let prior = PosePrior { stance, before: self.before.as_ref(), held: None };
         add_priors(&mut self.equations, &self.model, state, &prior);
     }
 
@@ -238,6 +244,26 @@ impl<'a> BodyFitter<'a> {
             state = self.steps(&state, &[(FINE[1].0, FINE[1].1, 3)], true);
         }
         (self.rest.clone(), state)
+    }
+
+    /// Other silhouettes of the same body: those of the next frame.
+    pub(super) fn look(&mut self, views: Arc<[View]>, joints: Vec<JointPoint>) {
+        self.buffers = views.iter().map(|v| DepthBuffer::new(v.camera.size, v.scale)).collect();
+        (self.views, self.joints) = (views, joints);
+    }
+
+    /// Gives the body of a shape a surface that was moved (m, at rest) `[vertices]`.
+    pub(super) fn wear(&mut self, shape: &BodyShape, surface: &[Vec3]) {
+        let shaped = self.model.shapes.body(shape).body.mesh.positions;
+        let by = surface.iter().zip(&shaped).map(|(p, s)| *p - *s).collect();
+        self.displace(&shaped, by);
+        self.shaped = Some(*shape);
+    }
+
+    /// Where the joints are in a state, world (m).
+    pub(super) fn joint_places(&mut self, state: &FitState) -> [Vec3; JOINTS] {
+        self.pose(state);
+        self.posed.place
     }
 
     fn displace(&mut self, shaped: &[Vec3], by: Vec<Vec3>) {

@@ -1,5 +1,7 @@
 //! What silhouettes say of a person: the eleven measures, each with its error, a body of both sexes' fits, and its pose.
 
+use std::sync::Arc;
+
 use glam::{DMat3, DQuat, DVec3, Quat, Vec3};
 use toile_assets::body::shape::Shapes;
 use toile_assets::body::{En, Fitted, Measures, Sex};
@@ -12,24 +14,27 @@ use toile_track::estimate::Estimate;
 use toile_track::fit::FitState;
 use toile_track::fit::measuring::{MEASURES, covariance_of};
 
-use super::fit::{BodyFitter, FINE};
+use super::fit::{BodyFitter, COARSE, FINE};
 use super::hull::{HullShape, carve};
 use super::joint_point::JointPoint;
-use super::start::start;
+use super::start::{start, with_forearms};
 use super::view::View;
 use crate::error::CaptureError;
 
 /// Fewest cameras: one outline leaves the depth of a body open.
-const FEWEST: usize = 2;
+pub(super) const FEWEST: usize = 2;
 
 /// Heights of a hull that can be a person's (m), and the volume (m3) that the hull of two views may have at most.
 const HEIGHTS: std::ops::Range<f64> = 1.0..2.6;
 
 /// Least share of silhouettes and drawing together that both have: below it somebody else, or something, is in the masks.
-const LEAST_AGREEMENT: f64 = 0.80;
+pub(super) const LEAST_AGREEMENT: f64 = 0.80;
 
 /// What the evidence for a sex counts: a body of either sex that the model cannot have errs as much as the sexes differ.
 const EVIDENCE: f64 = 0.5;
+
+/// By how much less than the other sex's a fit agrees that has another pose.
+const BEHIND: f64 = 0.004;
 
 /// Shares of a sex below which it takes no part.
 const UNLIKELY: f64 = 0.01;
@@ -90,6 +95,19 @@ pub struct SilhouetteBody {
     pub hull: [f64; 2],
     /// One sentence for each thing that a user should know.
     pub notes: Vec<String>,
+    /// The likelier sex.
+    pub sex: Sex,
+    /// Where its fit ended, in the upright world.
+    pub(super) state: FitState,
+    /// The rotation of the cameras' world to the upright one.
+    pub(super) upright: DMat3,
+}
+
+impl SilhouetteBody {
+    /// A place of the cameras' world in the upright one, y up (m).
+    pub fn upright_place(&self, place: DVec3) -> DVec3 {
+        self.upright * place
+    }
 }
 
 /// Measures the person whom these cameras see.
@@ -102,7 +120,7 @@ pub fn measure(seen: &[SilhouetteView], options: &SilhouetteOptions) -> Result<S
         return Err(CaptureError::unfit("the cameras", problem, "film from the front and from one side at least"));
     }
     let upright = upright(seen, options.up);
-    let views: Vec<View> = seen.iter().map(|s| View::new(s.mask, s.camera, upright)).collect();
+    let views: Arc<[View]> = seen.iter().map(|s| View::new(s.mask, s.camera, upright)).collect();
     let hull = carve(&views)?;
     check(&hull)?;
     let turned = |p: &JointPoint| JointPoint { place: upright * p.place, ..*p };
@@ -113,6 +131,7 @@ pub fn measure(seen: &[SilhouetteView], options: &SilhouetteOptions) -> Result<S
         None => &[Sex::Female, Sex::Male],
     };
     let mut fits: Vec<SexFit> = sexes.iter().map(|s| SexFit::new(*s, &views, &joints, &hull)).collect();
+    learn_poses(&mut fits);
     let best = fits.iter().map(|f| f.agreement).fold(0.0, f64::max);
     if best < LEAST_AGREEMENT {
         let problem = format!("body and silhouettes share only {:.0} % of what either covers", 100.0 * best);
@@ -127,6 +146,16 @@ pub fn measure(seen: &[SilhouetteView], options: &SilhouetteOptions) -> Result<S
     let whole: f64 = weights.iter().sum();
     let parts: Vec<SexMeasures> = fits.into_iter().zip(weights).map(|(f, w)| f.closely((w / whole) as f32)).collect();
     Ok(together(parts, &views, upright, &hull))
+}
+
+/// Whichever sex's fit has found less of the person tries the pose of the one that has found most: it has lost a limb, or faces the other
+/// way, and would be weighed by that.
+fn learn_poses(fits: &mut [SexFit]) {
+    let best = fits.iter().max_by(|a, b| a.agreement.total_cmp(&b.agreement)).map(|f| (f.agreement, f.state));
+    if let Some((most, pose)) = best {
+        fits.iter_mut().filter(|f| f.agreement < most - BEHIND).for_each(|f| f.learn(&pose));
+    }
+    fits.iter_mut().for_each(SexFit::conclude);
 }
 
 /// The rotation that brings the cameras' world upright: the axis nearest to the mean of the cameras' own up becomes y.
@@ -148,9 +177,9 @@ fn check(hull: &HullShape) -> Result<(), CaptureError> {
 }
 
 /// The fit of one sex's body.
-struct SexFit<'a> {
+struct SexFit {
     sex: Sex,
-    fitter: BodyFitter<'a>,
+    fitter: BodyFitter,
     state: FitState,
     deviance: f64,
     agreement: f64,
@@ -169,14 +198,27 @@ struct SexMeasures {
     stretches: usize,
 }
 
-impl<'a> SexFit<'a> {
-    fn new(sex: Sex, views: &'a [View], joints: &'a [JointPoint], hull: &HullShape) -> Self {
-        let mut fitter = BodyFitter::new(sex, views, joints);
+impl SexFit {
+    fn new(sex: Sex, views: &Arc<[View]>, joints: &[JointPoint], hull: &HullShape) -> Self {
+        let mut fitter = BodyFitter::new(sex, Arc::clone(views), joints.to_vec());
         let from = start(&mut fitter, hull);
-        let state = fitter.steps(&from, &FINE, false);
-        let agreement = fitter.agreement(&state);
-        let deviance = fitter.conclude(&state);
-        Self { sex, fitter, state, deviance, agreement }
+        let (agreement, state) = fine(&mut fitter, &from);
+        Self { sex, fitter, state, deviance: f64::MAX, agreement }
+    }
+
+    /// Tries another sex's pose.
+    fn learn(&mut self, pose: &FitState) {
+        let from = FitState { shape: self.state.shape, ..*pose };
+        let state = self.fitter.steps(&from, &[COARSE[1], FINE[0], FINE[1]], false);
+        let agreement = self.fitter.agreement(&state);
+        if agreement > self.agreement {
+            (self.agreement, self.state) = (agreement, state);
+        }
+    }
+
+    /// Takes what the silhouettes say of the shape into the estimate.
+    fn conclude(&mut self) {
+        self.deviance = self.fitter.conclude(&self.state);
     }
 
     /// Moves the surface to its outlines and lays the tape on it.
@@ -208,6 +250,22 @@ impl<'a> SexFit<'a> {
     }
 }
 
+/// The fine stages, and once more where a forearm is found elsewhere.
+fn fine(fitter: &mut BodyFitter, from: &FitState) -> (f64, FitState) {
+    let state = fitter.steps(from, &FINE, false);
+    let agreement = fitter.agreement(&state);
+    if !fitter.joints.is_empty() {
+        return (agreement, state);
+    }
+    let other = with_forearms(fitter, state);
+    if other == state {
+        return (agreement, state);
+    }
+    let other = fitter.steps(&other, &[COARSE[1], FINE[0], FINE[1]], false);
+    let again = fitter.agreement(&other);
+    if again > agreement { (again, other) } else { (agreement, state) }
+}
+
 fn together(parts: Vec<SexMeasures>, views: &[View], upright: DMat3, hull: &HullShape) -> SilhouetteBody {
     let mixture: Vec<_> = parts.iter().map(|p| (p.share, p.measures)).collect();
     let own = Correlated::mixed(&mixture);
@@ -228,6 +286,9 @@ fn together(parts: Vec<SexMeasures>, views: &[View], upright: DMat3, hull: &Hull
         stretches: best.stretches,
         hull: [hull.heights[1] - hull.heights[0], hull.volume],
         notes: notes(views),
+        sex: best.sex,
+        state: best.state,
+        upright,
     }
 }
 

@@ -78,7 +78,7 @@ fn upright(fitter: &BodyFitter, hull: &HullShape, facing: Vec3) -> FitState {
 }
 
 /// Each arm in the pose that covers the silhouettes best, one after the other: as it is, or one of those that people hold them in.
-fn with_arms(fitter: &mut BodyFitter, state: FitState) -> FitState {
+pub(super) fn with_arms(fitter: &mut BodyFitter, state: FitState) -> FitState {
     if !fitter.joints.is_empty() {
         return state;
     }
@@ -91,6 +91,41 @@ fn with_arms(fitter: &mut BodyFitter, state: FitState) -> FitState {
             let agreement = fitter.agreement(&tried);
             if agreement > best.0 {
                 best = (agreement, tried);
+            }
+        }
+    }
+    best.1
+}
+
+/// Turns of an upper arm about itself (rad) and bends of its elbow, as shares of what it can, with which a forearm is looked for.
+const TWISTS: [f32; 8] = [0.0, 0.8, 1.6, 2.4, 3.2, -0.8, -1.6, -2.4];
+const BENDS: [f32; 4] = [0.04, 0.2, 0.45, 0.7];
+
+/// Each forearm where it covers the silhouettes best, about its upper arm as that is: a fit that has found the upper arm alone has the rest
+/// folded before or behind the trunk, where no outline calls it back.
+pub(super) fn with_forearms(fitter: &mut BodyFitter, state: FitState) -> FitState {
+    let mut best = (fitter.agreement(&state), state);
+    let joints = [
+        [Joint::LeftShoulder, Joint::LeftElbow, Joint::LeftWrist],
+        [Joint::RightShoulder, Joint::RightElbow, Joint::RightWrist],
+    ];
+    for [shoulder, elbow, wrist] in joints {
+        let from = best.1;
+        let rest = fitter.model.shapes.skeleton(&from.shape);
+        let along = (rest.at(elbow) - rest.at(shoulder)).normalize_or(Vec3::NEG_Y);
+        let hinge = fitter.model.joint_angles.iter().find(|t| t.joint == elbow).map(|t| (t.axis, t.range));
+        let Some((axis, [least, most])) = hinge else { continue };
+        for twist in TWISTS {
+            for bend in BENDS {
+                let mut tried = from;
+                let turned = from.local[shoulder.index()] * Quat::from_axis_angle(along, twist);
+                tried.local[shoulder.index()] = turned.normalize();
+                tried.local[elbow.index()] = Quat::from_axis_angle(axis, least + (most - least) * bend);
+                tried.local[wrist.index()] = Quat::IDENTITY;
+                let agreement = fitter.agreement(&tried);
+                if agreement > best.0 {
+                    best = (agreement, tried);
+                }
             }
         }
     }

@@ -21,10 +21,19 @@ fn cameras(angles: &[f64]) -> Vec<CalibratedCamera> {
 
 /// Each vertex by the bones of its weights, arms lowered.
 fn standing(body: &Body, turned: f32) -> Vec<DVec3> {
+    moved(body, turned, 0.0)
+}
+
+/// The same with the left arm lifted, the right elbow bent and the left knee raised so far (rad).
+fn moved(body: &Body, turned: f32, by: f32) -> Vec<DVec3> {
     let mut pose = Pose::rest(&body.skeleton);
     for (shoulder, side) in [(Joint::LeftShoulder, 1.0), (Joint::RightShoulder, -1.0)] {
         pose.local[shoulder.index()] = Quat::from_rotation_z(-0.3 * side);
     }
+    pose.local[Joint::LeftShoulder.index()] = Quat::from_rotation_z(by - 0.3);
+    pose.local[Joint::RightElbow.index()] = Quat::from_rotation_x(-by);
+    pose.local[Joint::LeftHip.index()] = Quat::from_rotation_x(-0.5 * by);
+    pose.local[Joint::LeftKnee.index()] = Quat::from_rotation_x(0.5 * by);
     let mut place = [glam::Vec3::ZERO; toile_assets::skeleton::JOINTS];
     let mut spin = [Quat::IDENTITY; toile_assets::skeleton::JOINTS];
     for joint in Joint::ALL {
@@ -102,6 +111,46 @@ fn a_body_of_the_own_family_comes_back_from_four_silhouettes() {
     let woman = SilhouetteOptions { sex: Some(Sex::Female), ..SilhouetteOptions::default() };
     let again = measure(&views(&rig, &masks), &woman).unwrap();
     assert_eq!(again.measures, found.measures);
+}
+
+#[test]
+fn somebody_who_moves_is_followed_by_their_silhouettes() {
+    let wanted = Wanted::<En>::new().with(En::Stature, 1.68).with(En::WaistGirth, 0.81).with(En::HipGirth, 1.02);
+    let truth = Body::fitted(Sex::Female, &wanted).unwrap();
+    let triangles = &truth.body.mesh.triangles;
+    let rig = cameras(&[0.0, 90.0, 180.0, 270.0]);
+    let film = |frame: usize| {
+        let positions = moved(&truth.body, 0.3 + 0.03 * frame as f32, 0.09 * frame as f32);
+        let masks = masks(&rig, &positions, triangles);
+        (positions, masks)
+    };
+    let options = SilhouetteOptions { sex: Some(Sex::Female), ..SilhouetteOptions::default() };
+    let first = measure(&views(&rig, &film(0).1), &options).unwrap();
+    let mut follower = BodyFollower::new(&first);
+    let mut worst = 0.0f64;
+    for frame in 1..=10 {
+        let (positions, masks) = film(frame);
+        let mut seen = views(&rig, &masks);
+        match frame {
+            // One camera sees nobody; then all but one do, and the body stands where it was.
+            4 => drop(seen.remove(1)),
+            6 => seen.truncate(1),
+            _ => {}
+        }
+        let found = follower.next(&seen, &[]);
+        assert_eq!(found.found, frame != 6);
+        if found.found {
+            let off: f64 = found.standing.iter().zip(&positions).map(|(a, b)| a.distance(*b)).sum();
+            worst = worst.max(off / positions.len() as f64);
+            assert!(found.agreement > 0.96, "{frame}: {:.3}", found.agreement);
+        }
+    }
+    println!("vertices lie {:.1} mm from where they are at most, in the mean of a frame", 1e3 * worst);
+    assert!(worst < 0.010, "{worst}");
+    // What is no person moves nothing: the same upside down.
+    let (_, mut masks) = film(10);
+    masks.iter_mut().for_each(|mask| mask.coverage.reverse());
+    assert!(!follower.next(&views(&rig, &masks), &[]).found);
 }
 
 #[test]

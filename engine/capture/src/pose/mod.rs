@@ -10,7 +10,7 @@ mod trc;
 
 pub use bones::{BONES, Bone, marker_name};
 pub use fit::{PoseMotion, fit};
-pub use trc::{TrcMotion, distances, read_trc, write_trc};
+pub use trc::{TrcMotion, distances, read_trc, trc_text, write_trc};
 
 #[cfg(test)]
 mod tests;

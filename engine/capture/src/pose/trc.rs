@@ -49,29 +49,44 @@ pub fn read_trc(path: &str, text: &str) -> Result<TrcMotion, CaptureError> {
 /// The TRC file of a motion, in metres.
 pub fn write_trc(name: &str, motion: &PoseMotion) -> String {
     let markers: Vec<usize> = (0..25).filter(|k| !marker_name(*k).is_empty()).collect();
-    let (rate, frames, count) = (motion.rate, motion.frames.len(), markers.len());
+    let names: Vec<&str> = markers.iter().map(|k| marker_name(*k)).collect();
+    let frames = motion.frames.iter().map(|f| f.as_ref().map(|x| markers.iter().map(|k| x[*k]).collect()));
+    let upright = |p: DVec3| DVec3::new(p.y, p.z, p.x);
+    trc_text(
+        name,
+        motion.rate,
+        &names,
+        frames.map(|f: Option<Vec<DVec3>>| f.map(|x| x.into_iter().map(upright).collect())),
+    )
+}
+
+/// A TRC file of points by name (m, y up), frame by frame; none where a frame has none of them.
+pub fn trc_text(
+    name: &str,
+    rate: f64,
+    names: &[&str],
+    frames: impl ExactSizeIterator<Item = Option<Vec<DVec3>>>,
+) -> String {
+    let (all, count) = (frames.len(), names.len());
     let mut text = format!(
         "PathFileType\t4\t(X/Y/Z)\t{name}\nDataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\t\
-         OrigNumFrames\n{rate}\t{rate}\t{frames}\t{count}\tm\t{rate}\t0\t{frames}\nFrame#\tTime"
+         OrigNumFrames\n{rate}\t{rate}\t{all}\t{count}\tm\t{rate}\t0\t{all}\nFrame#\tTime"
     );
-    for k in &markers {
-        let _ = write!(text, "\t{}\t\t", marker_name(*k));
+    for name in names {
+        let _ = write!(text, "\t{name}\t\t");
     }
     text.push_str("\n\t");
     for i in 1..=count {
         let _ = write!(text, "\tX{i}\tY{i}\tZ{i}");
     }
     text.push('\n');
-    for (f, frame) in motion.frames.iter().enumerate() {
+    for (f, frame) in frames.enumerate() {
         let _ = write!(text, "{}\t{}", f + 1, (f + 1) as f64 / rate);
-        for k in &markers {
-            match frame {
-                Some(x) => {
-                    let p = x[*k];
-                    let _ = write!(text, "\t{}\t{}\t{}", p.y, p.z, p.x);
-                }
-                None => text.push_str("\t\t\t"),
-            }
+        match frame {
+            Some(points) => points.iter().for_each(|p| {
+                let _ = write!(text, "\t{}\t{}\t{}", p.x, p.y, p.z);
+            }),
+            None => names.iter().for_each(|_| text.push_str("\t\t\t")),
         }
         text.push('\n');
     }

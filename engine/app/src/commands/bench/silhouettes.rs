@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 use toile_perf::ansur::Survey;
+use toile_perf::capture::followed::{FollowStudy, follow_study};
 use toile_perf::capture::silhouettes::{
     GIRTH_MM, SilhouetteStudy, SilhouetteStudyError, SilhouetteStudyOptions, study,
 };
@@ -41,6 +42,9 @@ pub struct SilhouettesArgs {
     /// Which people, and how they stand
     #[arg(long, value_name = "S", default_value = "4242")]
     seed: u64,
+    /// People move, so many frames at 30 Hz: they are measured in the first and followed through the others
+    #[arg(long, value_name = "N", value_parser = count(2..=1_000), conflicts_with = "pictures")]
+    frames: Option<usize>,
     /// Folder for a picture of each person: the silhouettes, and the body that was found
     #[arg(long, value_name = "DIR")]
     pictures: Option<PathBuf>,
@@ -65,6 +69,9 @@ pub fn run(args: &SilhouettesArgs) -> Result<(), AppError> {
         args.files.iter().map(|f| Survey::read(f)).collect::<Result<_, _>>().map_err(AppError::input)?;
     let families: Vec<Option<PathBuf>> =
         std::iter::once(None).chain(args.makehuman.iter().map(|f| Some(f.clone()))).collect();
+    if let Some(frames) = args.frames {
+        return follow(args, &surveys, &families, frames);
+    }
     let bar = args
         .printing
         .words()
@@ -72,26 +79,17 @@ pub fn run(args: &SilhouettesArgs) -> Result<(), AppError> {
     let mut folder = args.pictures.as_deref().map(OutputFolder::prepare).transpose()?;
     let mut drawn: Vec<(String, Vec<u8>)> = Vec::new();
     let mut studies = Vec::new();
-    for makehuman in families {
+    for makehuman in &families {
         for &cameras in &args.cameras {
             let family = if makehuman.is_some() { "makehuman" } else { "survey" };
-            let options = SilhouetteStudyOptions {
-                makehuman: makehuman.clone(),
-                people: args.people,
-                cameras,
-                seed: args.seed,
-                pictures: folder.is_some(),
-            };
+            let options = options(args, makehuman, cameras);
             let mut count = 0;
             let mut progress = |picture: Option<Vec<u8>>| {
                 bar.inc(1);
                 count += 1;
                 drawn.extend(picture.map(|png| (format!("{family}-{cameras}-{count}.png"), png)));
             };
-            let found = study(&surveys, &options, &mut progress).map_err(|e| match e {
-                SilhouetteStudyError::Capture(_) => AppError::internal(e),
-                _ => AppError::input(e),
-            })?;
+            let found = study(&surveys, &options, &mut progress).map_err(refused)?;
             studies.push(found);
         }
     }
@@ -121,6 +119,69 @@ pub fn run(args: &SilhouettesArgs) -> Result<(), AppError> {
         "girths of the other family miss {GIRTH_MM} mm: {}; docs/capture.md says why",
         missed.join(", ")
     )))
+}
+
+/// What is studied of a family by so many cameras.
+fn options(args: &SilhouettesArgs, makehuman: &Option<PathBuf>, cameras: usize) -> SilhouetteStudyOptions {
+    SilhouetteStudyOptions {
+        makehuman: makehuman.clone(),
+        people: args.people,
+        cameras,
+        seed: args.seed,
+        pictures: args.pictures.is_some(),
+    }
+}
+
+fn refused(error: SilhouetteStudyError) -> AppError {
+    match error {
+        SilhouetteStudyError::Capture(_) => AppError::internal(error),
+        _ => AppError::input(error),
+    }
+}
+
+/// The report of people who move, as JSON has it.
+#[derive(Debug, Serialize)]
+struct FollowDocument {
+    seed: u64,
+    studies: Vec<FollowStudy>,
+}
+
+/// People who move.
+fn follow(
+    args: &SilhouettesArgs,
+    surveys: &[Survey],
+    families: &[Option<PathBuf>],
+    frames: usize,
+) -> Result<(), AppError> {
+    let people = families.len() * args.cameras.len() * surveys.len() * args.people;
+    let bar = args.printing.words().bar(people as u64, "following people");
+    let mut studies = Vec::new();
+    for makehuman in families {
+        for &cameras in &args.cameras {
+            let options = options(args, makehuman, cameras);
+            let found = follow_study(surveys, &options, frames, &mut || bar.inc(1)).map_err(refused)?;
+            studies.push(found);
+        }
+    }
+    bar.finish_and_clear();
+    if args.printing.json {
+        let document = FollowDocument { seed: args.seed, studies };
+        return terminal::print_json(&Document::new("bench-silhouettes-followed", document));
+    }
+    let mut text = String::from(
+        "| followed | people, lost | frames, lost | joints off: first, others, 95 %, last (mm) | surface off: first, others, 95 % (mm) | \
+         overlap | s a frame |\n|---|---|---|---|---|---|---|\n",
+    );
+    for s in &studies {
+        let [first, others, most, last] = s.joints_mm;
+        let [surface, surfaces, far] = s.surface_mm;
+        text += &format!(
+            "| {}, {} cameras | {}, {} | {}, {} | {first:.1}, {others:.1}, {most:.1}, {last:.1} | {surface:.1}, {surfaces:.1}, {far:.1} | \
+             {:.3} | {:.2} |\n",
+            s.family, s.cameras, s.people, s.lost, s.frames, s.lost_frames, s.agreement, s.seconds
+        );
+    }
+    terminal::print(&text)
 }
 
 fn table(studies: &[SilhouetteStudy]) -> String {

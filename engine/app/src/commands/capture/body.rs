@@ -6,13 +6,16 @@ use glam::{DVec3, Vec3};
 use serde::Serialize;
 use toile_assets::body::Sex;
 use toile_assets::export::ply;
-use toile_capture::body::{SilhouetteBody, SilhouetteOptions, SilhouetteView, joint_points, measure, overlay_png};
+use toile_capture::body::{
+    JointPoint, SilhouetteBody, SilhouetteOptions, SilhouetteView, joint_points, measure, overlay_png,
+};
 use toile_sensors::calibration;
-use toile_sensors::masks::read_masks;
+use toile_sensors::masks::{MaskSequence, read_masks};
 use toile_sensors::source::openpose::keypoints_of;
 use toile_track::fit::measuring::MEASURES;
 use toile_track::measures::definition;
 
+use super::body_frames::{self, MotionReport};
 use crate::arguments::{Printing, one_of};
 use crate::exit::AppError;
 use crate::output::{Inputs, OutputFolder};
@@ -24,15 +27,17 @@ use crate::terminal;
 ///
 /// Reads one mask a camera (white, or opaque, is the person) or, with --background, pictures with and without the person. Where the
 /// person stands, faces and holds their arms is found from the visual hull, or from --joints; then pose and shape of the parametric
-/// body are fitted until its outlines are those that were seen. Prints eleven measures, each with its standard deviation.
+/// body are fitted until its outlines are those that were seen. Prints eleven measures, each with its standard deviation. A sequence
+/// of masks is followed: the person is measured in the first frame, and the body moved to the silhouettes of the others.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(
     after_help = "Example: four masks, and the body as a mesh\n  toile capture body masks --calibration cameras.toml --out fitted\n\
                   Example: pictures before a known background, the sex known\n  toile capture body shots --background empty \
-                  --calibration cameras.toml --sex female"
+                  --calibration cameras.toml --sex female\nExample: somebody who moves, a folder of masks for each camera\n  \
+                  toile capture body masks --calibration cameras.toml --rate 30 --out moved"
 )]
 pub struct BodyCaptureArgs {
-    /// Folder with one PNG or JPEG for each camera, in the order of the cameras' names
+    /// Folder with one PNG or JPEG for each camera, in the order of the cameras' names; or with a folder of numbered ones for each
     #[arg(value_name = "DIR")]
     pub folder: PathBuf,
     /// Calibration: a TOML file of Pose2Sim, a YAML file of OpenCV, or a folder of those, one a camera
@@ -50,7 +55,11 @@ pub struct BodyCaptureArgs {
     /// Upward axis of the cameras' world: x, y, z, -x, -y or -z (default: found from the cameras)
     #[arg(long, value_name = "A", value_parser = axis, allow_hyphen_values = true)]
     pub up: Option<DVec3>,
-    /// Folder for the body as it stands (body.ply, in the cameras' world) and silhouettes.png
+    /// Frames a second of a sequence
+    #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1..=1_000), default_value = "30")]
+    pub rate: u32,
+    /// Folder for the body as it stands (body.ply, in the cameras' world) and silhouettes.png; of a sequence joints.trc (y up),
+    /// motion.glb and last.png
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     #[command(flatten)]
@@ -87,6 +96,9 @@ struct BodyDocument {
     /// Volume of the visual hull (l).
     hull_litres: f64,
     notes: Vec<String>,
+    /// The frames after the first, where masks are a sequence.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    motion: Option<MotionReport>,
     files: Vec<PathBuf>,
 }
 
@@ -98,35 +110,49 @@ pub fn run(args: &BodyCaptureArgs) -> Result<(), AppError> {
     let mut out = args.out.as_deref().map(OutputFolder::prepare).transpose()?;
     out = out.map(|out| out.sparing(Inputs::new([&args.calibration])));
     let rig = calibration::open(&args.calibration).map_err(AppError::input)?;
-    let masks = read_masks(&args.folder, args.background.as_deref(), &rig.cameras).map_err(AppError::input)?;
-    let joints = match &args.joints {
-        Some(folder) => {
-            let recording = keypoints_of(folder).map_err(AppError::input)?;
-            let first = recording.frames.iter().flatten().next();
-            let points = first.map(|f| joint_points(&f.points)).unwrap_or_default();
-            if points.is_empty() || !recording.is_25b {
-                return Err(AppError::input(format!(
-                    "{}: no frame shows joints of BODY_25B to two cameras; leave --joints out, or run OpenPose with BODY_25B",
-                    folder.display()
-                )));
-            }
-            points
-        }
-        None => Vec::new(),
+    let (folder, background) = (&args.folder, args.background.as_deref());
+    let sequence = MaskSequence::is_in(folder).then(|| MaskSequence::open(folder, background, &rig.cameras));
+    let sequence = sequence.transpose().map_err(AppError::input)?;
+    let masks = match &sequence {
+        Some(sequence) => sequence.begin(),
+        None => read_masks(folder, background, &rig.cameras),
     };
+    let masks = masks.map_err(AppError::input)?;
+    let joints = joints(args, sequence.as_ref())?;
     let views: Vec<SilhouetteView> =
         rig.cameras.iter().zip(&masks).map(|(camera, mask)| SilhouetteView { camera, mask }).collect();
-    let found = measure(&views, &SilhouetteOptions { sex: args.sex, up: args.up, joints }).map_err(AppError::input)?;
-    let mut files = Vec::new();
-    if let Some(mut out) = out {
-        write(&mut out, &views, &found)?;
-        files = out.commit()?;
+    let options = SilhouetteOptions { sex: args.sex, up: args.up, joints: joints.first().cloned().unwrap_or_default() };
+    let found = measure(&views, &options).map_err(AppError::input)?;
+    if let Some(out) = &mut out {
+        write(out, &views, &found)?;
     }
-    let document = document(&found, views.len(), files);
+    let words_of = args.printing.words();
+    let pace = (args.rate, &words_of);
+    let motion = sequence.map(|s| body_frames::follow(&found, &rig.cameras, &s, &joints, pace, out.as_mut()));
+    let motion = motion.transpose()?;
+    let files = out.map(OutputFolder::commit).transpose()?.unwrap_or_default();
+    let document = document(&found, views.len(), motion, files);
     if args.printing.json {
         return terminal::print_json(&Document::new("capture-body", document));
     }
     terminal::print(&words(&document))
+}
+
+/// The joints of each frame, or of the one moment; none where no keypoints are given.
+fn joints(args: &BodyCaptureArgs, sequence: Option<&MaskSequence>) -> Result<Vec<Vec<JointPoint>>, AppError> {
+    let Some(folder) = &args.joints else { return Ok(Vec::new()) };
+    let recording = keypoints_of(folder).map_err(AppError::input)?;
+    let all = match sequence {
+        Some(masks) => body_frames::joints_of(&recording.frames, masks, folder)?,
+        None => recording.frames.iter().flatten().take(1).map(|f| joint_points(&f.points)).collect(),
+    };
+    if all.first().is_none_or(Vec::is_empty) || !recording.is_25b {
+        return Err(AppError::input(format!(
+            "{}: no frame shows joints of BODY_25B to two cameras; leave --joints out, or run OpenPose with BODY_25B",
+            folder.display()
+        )));
+    }
+    Ok(all)
 }
 
 fn write(out: &mut OutputFolder, views: &[SilhouetteView], found: &SilhouetteBody) -> Result<(), AppError> {
@@ -138,7 +164,7 @@ fn write(out: &mut OutputFolder, views: &[SilhouetteView], found: &SilhouetteBod
     Ok(())
 }
 
-fn document(found: &SilhouetteBody, cameras: usize, files: Vec<PathBuf>) -> BodyDocument {
+fn document(found: &SilhouetteBody, cameras: usize, motion: Option<MotionReport>, files: Vec<PathBuf>) -> BodyDocument {
     let defined = |(m, e): (&(&'static str, _, _), &toile_track::estimate::Estimate)| {
         let MeasuredLength { value, sigma } = in_mm(*e);
         DefinedMeasure { name: m.0, definition: definition(m.0), value, sigma }
@@ -153,6 +179,7 @@ fn document(found: &SilhouetteBody, cameras: usize, files: Vec<PathBuf>) -> Body
         hull_height: found.hull[0],
         hull_litres: 1e3 * found.hull[1],
         notes: found.notes.clone(),
+        motion,
         files,
     }
 }
@@ -169,6 +196,9 @@ fn words(d: &BodyDocument) -> String {
         text += &format!("  {:<17} {:>7.1} mm  +- {:.1}\n", m.name.replace('_', " "), m.value, m.sigma);
     }
     text += &format!("  a woman's with a probability of {:.2}\n", d.woman);
+    if let Some(motion) = &d.motion {
+        text += &body_frames::words(motion);
+    }
     for note in &d.notes {
         text += &format!("  {note}\n");
     }
