@@ -204,9 +204,6 @@ fn known(row: &ValidationRow) -> Option<&'static str> {
             "threads that know nothing of each other let a strip along the bias curl across for next to nothing: a fabric's \
              file may have its rigidity there",
         ),
-        ("euler", _) => Some(
-            "bending taken as a plain force rings a little, and the stretch solves of a pressed column feed it (suspected)",
-        ),
         ("shear-sag", _) => Some(
             "within some links of the free sides there is no shear, and the sheet sags more: the mesh's, not the solver's",
         ),

@@ -133,7 +133,7 @@ fn euler(ends: Ends) -> ValidationCase {
         unit: "P L^2/B",
         expected: exact,
         scale: None,
-        target: Some(10.0),
+        target: Some(5.0),
         run: Box::new(run),
     }
 }
