@@ -172,7 +172,7 @@ impl Plane {
     }
 
     /// The pixel above and left of a point and the parts beyond it; `None` outside.
-    #[inline]
+    #[inline(always)]
     pub fn cell(&self, u: f32, v: f32) -> Option<(usize, f32, f32)> {
         let inside = u >= 0.0 && v >= 0.0 && u < (self.width - 1) as f32 && v < (self.height - 1) as f32;
         if !inside {
@@ -183,7 +183,7 @@ impl Plane {
     }
 
     /// One channel at a place of [`Plane::cell`], bilinear, with its exact derivatives along rows and columns.
-    #[inline]
+    #[inline(always)]
     pub fn sample(&self, (at, a, b): (usize, f32, f32), channel: usize) -> [f32; 3] {
         let (c, row) = (self.channels, self.width * self.channels);
         let from = &self.values[at + channel..];

@@ -3,6 +3,7 @@
 //! The split is by triangles, whose sums are added in their order afterwards, so that one thread or two give the same bits.
 
 use glam::DVec3;
+use toile_engine::lanes::{Kernel, Lanes, Width};
 
 use super::references::PRINTED;
 use super::residual::{CLIPPED, LevelView, PatchSums, TriangleTerm, samples};
@@ -52,6 +53,26 @@ struct Work<'a> {
     scatter: f32,
 }
 
+/// The triangles that one thread sums.
+struct TriangleRange<'a, 'w> {
+    state: &'a FlowState,
+    work: &'a Work<'w>,
+    /// Number of the first.
+    first: usize,
+    terms: &'a mut [TriangleTerm],
+    sums: &'a mut [PatchSums],
+}
+
+impl Kernel for TriangleRange<'_, '_> {
+    type Out = ();
+
+    /// The same additions in the same order at every width: only how many of a row are made at once differs.
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        self.state.sum(self.work, self.first, self.terms, self.sums);
+    }
+}
+
 impl FlowState {
     /// Sums the normal equations at the current positions.
     pub fn pass(
@@ -64,22 +85,29 @@ impl FlowState {
     ) -> Pass {
         let views: Vec<LevelView> = pyramids.iter().enumerate().map(|(c, p)| self.view(c, p, level)).collect();
         let count = self.surface.triangles.len();
-        let mut terms = vec![TriangleTerm::NONE; count];
-        let mut sums = vec![PatchSums::NONE; count * views.len()];
+        let (mut terms, mut sums) = std::mem::take(&mut self.room);
+        terms.clear();
+        terms.resize(count, TriangleTerm::NONE);
+        // What is in them is of the iteration before, and written over.
+        sums.resize(count * views.len(), PatchSums::NONE);
         let half = count.div_ceil(2);
         let this = &*self;
         let work = Work { views: &views, level, masks, scatter };
         std::thread::scope(|scope| {
             let (left, right) = terms.split_at_mut(half);
             let (sums_left, sums_right) = sums.split_at_mut(half * views.len());
-            let work = &work;
-            scope.spawn(move || this.sum(work, half, right, sums_right));
-            this.sum(work, 0, left, sums_left);
+            let (work, width) = (&work, Width::widest());
+            let later = TriangleRange { state: this, work, first: half, terms: right, sums: sums_right };
+            scope.spawn(move || width.run(later));
+            width.run(TriangleRange { state: this, work, first: 0, terms: left, sums: sums_left });
         });
-        self.gather(&terms, &sums, carried)
+        let pass = self.gather(&terms, &sums, carried);
+        self.room = (terms, sums);
+        pass
     }
 
     /// Sums of the triangles from `first` on.
+    #[inline(always)]
     fn sum(&self, work: &Work, first: usize, terms: &mut [TriangleTerm], sums: &mut [PatchSums]) {
         let scatter = work.scatter;
         let c2 = (ROBUST * scatter).powi(2);

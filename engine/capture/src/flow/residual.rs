@@ -113,8 +113,10 @@ impl LevelView<'_> {
     }
 
     /// Sums of one triangle whose corners are given in the camera's axes (m); `c2` is the square of the robust residual.
+    #[inline(always)]
     pub fn sums<const C: usize>(&self, corners: [Vec3; 3], of: &PatchSamples, tone: Tone, c2: f32) -> PatchSums {
         let mut sums = PatchSums::NONE;
+        let mut parts = SampleSums::NONE;
         let (focal, centre): (Vec2, Vec2) = (self.focal.as_vec2(), self.centre.as_vec2());
         let [pa, pb, pc] = corners;
         for (k, (share, mask)) in of.shares.iter().zip(of.mask).enumerate() {
@@ -126,7 +128,6 @@ impl LevelView<'_> {
             let (x, y) = (p.x * inverse, p.y * inverse);
             let Some(cell) = self.plane.cell(focal.x * x + centre.x, focal.y * y + centre.y) else { continue };
             sums.count += 1.0;
-            let b = share.to_array();
             for c in 0..C {
                 let [value, du, dv] = self.plane.sample(cell, c);
                 let was = of.seen[k * C + c];
@@ -140,29 +141,52 @@ impl LevelView<'_> {
                 let part = c2 / (c2 + r * r);
                 let w = part * part;
                 let (gu, gv) = (tone.gain * du * focal.x * inverse, tone.gain * dv * focal.y * inverse);
-                let h = [gu, gv, -(gu * x + gv * y)];
                 sums.absolute += r.abs().min(CLIPPED);
                 sums.cost += part * r * r;
-                add(&mut sums, b, h, w, r);
+                parts.add([share.x, share.y, share.z], [gu, gv, -(gu * x + gv * y)], w, r);
             }
         }
+        parts.put(&mut sums);
         sums
     }
 }
 
-#[inline]
-fn add(sums: &mut PatchSums, b: [f32; 3], h: [f32; 3], w: f32, r: f32) {
-    let wh = h.map(|v| w * v);
-    let hh = [wh[0] * h[0], wh[0] * h[1], wh[0] * h[2], wh[1] * h[1], wh[1] * h[2], wh[2] * h[2]];
-    let bb = [b[0] * b[0], b[0] * b[1], b[0] * b[2], b[1] * b[1], b[1] * b[2], b[2] * b[2]];
-    for (row, bb) in sums.normal.iter_mut().zip(bb) {
-        for (sum, hh) in row.iter_mut().zip(hh) {
-            *sum += bb * hh;
+/// The sums of [`PatchSums::normal`] and [`PatchSums::right`] while they are made: rows of eight and of four, of which the last places are
+/// for nothing, so that a row is a vector.
+struct SampleSums {
+    normal: [[f32; 8]; 6],
+    right: [[f32; 4]; 3],
+}
+
+impl SampleSums {
+    const NONE: Self = Self { normal: [[0.0; 8]; 6], right: [[0.0; 4]; 3] };
+
+    /// Adds a sample of shares `b`, derivative `h`, weight and residual. No closure: it would be compiled for no width of its caller.
+    #[inline(always)]
+    fn add(&mut self, b: [f32; 3], h: [f32; 3], w: f32, r: f32) {
+        let [x, y, z] = [w * h[0], w * h[1], w * h[2]];
+        let hh = [x * h[0], x * h[1], x * h[2], y * h[1], y * h[2], z * h[2], 0.0, 0.0];
+        let bb = [b[0] * b[0], b[0] * b[1], b[0] * b[2], b[1] * b[1], b[1] * b[2], b[2] * b[2]];
+        for k in 0..6 {
+            for i in 0..8 {
+                self.normal[k][i] += bb[k] * hh[i];
+            }
+        }
+        let wh = [x, y, z, 0.0];
+        for k in 0..3 {
+            let rb = r * b[k];
+            for i in 0..4 {
+                self.right[k][i] += rb * wh[i];
+            }
         }
     }
-    for (row, b) in sums.right.iter_mut().zip(b) {
-        for (sum, wh) in row.iter_mut().zip(wh) {
-            *sum += r * b * wh;
+
+    fn put(&self, to: &mut PatchSums) {
+        for (row, from) in to.normal.iter_mut().zip(&self.normal) {
+            row.copy_from_slice(&from[..6]);
+        }
+        for (row, from) in to.right.iter_mut().zip(&self.right) {
+            row.copy_from_slice(&from[..3]);
         }
     }
 }

@@ -1,12 +1,14 @@
 //! What a tracker holds between frames, and how the pictures of one are made ready for it.
 
+use std::ops::Range;
+
 use glam::{DVec2, DVec3};
 use image::RgbImage;
 use toile_sensors::calibration::CalibratedCamera;
 
 use super::energy::Energy;
 use super::patches::LevelSamples;
-use super::residual::{LevelView, Tone};
+use super::residual::{LevelView, PatchSums, Tone, TriangleTerm};
 use super::settings::FlowSettings;
 use super::visibility::Visibility;
 use crate::error::CaptureError;
@@ -51,6 +53,8 @@ pub(super) struct FlowState {
     pub frame: u32,
     /// Frames one after the other in which cameras placed next to nothing.
     pub unseen: u32,
+    /// Room for an iteration's terms and sums `[triangles]`, `[triangles][cameras]`.
+    pub room: (Vec<TriangleTerm>, Vec<PatchSums>),
 }
 
 impl FlowState {
@@ -84,6 +88,7 @@ impl FlowState {
             before: written(&surface.rest),
             frame: 0,
             unseen: 0,
+            room: Default::default(),
             surface,
             cameras,
             straight,
@@ -119,9 +124,29 @@ impl FlowState {
     /// Looks at the surface as it lies.
     pub fn look(&mut self) {
         let Self { views, straight, surface, positions, settings, .. } = self;
-        for (view, camera) in views.iter_mut().zip(straight.iter()) {
-            view.look(camera, surface, positions, settings.occlusion);
-        }
+        let half = views.len().div_ceil(2);
+        let ((first, rest), (cameras, others)) = (views.split_at_mut(half), straight.split_at(half));
+        let (surface, positions, occlusion) = (&*surface, &*positions, settings.occlusion);
+        let look = |views: &mut [Visibility], cameras: &[CalibratedCamera]| {
+            let pairs = views.iter_mut().zip(cameras);
+            pairs.for_each(|(view, camera)| view.look(camera, surface, positions, occlusion));
+        };
+        std::thread::scope(|scope| {
+            scope.spawn(|| look(rest, others));
+            look(first, cameras);
+        });
+    }
+
+    /// [`Self::mask`] of every camera, half of them by another thread.
+    pub fn masks(&self, level: usize, known: bool) -> Vec<Vec<f32>> {
+        let half = self.cameras.len().div_ceil(2);
+        let of = |cameras: Range<usize>| cameras.map(|c| self.mask(c, level, known)).collect::<Vec<_>>();
+        std::thread::scope(|scope| {
+            let later = scope.spawn(|| of(half..self.cameras.len()));
+            let mut all = of(0..half);
+            all.extend(later.join().unwrap_or_default());
+            all
+        })
     }
 
     /// The samples that a camera sees at a level, and has seen before where `known`, as 1 or 0.

@@ -148,7 +148,7 @@ impl FlowTracker {
 impl FlowState {
     /// Iterations at one level, until the surface is still or its cost grows, as in the source's main loop.
     fn descend(&mut self, pyramids: &[Pyramid], level: usize, carried: &[DVec3], begin: f32) -> (Pass, usize) {
-        let masks: Vec<Vec<f32>> = (0..self.cameras.len()).map(|c| self.mask(c, level, true)).collect();
+        let masks = self.masks(level, true);
         let pixel = self.pixel(level);
         let mut kept: Option<(Pass, Vec<DVec3>)> = None;
         let mut scatter = begin;
