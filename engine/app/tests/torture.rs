@@ -69,3 +69,19 @@ fn an_unknown_case_is_refused_with_the_names_that_there_are() {
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("squeeze"));
 }
+
+#[test]
+fn exact_substeps_come_back_where_cloth_has_one_place_and_do_no_better_with_the_strand() {
+    let (code, back) = torture(&["stretched", "--seed", "3", "--oracle"]);
+    assert_eq!((code, &back["oracle"]), (Some(0), &Value::Bool(true)));
+    let seed = &back["cases"][0];
+    assert!(seed["pass"] == true && seed["folded"] == false && seed["hausdorff_mm"].as_f64().unwrap() < 0.1, "{seed}");
+    // Of the substeps of a first swing no solver makes the 2 % that are allowed.
+    let (code, strand) = torture(&["strand", "--seed", "0", "--oracle"]);
+    let seed = &strand["cases"][0];
+    assert!(code == Some(3) && seed["unsolved"] == 0, "{seed}");
+    assert!(seed["note"].as_str().unwrap().starts_with("strain 3.0"), "{seed}");
+    let cloth_on_cloth = Scratch::new("torture-exact").toile(&["torture", "ball", "--oracle"]);
+    assert_eq!(cloth_on_cloth.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&cloth_on_cloth.stderr).contains("no contact of cloth with cloth"));
+}
