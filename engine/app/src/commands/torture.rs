@@ -160,10 +160,13 @@ mod tests {
     #[test]
     fn one_case_and_one_seed_can_be_named() {
         let (quality, backend) = (Quality::Fine, Backend::Auto);
-        let one = TortureOptions { case: Some("squeeze".into()), seeds: 7..8, quality, backend };
+        let one = TortureOptions { case: Some("squeeze".into()), seeds: 7..8, quality, backend, exact: false };
         assert_eq!(options("torture squeeze --seed 7 --quality fine --backend auto --json -q").unwrap(), one);
         assert_eq!(options("torture --seeds 3").unwrap().seeds, 0..3);
-        for wrong in ["torture squeez", "torture --seeds 0", "torture --seed 1 --seeds 2"] {
+        assert!(options("torture strand --oracle").unwrap().exact);
+        for wrong in
+            ["torture squeez", "torture --seeds 0", "torture --seed 1 --seeds 2", "torture --oracle --backend cpu"]
+        {
             assert!(options(wrong).is_err(), "{wrong}");
         }
     }

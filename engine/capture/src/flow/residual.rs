@@ -167,16 +167,16 @@ impl SampleSums {
         let [x, y, z] = [w * h[0], w * h[1], w * h[2]];
         let hh = [x * h[0], x * h[1], x * h[2], y * h[1], y * h[2], z * h[2], 0.0, 0.0];
         let bb = [b[0] * b[0], b[0] * b[1], b[0] * b[2], b[1] * b[1], b[1] * b[2], b[2] * b[2]];
-        for k in 0..6 {
-            for i in 0..8 {
-                self.normal[k][i] += bb[k] * hh[i];
+        for (row, bb) in self.normal.iter_mut().zip(bb) {
+            for (sum, hh) in row.iter_mut().zip(hh) {
+                *sum += bb * hh;
             }
         }
         let wh = [x, y, z, 0.0];
-        for k in 0..3 {
-            let rb = r * b[k];
-            for i in 0..4 {
-                self.right[k][i] += rb * wh[i];
+        for (row, b) in self.right.iter_mut().zip(b) {
+            let rb = r * b;
+            for (sum, wh) in row.iter_mut().zip(wh) {
+                *sum += rb * wh;
             }
         }
     }

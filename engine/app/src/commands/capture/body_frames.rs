@@ -1,15 +1,18 @@
 //! Somebody who moves before several cameras: measured in the first frame, followed through the others.
 
-use std::path::PathBuf;
+use std::path::Path;
 
 use glam::Vec3;
 use serde::Serialize;
 use toile_assets::export::{MAX_GLB_FRAMES, motion_glb};
 use toile_assets::skeleton::Joint;
-use toile_capture::body::{BodyFollower, FollowedFrame, JointPoint, SilhouetteBody, SilhouetteView, overlay_png};
+use toile_capture::body::{
+    BodyFollower, FollowedFrame, JointPoint, SilhouetteBody, SilhouetteView, joint_points, overlay_png,
+};
 use toile_capture::pose::trc_text;
 use toile_sensors::calibration::CalibratedCamera;
 use toile_sensors::masks::MaskSequence;
+use toile_sensors::source::openpose::KeypointFrame;
 
 use crate::exit::AppError;
 use crate::output::OutputFolder;
@@ -134,9 +137,9 @@ pub(super) fn words(report: &MotionReport) -> String {
 
 /// The joints that OpenPose found in each frame.
 pub(super) fn joints_of(
-    frames: &[Option<toile_sensors::source::openpose::KeypointFrame>],
+    frames: &[Option<KeypointFrame>],
     masks: &MaskSequence,
-    folder: &PathBuf,
+    folder: &Path,
 ) -> Result<Vec<Vec<JointPoint>>, AppError> {
     if frames.len() < masks.frames() {
         return Err(AppError::input(format!(
@@ -146,8 +149,6 @@ pub(super) fn joints_of(
             masks.frames()
         )));
     }
-    let points = |f: &Option<toile_sensors::source::openpose::KeypointFrame>| {
-        f.as_ref().map(|f| toile_capture::body::joint_points(&f.points)).unwrap_or_default()
-    };
+    let points = |f: &Option<KeypointFrame>| f.as_ref().map(|f| joint_points(&f.points)).unwrap_or_default();
     Ok(frames.iter().map(points).collect())
 }
