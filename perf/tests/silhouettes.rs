@@ -31,7 +31,7 @@ fn people_who_move_are_followed_by_their_silhouettes() {
     let makehuman = Some(folder.join("body/makehuman-hm08"));
     for (makehuman, most) in [(None, [10.0, 4.0]), (makehuman, [60.0, 15.0])] {
         let options = SilhouetteStudyOptions { makehuman, people: 1, cameras: 4, seed: 99, pictures: false };
-        let found = follow_study(std::slice::from_ref(&survey), &options, 12, &mut || ()).expect("a study");
+        let found = follow_study(std::slice::from_ref(&survey), &options, 12, &mut |_| ()).expect("a study");
         println!("{found:?}");
         assert_eq!((found.people, found.lost, found.frames, found.lost_frames), (1, 0, 11, 0));
         assert!(found.joints_mm[1] < most[0] && found.surface_mm[1] < most[1] && found.agreement > 0.9, "{found:?}");

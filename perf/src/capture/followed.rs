@@ -9,7 +9,9 @@ use glam::{DVec3, Vec3};
 use serde::Serialize;
 use toile_assets::numeric::random::SplitMix64;
 use toile_assets::numeric::statistics::quantile;
-use toile_capture::body::{BodyFollower, FollowedFrame, SilhouetteBody, SilhouetteOptions, SilhouetteView, measure};
+use toile_capture::body::{
+    BodyFollower, FollowedFrame, SilhouetteBody, SilhouetteOptions, SilhouetteView, measure, overlay_png,
+};
 use toile_sensors::calibration::CalibratedCamera;
 use toile_sensors::masks::Mask;
 
@@ -63,7 +65,11 @@ struct FrameOff {
     seconds: f64,
 }
 
-/// Follows people of each survey's sex through so many frames; `progress` is called after each person.
+/// Frames of a person that are drawn where pictures are asked for.
+const DRAWN: usize = 5;
+
+/// Follows people of each survey's sex through so many frames; `progress` is called after each person, with PNG files of some frames, by
+/// their numbers, where pictures are asked for.
 ///
 /// # Errors
 /// A file that is no survey, files that are not MakeHuman's, a person outside of all ranges.
@@ -71,16 +77,18 @@ pub fn follow_study(
     surveys: &[Survey],
     options: &SilhouetteStudyOptions,
     frames: usize,
-    progress: &mut dyn FnMut(),
+    progress: &mut dyn FnMut(Vec<(usize, Vec<u8>)>),
 ) -> Result<FollowStudy, SilhouetteStudyError> {
     let (mut all, mut count, mut lost) = (Vec::new(), 0, 0);
     for survey in surveys {
         for (person, mut rng) in people(survey, options)? {
             count += 1;
-            let found = followed(&person, options.cameras, frames, &mut rng);
+            let mut pictures = Vec::new();
+            let every = if options.pictures { frames.div_ceil(DRAWN) } else { usize::MAX };
+            let found = followed(&person, [options.cameras, frames, every], &mut rng, &mut pictures);
             lost += usize::from(found.is_empty());
             all.extend(found);
-            progress();
+            progress(pictures);
         }
     }
     let of = |keep: &dyn Fn(&FrameOff) -> bool, what: &dyn Fn(&FrameOff) -> f64| -> Vec<f64> {
@@ -112,8 +120,13 @@ pub fn follow_study(
     })
 }
 
-/// A person followed; nothing where their first frame was not enough.
-fn followed(person: &StudyPerson, cameras: usize, frames: usize, rng: &mut SplitMix64) -> Vec<FrameOff> {
+/// A person followed; nothing where their first frame was not enough. Every so many frames are drawn.
+fn followed(
+    person: &StudyPerson,
+    [cameras, frames, every]: [usize; 3],
+    rng: &mut SplitMix64,
+    pictures: &mut Vec<(usize, Vec<u8>)>,
+) -> Vec<FrameOff> {
     let rig = rig(cameras, rng);
     let facing = rng.uniform() * TAU;
     let mut filmed = |frame: usize| {
@@ -130,9 +143,14 @@ fn followed(person: &StudyPerson, cameras: usize, frames: usize, rng: &mut Split
     let mut all = vec![off(0, &begun(&first, &mut follower, &views(&rig, &masks)), &first, (&joints, &surface), 0.0)];
     for frame in 1..frames {
         let (joints, surface, masks) = filmed(frame);
+        let seen = views(&rig, &masks);
         let begun = std::time::Instant::now();
-        let found = follower.next(&views(&rig, &masks), &[]);
+        let found = follower.next(&seen, &[]);
         all.push(off(frame, &found, &first, (&joints, &surface), begun.elapsed().as_secs_f64()));
+        if frame.is_multiple_of(every) {
+            let drawn = overlay_png(&seen, &found.standing, &first.body.body.mesh.triangles);
+            pictures.extend(drawn.ok().map(|png| (frame, png)));
+        }
     }
     all
 }

@@ -43,9 +43,9 @@ pub struct SilhouettesArgs {
     #[arg(long, value_name = "S", default_value = "4242")]
     seed: u64,
     /// People move, so many frames at 30 Hz: they are measured in the first and followed through the others
-    #[arg(long, value_name = "N", value_parser = count(2..=1_000), conflicts_with = "pictures")]
+    #[arg(long, value_name = "N", value_parser = count(2..=1_000))]
     frames: Option<usize>,
-    /// Folder for a picture of each person: the silhouettes, and the body that was found
+    /// Folder for a picture of each person: the silhouettes, and the body that was found; with --frames of some frames
     #[arg(long, value_name = "DIR")]
     pictures: Option<PathBuf>,
     #[command(flatten)]
@@ -155,15 +155,28 @@ fn follow(
 ) -> Result<(), AppError> {
     let people = families.len() * args.cameras.len() * surveys.len() * args.people;
     let bar = args.printing.words().bar(people as u64, "following people");
+    let mut folder = args.pictures.as_deref().map(OutputFolder::prepare).transpose()?;
+    let mut drawn: Vec<(String, Vec<u8>)> = Vec::new();
     let mut studies = Vec::new();
     for makehuman in families {
         for &cameras in &args.cameras {
+            let family = if makehuman.is_some() { "makehuman" } else { "survey" };
+            let mut count = 0;
+            let mut progress = |pictures: Vec<(usize, Vec<u8>)>| {
+                bar.inc(1);
+                count += 1;
+                let name = |frame: usize| format!("{family}-{cameras}-{count}-frame-{frame:03}.png");
+                drawn.extend(pictures.into_iter().map(|(frame, png)| (name(frame), png)));
+            };
             let options = options(args, makehuman, cameras);
-            let found = follow_study(surveys, &options, frames, &mut || bar.inc(1)).map_err(refused)?;
-            studies.push(found);
+            studies.push(follow_study(surveys, &options, frames, &mut progress).map_err(refused)?);
         }
     }
     bar.finish_and_clear();
+    if let Some(mut folder) = folder.take() {
+        drawn.iter().try_for_each(|(name, png)| folder.write(name, png).map(drop))?;
+        folder.commit()?;
+    }
     if args.printing.json {
         let document = FollowDocument { seed: args.seed, studies };
         return terminal::print_json(&Document::new("bench-silhouettes-followed", document));
