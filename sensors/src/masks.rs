@@ -3,6 +3,10 @@
 //! A folder holds one picture a camera, PNG or JPEG, in the order of the cameras' names. A picture with transparent pixels is a mask by
 //! its alpha, any other by its brightness: white is the person. With backgrounds (the same pictures without the person), a pixel is
 //! the person as far as it differs.
+//!
+//! Reads: pictures of calibrated cameras, and backgrounds. Writes: the coverage of each pixel; a folder of frames for each camera is a
+//! [`MaskSequence`]. Budget: offline, some 20 ms a picture.
+//! Thread: the caller's.
 
 mod sequence;
 
