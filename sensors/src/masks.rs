@@ -5,7 +5,7 @@
 //! the person as far as it differs.
 //!
 //! Reads: pictures of calibrated cameras, and backgrounds. Writes: the coverage of each pixel; a folder of frames for each camera is a
-//! [`MaskSequence`]. Budget: offline, some 20 ms a picture.
+//! [`MaskSequence`]. Budget: offline, one frame of pictures at a time.
 //! Thread: the caller's.
 
 mod sequence;

@@ -98,7 +98,7 @@ pub fn follow_study(
     let p95 = |mut v: Vec<f64>| quantile(&mut v, 0.95).unwrap_or(0.0);
     let first = |f: &FrameOff| f.frame == 0;
     let later = |f: &FrameOff| f.frame > 0;
-    let last = |f: &FrameOff| f.frame + frames / 10 >= frames;
+    let last = |f: &FrameOff| f.frame + (frames / 10).max(1) >= frames;
     let joints = |f: &FrameOff| f.joints;
     let surface = |f: &FrameOff| f.surface;
     Ok(FollowStudy {

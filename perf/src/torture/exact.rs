@@ -1,7 +1,7 @@
 //! A trial's cloth stepped by the oracle: exact implicit Euler steps in f64, as long as the engine's substeps.
 //!
-//! What does not come back here comes back by no solver of these substeps, whatever it costs; what does come back here and not by
-//! the engine is the engine's own error.
+//! What does not come back here does not come back by solving more exactly; what does come back here and not by the engine is the
+//! engine's own error.
 
 use glam::{DVec3, Vec3A};
 use toile_assets::garment::Garment;
