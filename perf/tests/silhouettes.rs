@@ -18,7 +18,8 @@ fn people_of_another_family_are_found_and_measured_by_their_silhouettes() {
     println!("{found:?}");
     assert_eq!((found.people, found.lost, found.measures.len()), (2, 0, 11));
     // Of two people: half as much again as over the many of docs/capture.md.
-    assert!(found.agreement > 0.90 && found.girths_mm < 38.0, "{found:?}");
+    // Without its left forearm, which is folded up at first, the woman alone covers .92.
+    assert!(found.agreement > 0.94 && found.girths_mm < 38.0 && found.same_height_mm < 38.0, "{found:?}");
     assert!(found.chi_square < 4.0, "{found:?}");
     let stature = &found.measures[0];
     assert!(stature.mean_absolute_mm < 20.0 && stature.sigma_mm > 0.0, "{stature:?}");

@@ -3,6 +3,7 @@
 use glam::{DVec3, Vec3};
 use image::RgbImage;
 use serde::Serialize;
+use toile_capture::depth_buffer::DepthBuffer;
 use toile_capture::flow::{FlowSettings, FlowTracker, Reference, Springs};
 use toile_capture::recover::{Recovered, VALUES, recover};
 use toile_capture::surface::Surface;
@@ -31,6 +32,10 @@ pub struct FlowRow {
     pub frames: usize,
     /// Mean, 95th percentile and largest distance of a vertex from where it was, over all frames (mm).
     pub error_mm: ErrorMm,
+    /// The same of the vertices that two cameras see in that frame, by the truth: what lies in a fold's hollow nobody can place.
+    pub seen_mm: ErrorMm,
+    /// Share of the vertices that are seen so.
+    pub seen: f64,
     /// Mean distance of each frame (mm).
     pub over_time_mm: Vec<f64>,
     /// Mean of the last ten frames over that of the first ten.
@@ -73,6 +78,46 @@ pub struct ErrorMm {
     pub p95: f64,
     /// Largest.
     pub max: f64,
+}
+
+impl ErrorMm {
+    /// Of distances (mm) in any order.
+    fn of(mut all: Vec<f64>) -> Self {
+        all.sort_by(f64::total_cmp);
+        let count = all.len();
+        let at = |k: usize| all.get(k).copied().unwrap_or(0.0);
+        Self { mean: mean(&all), p95: at(count * 95 / 100), max: at(count.saturating_sub(1)) }
+    }
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}
+
+/// Pixels of a depth buffer a pixel of a picture: a vertex is some twenty of those from the next.
+const SIGHT: f64 = 0.5;
+
+/// How far behind the nearest surface about it a vertex may lie and is seen (m): a surface at 60 degrees to the view recedes by so much in two
+/// pixels of the buffer.
+const BEHIND_M: f64 = 0.003;
+
+/// Cameras that have to see a vertex to place it.
+const SEEN_BY: usize = 2;
+
+/// Which vertices of the true cloth enough cameras see in a frame `[vertices]`.
+fn seen(cloth: &FilmedCloth, frame: usize) -> Vec<bool> {
+    let places = &cloth.frames[frame];
+    let mut cameras = vec![0; places.len()];
+    for camera in &cloth.cameras {
+        let mut buffer = DepthBuffer::new(camera.size, SIGHT);
+        buffer.draw(camera, places, &cloth.triangles);
+        for (place, cameras) in places.iter().zip(&mut cameras) {
+            let at = buffer.project(camera, *place);
+            let nearest = f64::from(buffer.nearest_around(at.truncate()));
+            *cameras += usize::from(nearest.is_finite() && at.z < nearest + BEHIND_M);
+        }
+    }
+    cameras.into_iter().map(|c| c >= SEEN_BY).collect()
 }
 
 /// What a row is run with.
@@ -149,29 +194,29 @@ pub fn run(case: &FlowCase, frames: usize, mut see: impl FnMut(FollowedMoment<'_
     let surface = Surface::new("the cloth", cloth.frames[0].clone(), Vec::new(), cloth.triangles.clone())?;
     let mut tracker = FlowTracker::new(surface, cloth.cameras.clone(), case.settings)?;
     tracker.start(&cloth.pictures(0, case.disturbed))?;
-    let (mut all, mut over_time) = (Vec::new(), Vec::new());
+    let (mut all, mut of_seen, mut over_time) = (Vec::new(), Vec::new(), Vec::new());
     let mut followed = vec![cloth.frames[0].clone()];
     let (mut residual, mut placed, mut iterations, mut seconds) = (0.0, 1.0_f64, 0, 0.0);
     for frame in 1..frames {
         let pictures = cloth.pictures(frame, case.disturbed);
         let outcome = tracker.step(&pictures)?;
         let off: Vec<f64> = cloth.frames[frame].iter().zip(tracker.positions()).map(|(a, b)| a.distance(*b)).collect();
-        over_time.push(off.iter().sum::<f64>() / off.len() as f64 * 1e3);
+        over_time.push(1e3 * mean(&off));
         see(FollowedMoment { frame, pictures: &pictures, found: tracker.positions(), off: &off, cloth: &cloth });
         if case.fabric {
             followed.push(tracker.positions().to_vec());
         }
         all.extend(off.iter().map(|d| d * 1e3));
+        of_seen.extend(off.iter().zip(seen(&cloth, frame)).filter(|(_, seen)| *seen).map(|(d, _)| d * 1e3));
         residual += outcome.residual / (frames - 1) as f64;
         placed = placed.min(outcome.placed);
         iterations += outcome.iterations;
         seconds += outcome.seconds;
     }
-    all.sort_by(f64::total_cmp);
-    let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len().max(1) as f64;
     let ten = over_time.len().min(10);
     let drift = mean(&over_time[over_time.len() - ten..]) / mean(&over_time[..ten]);
-    let error_mm = ErrorMm { mean: mean(&all), p95: all[all.len() * 95 / 100], max: all[all.len() - 1] };
+    let seen = of_seen.len() as f64 / all.len().max(1) as f64;
+    let (error_mm, seen_mm) = (ErrorMm::of(all), ErrorMm::of(of_seen));
     let seconds_per_iteration = seconds / iterations as f64;
     let fabric = if case.fabric { Some(fabric_of(&followed)?) } else { None };
     let found = fabric.is_none_or(|f| f.found.iter().zip(f.truth).all(|(v, t)| (v / t - 1.0).abs() <= FABRIC_GOAL));
@@ -181,6 +226,8 @@ pub fn run(case: &FlowCase, frames: usize, mut see: impl FnMut(FollowedMoment<'_
         cameras: case.cameras,
         frames,
         error_mm,
+        seen_mm,
+        seen,
         over_time_mm: over_time,
         drift,
         residual,

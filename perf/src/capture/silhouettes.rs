@@ -9,7 +9,8 @@ use std::path::PathBuf;
 use glam::{DMat3, DQuat, DVec3, Vec3};
 use serde::Serialize;
 use thiserror::Error;
-use toile_assets::body::Sex;
+use toile_assets::body::tape::girth;
+use toile_assets::body::{Levels, Sex};
 use toile_assets::numeric::random::SplitMix64;
 use toile_assets::numeric::statistics::quantile;
 use toile_capture::body::{SilhouetteBody, SilhouetteOptions, SilhouetteView, measure, overlay_png};
@@ -110,6 +111,9 @@ pub struct SilhouetteStudy {
     pub seconds: f64,
     /// Mean absolute error of the girths, of all together (mm).
     pub girths_mm: f64,
+    /// Mean absolute difference of the two surfaces' girths at chest, underbust, waist and hip, both taken at the heights at which the fit
+    /// has them (mm): what the surface errs, without where the tape is laid.
+    pub same_height_mm: f64,
     /// Mean of the squared error over the stated variance, all measures together.
     pub chi_square: f64,
     /// Measure by measure.
@@ -121,6 +125,8 @@ struct SilhouetteCase {
     truth: TapeMeasures,
     sex: Sex,
     found: Option<SilhouetteBody>,
+    /// Mean absolute difference of girths at the same heights (m), where a body was found.
+    same_height: f32,
     seconds: f64,
 }
 
@@ -187,7 +193,16 @@ fn seen(
     let seconds = begun.elapsed().as_secs_f64();
     let shown = found.as_ref().filter(|_| options.pictures);
     let picture = shown.and_then(|f| overlay_png(&views, &f.standing, &f.body.body.mesh.triangles).ok());
-    (SilhouetteCase { truth: person.truth, sex: person.sex, found, seconds }, picture)
+    let same_height = found.as_ref().map_or(0.0, |f| same_height(person, f));
+    (SilhouetteCase { truth: person.truth, sex: person.sex, found, same_height, seconds }, picture)
+}
+
+/// Mean absolute difference of girths of the trunk (m), both read where the found body has its levels.
+fn same_height(person: &StudyPerson, found: &SilhouetteBody) -> f32 {
+    let body = &found.body.body;
+    let Levels { chest, underbust, waist, hip, .. } = body.levels;
+    let heights = [chest, underbust, waist, hip];
+    heights.iter().map(|h| (girth(body, *h) - person.girth(*h)).abs()).sum::<f32>() / heights.len() as f32
 }
 
 /// Cameras all round, each as it is said to be and as it is.
@@ -282,6 +297,7 @@ fn summed(cases: &[SilhouetteCase], options: &SilhouetteStudyOptions) -> Silhoue
             let all: Vec<_> = measures.iter().filter(girths).collect();
             all.iter().map(|m| m.mean_absolute_mm).sum::<f64>() / all.len().max(1) as f64
         },
+        same_height_mm: found.iter().map(|(c, _)| 1e3 * f64::from(c.same_height)).sum::<f64>() / count,
         chi_square: measures.iter().map(|m| m.chi_square * m.people as f64).sum::<f64>() / people.max(1) as f64,
         measures,
     }

@@ -3,7 +3,7 @@
 use std::f32::consts::TAU;
 
 use glam::{Affine3A, Quat, Vec3};
-use toile_assets::body::{Body, Region, Sex};
+use toile_assets::body::{Body, Region, Sex, tape};
 use toile_assets::numeric::random::SplitMix64;
 use toile_assets::skeleton::{BONES, JOINTS, Joint, Pose};
 use toile_engine::body::{JointFrames, palette};
@@ -91,6 +91,11 @@ impl StudyPerson {
     /// Triangles of the surface.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.body.mesh.triangles
+    }
+
+    /// What the tape reads around the trunk at a height of the surface at rest (m).
+    pub fn girth(&self, height: f32) -> f32 {
+        tape::girth(&self.body, height)
     }
 
     /// The surface of the swaying person at one moment, feet on the floor (m) `[vertices]`.

@@ -17,7 +17,7 @@ use toile_track::fit::measuring::{MEASURES, covariance_of};
 use super::fit::{BodyFitter, COARSE, FINE};
 use super::hull::{HullShape, carve};
 use super::joint_point::JointPoint;
-use super::start::{start, with_forearms};
+use super::start::{ARM_JOINTS, other_forearm, start};
 use super::view::View;
 use crate::error::CaptureError;
 
@@ -250,20 +250,22 @@ impl SexFit {
     }
 }
 
-/// The fine stages, and once more where a forearm is found elsewhere.
+/// The fine stages, and once more for each forearm that may be elsewhere.
 fn fine(fitter: &mut BodyFitter, from: &FitState) -> (f64, FitState) {
     let state = fitter.steps(from, &FINE, false);
-    let agreement = fitter.agreement(&state);
+    let mut best = (fitter.agreement(&state), state);
     if !fitter.joints.is_empty() {
-        return (agreement, state);
+        return best;
     }
-    let other = with_forearms(fitter, state);
-    if other == state {
-        return (agreement, state);
+    for arm in ARM_JOINTS {
+        let Some(other) = other_forearm(fitter, &best.1, arm) else { continue };
+        let other = fitter.steps(&other, &[COARSE[1], FINE[0], FINE[1]], false);
+        let agreement = fitter.agreement(&other);
+        if agreement > best.0 {
+            best = (agreement, other);
+        }
     }
-    let other = fitter.steps(&other, &[COARSE[1], FINE[0], FINE[1]], false);
-    let again = fitter.agreement(&other);
-    if again > agreement { (again, other) } else { (agreement, state) }
+    best
 }
 
 fn together(parts: Vec<SexMeasures>, views: &[View], upright: DMat3, hull: &HullShape) -> SilhouetteBody {

@@ -101,30 +101,42 @@ pub(super) fn with_arms(fitter: &mut BodyFitter, state: FitState) -> FitState {
 const TWISTS: [f32; 8] = [0.0, 0.8, 1.6, 2.4, 3.2, -0.8, -1.6, -2.4];
 const BENDS: [f32; 4] = [0.04, 0.2, 0.45, 0.7];
 
-/// Each forearm where it covers the silhouettes best, about its upper arm as that is: a fit that has found the upper arm alone has the rest
-/// folded before or behind the trunk, where no outline calls it back.
-pub(super) fn with_forearms(fitter: &mut BodyFitter, state: FitState) -> FitState {
-    let mut best = (fitter.agreement(&state), state);
-    let joints = [
-        [Joint::LeftShoulder, Joint::LeftElbow, Joint::LeftWrist],
-        [Joint::RightShoulder, Joint::RightElbow, Joint::RightWrist],
-    ];
-    for [shoulder, elbow, wrist] in joints {
-        let from = best.1;
-        let rest = fitter.model.shapes.skeleton(&from.shape);
-        let along = (rest.at(elbow) - rest.at(shoulder)).normalize_or(Vec3::NEG_Y);
-        let hinge = fitter.model.joint_angles.iter().find(|t| t.joint == elbow).map(|t| (t.axis, t.range));
-        let Some((axis, [least, most])) = hinge else { continue };
-        for twist in TWISTS {
-            for bend in BENDS {
-                let mut tried = from;
-                let turned = from.local[shoulder.index()] * Quat::from_axis_angle(along, twist);
-                tried.local[shoulder.index()] = turned.normalize();
-                tried.local[elbow.index()] = Quat::from_axis_angle(axis, least + (most - least) * bend);
-                tried.local[wrist.index()] = Quat::IDENTITY;
+/// By how much less (share of what is covered) a forearm may agree that is worth a fit of its own: before it, upper arm and shape are
+/// still those of the other place.
+const WORTH_A_FIT: f64 = 0.01;
+
+/// From where a forearm lies elsewhere: cosine of half a radian.
+const ELSEWHERE: f32 = 0.88;
+
+/// Shoulder, elbow and wrist of both sides.
+pub(super) const ARM_JOINTS: [[Joint; 3]; 2] = [
+    [Joint::LeftShoulder, Joint::LeftElbow, Joint::LeftWrist],
+    [Joint::RightShoulder, Joint::RightElbow, Joint::RightWrist],
+];
+
+/// The place of one side's forearm, elsewhere about its upper arm as that is, that covers the silhouettes best, if that may be better
+/// than where it is: a fit that has found the upper arm alone has the rest folded before or behind the trunk, or onto the upper
+/// arm, where no outline calls it back.
+pub(super) fn other_forearm(fitter: &mut BodyFitter, state: &FitState, arm: [Joint; 3]) -> Option<FitState> {
+    let [shoulder, elbow, wrist] = arm;
+    let rest = fitter.model.shapes.skeleton(&state.shape);
+    let along = (rest.at(elbow) - rest.at(shoulder)).normalize_or(Vec3::NEG_Y);
+    let (axis, [least, most]) =
+        fitter.model.joint_angles.iter().find(|t| t.joint == elbow).map(|t| (t.axis, t.range))?;
+    let forearm = (rest.at(wrist) - rest.at(elbow)).normalize_or(along);
+    let points = |s: &FitState| s.local[shoulder.index()] * (s.local[elbow.index()] * forearm);
+    let mut best = (fitter.agreement(state) - WORTH_A_FIT, None);
+    for twist in TWISTS {
+        for bend in BENDS {
+            let mut tried = *state;
+            let turned = state.local[shoulder.index()] * Quat::from_axis_angle(along, twist);
+            tried.local[shoulder.index()] = turned.normalize();
+            tried.local[elbow.index()] = Quat::from_axis_angle(axis, least + (most - least) * bend);
+            tried.local[wrist.index()] = Quat::IDENTITY;
+            if points(&tried).dot(points(state)) < ELSEWHERE {
                 let agreement = fitter.agreement(&tried);
                 if agreement > best.0 {
-                    best = (agreement, tried);
+                    best = (agreement, Some(tried));
                 }
             }
         }

@@ -98,18 +98,21 @@ fn line(row: &FlowRow) -> String {
 fn table(rows: &[FlowRow]) -> String {
     let [mean, arm, drift, seconds] = GOALS;
     let mut text = String::from(
-        "| followed | cameras | mean, 95 %, largest (mm) | drift | placed, least | iterations a frame | ms an iteration | goal |\n\
-         |---|---|---|---|---|---|---|---|\n",
+        "| followed | cameras | mean, 95 %, largest (mm) | seen by two: share, mean, 95 % | drift | placed, least | iterations a frame | ms an iteration | goal |\n\
+         |---|---|---|---|---|---|---|---|---|\n",
     );
     for r in rows {
         let goal = r.met.map_or("", |met| if met { "met" } else { "**missed**" });
         text += &format!(
-            "| {} | {} | {:.3}, {:.3}, {:.2} | {:.2} | {:.0} % | {:.0} | {:.1} | {goal} |\n",
+            "| {} | {} | {:.3}, {:.3}, {:.2} | {:.0} %, {:.3}, {:.3} | {:.2} | {:.0} % | {:.0} | {:.1} | {goal} |\n",
             r.name,
             r.cameras,
             r.error_mm.mean,
             r.error_mm.p95,
             r.error_mm.max,
+            100.0 * r.seen,
+            r.seen_mm.mean,
+            r.seen_mm.p95,
             r.drift,
             100.0 * r.least_placed,
             r.iterations,

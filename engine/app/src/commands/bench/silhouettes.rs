@@ -72,36 +72,10 @@ pub fn run(args: &SilhouettesArgs) -> Result<(), AppError> {
     if let Some(frames) = args.frames {
         return follow(args, &surveys, &families, frames);
     }
-    let bar = args
-        .printing
-        .words()
-        .bar((families.len() * args.cameras.len() * surveys.len() * args.people) as u64, "measuring people");
-    let mut folder = args.pictures.as_deref().map(OutputFolder::prepare).transpose()?;
-    let mut drawn: Vec<(String, Vec<u8>)> = Vec::new();
-    let mut studies = Vec::new();
-    for makehuman in &families {
-        for &cameras in &args.cameras {
-            let family = if makehuman.is_some() { "makehuman" } else { "survey" };
-            let options = options(args, makehuman, cameras);
-            let mut count = 0;
-            let mut progress = |picture: Option<Vec<u8>>| {
-                bar.inc(1);
-                count += 1;
-                drawn.extend(picture.map(|png| (format!("{family}-{cameras}-{count}.png"), png)));
-            };
-            let found = study(&surveys, &options, &mut progress).map_err(refused)?;
-            studies.push(found);
-        }
-    }
-    bar.finish_and_clear();
-    if let Some(folder) = &mut folder {
-        for (name, png) in &drawn {
-            folder.write(name, png)?;
-        }
-    }
-    if let Some(folder) = folder {
-        folder.commit()?;
-    }
+    let people = |options: &SilhouetteStudyOptions, seen: &mut Seen<'_>| {
+        study(&surveys, options, &mut |png| seen(png.map(|png| (String::new(), png)).into_iter().collect()))
+    };
+    let studies = of_families(args, &families, surveys.len(), "measuring people", people)?;
     let missed: Vec<String> = studies
         .iter()
         .filter(|s| s.family == "makehuman" && s.girths_mm > GIRTH_MM)
@@ -119,6 +93,41 @@ pub fn run(args: &SilhouettesArgs) -> Result<(), AppError> {
         "girths of the other family miss {GIRTH_MM} mm: {}; docs/capture.md says why",
         missed.join(", ")
     )))
+}
+
+/// What is told of a person who was measured: pictures, each with the end of its name.
+type Seen<'a> = dyn FnMut(Vec<(String, Vec<u8>)>) + 'a;
+
+/// A study of each family by each number of cameras, with its pictures in the folder that was asked for.
+fn of_families<S>(
+    args: &SilhouettesArgs,
+    families: &[Option<PathBuf>],
+    sexes: usize,
+    words: &'static str,
+    mut take: impl FnMut(&SilhouetteStudyOptions, &mut Seen<'_>) -> Result<S, SilhouetteStudyError>,
+) -> Result<Vec<S>, AppError> {
+    let bar = args.printing.words().bar((families.len() * args.cameras.len() * sexes * args.people) as u64, words);
+    let folder = args.pictures.as_deref().map(OutputFolder::prepare).transpose()?;
+    let (mut drawn, mut studies) = (Vec::new(), Vec::new());
+    for makehuman in families {
+        for &cameras in &args.cameras {
+            let family = if makehuman.is_some() { "makehuman" } else { "survey" };
+            let mut count = 0;
+            let mut seen = |pictures: Vec<(String, Vec<u8>)>| {
+                bar.inc(1);
+                count += 1;
+                let name = |end: String| format!("{family}-{cameras}-{count}{end}.png");
+                drawn.extend(pictures.into_iter().map(|(end, png)| (name(end), png)));
+            };
+            studies.push(take(&options(args, makehuman, cameras), &mut seen).map_err(refused)?);
+        }
+    }
+    bar.finish_and_clear();
+    if let Some(mut folder) = folder {
+        drawn.iter().try_for_each(|(name, png)| folder.write(name, png).map(drop))?;
+        folder.commit()?;
+    }
+    Ok(studies)
 }
 
 /// What is studied of a family by so many cameras.
@@ -153,30 +162,11 @@ fn follow(
     families: &[Option<PathBuf>],
     frames: usize,
 ) -> Result<(), AppError> {
-    let people = families.len() * args.cameras.len() * surveys.len() * args.people;
-    let bar = args.printing.words().bar(people as u64, "following people");
-    let mut folder = args.pictures.as_deref().map(OutputFolder::prepare).transpose()?;
-    let mut drawn: Vec<(String, Vec<u8>)> = Vec::new();
-    let mut studies = Vec::new();
-    for makehuman in families {
-        for &cameras in &args.cameras {
-            let family = if makehuman.is_some() { "makehuman" } else { "survey" };
-            let mut count = 0;
-            let mut progress = |pictures: Vec<(usize, Vec<u8>)>| {
-                bar.inc(1);
-                count += 1;
-                let name = |frame: usize| format!("{family}-{cameras}-{count}-frame-{frame:03}.png");
-                drawn.extend(pictures.into_iter().map(|(frame, png)| (name(frame), png)));
-            };
-            let options = options(args, makehuman, cameras);
-            studies.push(follow_study(surveys, &options, frames, &mut progress).map_err(refused)?);
-        }
-    }
-    bar.finish_and_clear();
-    if let Some(mut folder) = folder.take() {
-        drawn.iter().try_for_each(|(name, png)| folder.write(name, png).map(drop))?;
-        folder.commit()?;
-    }
+    let people = |options: &SilhouetteStudyOptions, seen: &mut Seen<'_>| {
+        let numbered = |(frame, png): (usize, Vec<u8>)| (format!("-frame-{frame:03}"), png);
+        follow_study(surveys, options, frames, &mut |pictures| seen(pictures.into_iter().map(numbered).collect()))
+    };
+    let studies = of_families(args, families, surveys.len(), "following people", people)?;
     if args.printing.json {
         let document = FollowDocument { seed: args.seed, studies };
         return terminal::print_json(&Document::new("bench-silhouettes-followed", document));
@@ -201,8 +191,8 @@ fn table(studies: &[SilhouetteStudy]) -> String {
     let mut text = String::new();
     for s in studies {
         text += &format!(
-            "\n{}, {} cameras: {} people, {} lost, sex right for {:.0} %, overlap {:.3}, {:.1} s a person; girths {:.1} mm, chi square \
-             {:.2}\n\n| measure | bias | mean absolute | 95 % | stated sigma | chi square | within 1, 2 sigma | missing |\n\
+            "\n{}, {} cameras: {} people, {} lost, sex right for {:.0} %, overlap {:.3}, {:.1} s a person; girths {:.1} mm, of the trunk at the same \
+             heights {:.1} mm; chi square {:.2}\n\n| measure | bias | mean absolute | 95 % | stated sigma | chi square | within 1, 2 sigma | missing |\n\
              |---|---|---|---|---|---|---|---|\n",
             s.family,
             s.cameras,
@@ -212,6 +202,7 @@ fn table(studies: &[SilhouetteStudy]) -> String {
             s.agreement,
             s.seconds,
             s.girths_mm,
+            s.same_height_mm,
             s.chi_square
         );
         for m in s.measures.iter().filter(|m| m.people > 0) {
