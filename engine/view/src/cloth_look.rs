@@ -1,5 +1,8 @@
 //! How cloth shows beside its colour: its print, its seams and stitched hems, and how much is seen through it.
 
+use std::fmt::{self, Debug, Formatter};
+use std::sync::Arc;
+
 use glam::{Vec2, Vec3, Vec4};
 use toile_assets::fabric::Fabric;
 use toile_assets::garment::{Garment, Look};
@@ -25,35 +28,73 @@ pub(crate) const STITCH_DARK: f32 = 0.3;
 
 /// A picture with its coarser levels, each half as wide and as high, down to one texel: what is seen from afar is the mean of
 /// what is seen close by.
-#[derive(Debug, Clone, PartialEq)]
+///
+/// Copies share it.
+#[derive(Clone, PartialEq)]
 pub struct TileLevels {
+    shared: Arc<SharedLevels>,
+}
+
+/// The levels of a picture.
+#[derive(PartialEq)]
+struct SharedLevels {
     levels: Vec<Texture>,
+    /// Whether somebody can be known by it: then it is overwritten when the last copy goes.
+    of_somebody: bool,
+}
+
+impl Drop for SharedLevels {
+    fn drop(&mut self) {
+        if self.of_somebody {
+            self.levels.iter_mut().for_each(|level| level.texels.fill([0; 4]));
+            // Looked at, so that the writing is not left out as one that nobody sees.
+            std::hint::black_box(&self.levels);
+        }
+    }
+}
+
+impl Debug for TileLevels {
+    /// Its sizes, and nothing that it shows.
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let finest = &self.levels()[0];
+        write!(f, "TileLevels({} x {}, {} levels)", finest.width, finest.height, self.levels().len())
+    }
 }
 
 impl TileLevels {
     /// All levels of a picture.
     pub fn of(texture: &Texture) -> Self {
-        let mut levels = vec![texture.clone()];
+        Self::new(texture.clone(), false)
+    }
+
+    /// All levels of a picture by which somebody can be known: its memory is overwritten when the last copy goes.
+    pub fn of_somebody(texture: Texture) -> Self {
+        Self::new(texture, true)
+    }
+
+    fn new(texture: Texture, of_somebody: bool) -> Self {
+        let mut levels = vec![texture];
         while let Some(next) = coarser(&levels[levels.len() - 1]) {
             levels.push(next);
         }
-        Self { levels }
+        Self { shared: Arc::new(SharedLevels { levels, of_somebody }) }
     }
 
     /// The levels, the finest first.
     pub fn levels(&self) -> &[Texture] {
-        &self.levels
+        &self.shared.levels
     }
 
     /// Colour (linear RGB) and how much of the ground it covers at a texture point (v upwards), seen by a pixel so wide there
     /// (texture units).
     pub fn sample(&self, at: Vec2, pixel: f32) -> Vec4 {
-        let finest = &self.levels[0];
+        let levels = self.levels();
+        let finest = &levels[0];
         let texels = pixel * finest.width.max(finest.height) as f32;
-        let level = texels.max(1.0).log2().min((self.levels.len() - 1) as f32);
-        let near = bilinear(&self.levels[level as usize], at);
+        let level = texels.max(1.0).log2().min((levels.len() - 1) as f32);
+        let near = bilinear(&levels[level as usize], at);
         let part = level.fract();
-        if part == 0.0 { near } else { near.lerp(bilinear(&self.levels[level as usize + 1], at), part) }
+        if part == 0.0 { near } else { near.lerp(bilinear(&levels[level as usize + 1], at), part) }
     }
 }
 
