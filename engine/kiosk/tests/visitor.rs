@@ -363,7 +363,7 @@ fn source(session: &Arc<Session>, own: bool, clock: RealClock) -> VisitSource {
     let recording = concat!("recording:", env!("CARGO_MANIFEST_DIR"), "/../../assets/data/sessions/shopper.mcap");
     let webcam = WebcamOptions { own_picture: true, ..WebcamOptions::default() };
     let (name, options) = (recording.parse().unwrap(), CameraOptions::default());
-    let setup = CameraSetup { name, options, kept: GATHERED, zone: Zone::default(), webcam };
+    let setup = CameraSetup { name, options, kept: GATHERED, zone: Zone::default(), webcam, portraits: false };
     let StartedCamera { feed, handle, pictures, .. } = camera_start::start(setup, clock).unwrap();
     (Feed::Camera(feed), ShopperSource::Camera(handle), pictures)
 }

@@ -114,6 +114,7 @@ impl VisitModel {
             }
             Page::Picture if self.visit.snap_failed => add(&[TakePicture, Back]),
             Page::Picture => add(&[Back]),
+            Page::Face => self.face(&mut add),
             Page::OwnMeasures => {
                 (0..measure_entry::OwnMeasure::ALL.len()).for_each(|i| add(&[OwnMeasure(i)]));
                 add(&[Unit, Back]);
@@ -166,6 +167,9 @@ impl VisitModel {
         if self.own_picture.is_some() {
             add(&[OwnPicture]);
         }
+        if self.offers_face() {
+            add(&[Open(Page::Face)]);
+        }
         // Whoever sees themselves turns by turning.
         if !self.sees_themselves() {
             add(&[Turn(-1), Turn(1)]);
@@ -176,6 +180,18 @@ impl VisitModel {
             add(&[Open(Page::OwnMeasures)]);
         }
         add(&[Open(Page::Settings), Leave]);
+    }
+
+    /// While a picture is taken or put on there is nothing to press but the way back.
+    fn face(&self, add: &mut impl FnMut(&[Action])) {
+        let face = &self.visit.face;
+        if face.asked.is_none() && self.visit.dressing.is_none() {
+            add(&[Action::TakeFace]);
+            if face.on {
+                add(&[Action::RemoveFace, Action::Turn(-1), Action::Turn(1)]);
+            }
+        }
+        add(&[Action::Back]);
     }
 
     fn compare(&self, add: &mut impl FnMut(&[Action])) {

@@ -1,10 +1,11 @@
 //! Setup: the visitor's parts as the configuration of the kiosk has them.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 use super::controller::{VisitController, WindowChannels};
 use super::dressing_worker::DressingContext;
 use super::model::{VisitDefaults, VisitModel, VisitTimes};
+use super::own_face::FaceMaker;
 use super::reach::DisplayMount;
 use super::screen::Screen;
 use super::texts::{Language, Texts};
@@ -15,6 +16,7 @@ use crate::service::picture_config::OwnPictureUse;
 use crate::service::stock::{LeftOut, Stock};
 use crate::service::stock_watch::Hang;
 use toile_fitting::live::dresser::ShopperSource;
+use toile_pose::files;
 
 /// A minute (s).
 const MINUTE_S: f64 = 60.0;
@@ -60,7 +62,7 @@ impl VisitorSetup {
         let first = stock.first.clone();
         let (quality, appearance) = (config.wish().quality, display.appearance());
         let context = DressingContext::new(wardrobe.clone(), first, quality, facts, appearance);
-        let context = context.serving(config.picture.clone());
+        let context = context.serving(config.picture.clone()).making_faces(faces(config)?);
         let model = VisitModel::new(defaults, wardrobe, now_ns);
         Ok(Self { model, texts: Texts::load()?, mount, context, mark: display.mark_m, left_out })
     }
@@ -83,6 +85,19 @@ impl VisitorSetup {
             Ok(before.clone())
         })
     }
+}
+
+/// What makes heads of faces, where shoppers may have theirs taken and there is a camera.
+///
+/// # Errors
+/// The network's file is missing, or another one.
+fn faces(config: &Config) -> Result<Option<Arc<Mutex<FaceMaker>>>, KioskError> {
+    let has_camera = config.sensor.camera().map_err(KioskError::input)?.is_some();
+    if !config.display.face || !has_camera {
+        return Ok(None);
+    }
+    let maker = FaceMaker::load(&files::folder()).map_err(|why| KioskError::Device(why.to_string()))?;
+    Ok(Some(Arc::new(Mutex::new(maker))))
 }
 
 #[cfg(test)]
