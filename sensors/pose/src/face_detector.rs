@@ -41,7 +41,7 @@ impl FaceDetector {
         Ok(Self { network, boxes })
     }
 
-    /// The square around the largest face in an upright square of a picture.
+    /// The square around the largest face in an upright square of a picture, however small.
     pub fn find(&mut self, picture: &ColourImage, square: &Region) -> Option<Region> {
         square.sample(picture, Border::Black, [2.0, -1.0], self.network.input(), SIDE);
         self.network.run();
@@ -50,7 +50,7 @@ impl FaceDetector {
         while let Some(found) = self.boxes.next() {
             let [middle, right, left] = [0, 2, 3].map(|pair| square.pixel(found.pair(pair)));
             let region = Region::of_eyes(middle, found.pair(1) * square.side, [right, left], AROUND);
-            if region.is_within(picture.width, picture.height) && largest.is_none_or(|l| l.side < region.side) {
+            if region.side.is_finite() && largest.is_none_or(|l| l.side < region.side) {
                 largest = Some(region);
             }
         }

@@ -12,9 +12,10 @@ use crate::region::Region;
 use crate::tflite::NetworkFault;
 use crate::tracker;
 
-/// Where the two networks lie in their file (bytes): it packs what the package's program loads.
-const MESH: std::ops::Range<usize> = 2_495_952..3_737_848;
-const DETECTOR: std::ops::Range<usize> = 3_757_224..3_986_256;
+/// Where the mesh lies in the networks' file (bytes), which packs what the package's program loads.
+pub const MESH: std::ops::Range<usize> = 2_495_952..3_737_848;
+/// Where the detector lies in it (bytes).
+pub const DETECTOR: std::ops::Range<usize> = 3_757_224..3_986_256;
 
 /// Least presence of a face (MediaPipe's `min_tracking_confidence`).
 const LEAST_PRESENCE: f32 = 0.5;
@@ -25,9 +26,9 @@ pub const FEWEST_PIXELS: f32 = 48.0;
 /// Rounds of the mesh: the detector's square is a rough one, and each of the next is laid around the points of the one before.
 const ROUNDS: usize = 3;
 
-/// How far off the middle between the temples the bridge of the nose may lie, in shares of the way between them: half is a profile, and
-/// beyond this the farther cheek is hidden.
-const TURNED: f32 = 0.3;
+/// How far off the middle between the temples the bridge of the nose may lie, in shares of the way between them: it lies so far off where a head is
+/// turned by some 33 degrees, beyond which the farther cheek is hardly seen.
+const TURNED: f32 = 0.42;
 
 /// Points of the mesh: temples, the wearer's right one first, and the bridge of the nose.
 const TEMPLES: [usize; 2] = [127, 356];
@@ -83,12 +84,15 @@ impl FaceFinder {
         let mut region = found.ok_or(FaceFault::Unseen)?;
         let mut seen: Option<MeshPoints> = None;
         for _ in 0..ROUNDS {
+            if !region.is_within(picture.width, picture.height) {
+                return Err(if region.side < FEWEST_PIXELS { FaceFault::TooFar } else { FaceFault::Unseen });
+            }
             let next = self.mesh.find(picture, &region).filter(|mesh| mesh.presence >= LEAST_PRESENCE);
-            let next = next.filter(|mesh| mesh.region().is_within(picture.width, picture.height));
-            if let Some(mut before) = seen.replace(next.ok_or(FaceFault::Unseen)?) {
+            let next = next.ok_or(FaceFault::Unseen)?;
+            region = next.region();
+            if let Some(mut before) = seen.replace(next) {
                 before.wipe();
             }
-            region = seen.as_ref().map_or(region, MeshPoints::region);
         }
         let seen = seen.ok_or(FaceFault::Unseen)?;
         judge(&seen).map(|()| seen)

@@ -1,7 +1,7 @@
 //! The points of a face within a region of a picture: MediaPipe's face mesh.
 
-use glam::Vec2;
-use toile_sensors::face_points::MESH_POINTS;
+use glam::{DVec2, Vec2};
+use toile_sensors::face_points::{self, FACE_POINTS, MESH_POINTS};
 use toile_sensors::source::live::ColourImage;
 
 use crate::network::{Network, logistic};
@@ -16,6 +16,17 @@ const EYES: [usize; 2] = [33, 263];
 
 /// Share of the longer side of the points' box that the next square has (MediaPipe's `face_landmarks_to_roi`).
 const AROUND: f32 = 1.5;
+
+/// Standard deviation of a point, in shares of the face's longer side: twice what points are off their true places on drawn faces
+/// (docs/capture.md), since neighbours are off the same way.
+const SIGMA: f32 = 0.03;
+
+/// Sides of the jaw among the 68 points, which are not taken over: there the mesh is a guess wherever hair covers them, and off by three times as
+/// much as elsewhere. The chin is.
+const JAW_SIDES: [std::ops::Range<usize>; 2] = [0..7, 10..17];
+
+/// Least standard deviation of a point (px): no network's points are surer.
+const LEAST_SIGMA_PX: f32 = 0.5;
 
 /// What the network says of a region.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,6 +43,18 @@ impl MeshPoints {
         let low = self.points.iter().copied().fold(Vec2::INFINITY, Vec2::min);
         let high = self.points.iter().copied().fold(Vec2::NEG_INFINITY, Vec2::max);
         ((low + high) * 0.5, high - low)
+    }
+
+    /// The 68 points of a marked photograph (px, whole numbers at the middles of pixels), without the sides of the jaw.
+    pub fn marked(&self) -> [Option<DVec2>; FACE_POINTS] {
+        let mut all = face_points::of_mesh(&self.points).map(|p| Some(p.as_dvec2() - 0.5));
+        JAW_SIDES.into_iter().flatten().for_each(|k| all[k] = None);
+        all
+    }
+
+    /// Standard deviation of a point (px).
+    pub fn sigma_px(&self) -> f64 {
+        f64::from((SIGMA * self.bounds().1.max_element()).max(LEAST_SIGMA_PX))
     }
 
     /// The square in which the same face is seen best.

@@ -8,7 +8,7 @@ use std::hint::black_box;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use glam::{DMat3, DVec2, DVec3, Vec2, Vec3};
+use glam::{DMat3, DVec3, Vec2, Vec3};
 use image::RgbImage;
 use toile_assets::body::Sex;
 use toile_assets::numeric::statistics::median_of;
@@ -18,15 +18,8 @@ use toile_pose::face_mesh::MeshPoints;
 use toile_pose::files::PoseError;
 use toile_sensors::calibration::{CalibratedCamera, CameraParameters};
 use toile_sensors::colour_camera::ColourCamera;
-use toile_sensors::face_points;
 use toile_sensors::source::live::ColourImage;
 use toile_view::figure::{OwnHead, OwnHeadPicture};
-
-/// Standard deviation of a point that the network found, in shares of the face's height: what it is off the true place on drawn faces.
-const SIGMA: f32 = 0.015;
-
-/// Least standard deviation of a point (px): no network's points are surer.
-const LEAST_SIGMA_PX: f32 = 0.5;
 
 /// Points of the mesh: the top of the forehead, and the chin.
 const TOP: usize = 10;
@@ -163,13 +156,11 @@ fn heads(portrait: &Portrait, points: &MeshPoints, sexes: &[Sex]) -> Option<Vec<
 
 /// The picture with its camera and the 68 points.
 fn view(portrait: &Portrait, points: &MeshPoints) -> Option<FaceView> {
-    let (_, size) = points.bounds();
-    let pixel = |p: Vec2| Some(DVec2::new(f64::from(p.x), f64::from(p.y)) - 0.5);
     Some(FaceView {
         camera: camera(portrait)?,
-        points: face_points::of_mesh(&points.points).map(pixel),
+        points: points.marked(),
         outlines: Vec::new(),
-        sigma_px: f64::from((SIGMA * size.max_element()).max(LEAST_SIGMA_PX)),
+        sigma_px: points.sigma_px(),
     })
 }
 
