@@ -176,7 +176,7 @@ impl VisitModel {
         }
         let held = self.visit.picture.code().is_some();
         add(&[if held { Open(Page::Picture) } else { TakePicture }]);
-        if self.wants_tape() {
+        if self.wants_tape() && !self.is_crowded() {
             add(&[Open(Page::OwnMeasures)]);
         }
         add(&[Open(Page::Settings), Leave]);

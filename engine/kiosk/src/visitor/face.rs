@@ -11,6 +11,12 @@ impl VisitModel {
         self.face_offered && !self.sees_themselves()
     }
 
+    /// Whether the fitting page offers both the shopper's own picture and their face: then measures by tape are left to the settings, for which
+    /// there is room.
+    pub(super) fn is_crowded(&self) -> bool {
+        self.offers_face() && self.own_picture.is_some()
+    }
+
     /// Opens the page, which no longer says what went wrong before.
     pub(super) fn open_face(&mut self) {
         self.visit.face.trouble = None;

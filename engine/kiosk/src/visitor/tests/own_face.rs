@@ -115,7 +115,7 @@ fn a_face_goes_with_who_leaves_and_where_somebody_else_looks() {
     assert!(play.effects.contains(&Effect::Forget) && play.model.visit.face == Default::default());
     let mut play = on();
     play.see(None);
-    play.wait(8_000);
+    play.wait(20_000);
     assert!(play.effects.contains(&Effect::Forget) && play.model.visit.face == Default::default());
     let mut play = on();
     play.see(Some(2));
