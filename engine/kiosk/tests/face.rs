@@ -39,7 +39,7 @@ fn network() -> Option<PathBuf> {
     }
 }
 
-const SHOT: Shot = Shot { distance: 1.2, yaw: 0.0, height: 0.02, size: Size::new(640, 800), fov_y: 0.42 };
+const SHOT: Shot = Shot { below: 0.0, distance: 1.2, yaw: 0.0, height: 0.02, size: Size::new(640, 800), fov_y: 0.42 };
 
 fn keep(name: &str, picture: &ColourImage) {
     if let Some(folder) = env::var_os("TOILE_KEEP_FACES") {

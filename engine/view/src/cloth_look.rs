@@ -43,12 +43,18 @@ struct SharedLevels {
     of_somebody: bool,
 }
 
+impl SharedLevels {
+    fn overwrite(&mut self) {
+        self.levels.iter_mut().for_each(|level| level.texels.fill([0; 4]));
+        // Looked at, so that the writing is not left out as one that nobody sees.
+        std::hint::black_box(&self.levels);
+    }
+}
+
 impl Drop for SharedLevels {
     fn drop(&mut self) {
         if self.of_somebody {
-            self.levels.iter_mut().for_each(|level| level.texels.fill([0; 4]));
-            // Looked at, so that the writing is not left out as one that nobody sees.
-            std::hint::black_box(&self.levels);
+            self.overwrite();
         }
     }
 }
@@ -307,6 +313,16 @@ mod tests {
         // In the middle of a texel it is that texel, on every repetition; the first row is the uppermost.
         let texel = |x: f32, y: f32| tile.sample(Vec2::new((x + 0.5) / 16.0, 1.0 - (y + 0.5) / 16.0), 0.0);
         assert_eq!((texel(0.0, 0.0).w, texel(1.0, 0.0).w, texel(17.0, 16.0).w), (1.0, 0.0, 0.0));
+    }
+
+    #[test]
+    fn a_picture_of_somebody_is_overwritten_on_every_level_and_in_no_debug_text() {
+        let TileLevels { shared } = TileLevels::of_somebody(checks(16));
+        assert_eq!(format!("{:?}", TileLevels { shared: shared.clone() }), "TileLevels(16 x 16, 5 levels)");
+        assert!(shared.of_somebody && !TileLevels::of(&checks(2)).shared.of_somebody);
+        let mut levels = Arc::into_inner(shared).expect("copies share one, and the other is gone");
+        levels.overwrite();
+        assert!(levels.levels.iter().flat_map(|level| &level.texels).all(|texel| *texel == [0; 4]));
     }
 
     #[test]

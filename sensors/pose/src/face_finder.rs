@@ -63,7 +63,7 @@ impl FaceFinder {
     pub fn load(folder: &Path) -> Result<Self, PoseError> {
         let bytes = PoseFile::Face.read(folder)?;
         let part = |range: std::ops::Range<usize>| bytes.get(range).unwrap_or_default();
-        let unfit = |fault: NetworkFault| PoseFile::Face.another(folder, fault);
+        let unfit = |fault: NetworkFault| PoseFile::Face.another(folder, fault.to_string());
         Ok(Self {
             detector: FaceDetector::load(part(DETECTOR)).map_err(unfit)?,
             mesh: FaceMesh::load(part(MESH)).map_err(unfit)?,

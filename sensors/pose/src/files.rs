@@ -123,8 +123,8 @@ impl PoseFile {
     }
 
     /// That the file of a folder is another one: in what it differs.
-    pub fn another(self, folder: &Path, what: impl ToString) -> PoseError {
-        PoseError::Another { path: folder.join(self.file_name()), what: what.to_string(), file: self }
+    pub fn another(self, folder: &Path, what: String) -> PoseError {
+        PoseError::Another { path: folder.join(self.file_name()), what, file: self }
     }
 
     /// Its bytes, from a folder.

@@ -38,9 +38,11 @@ pub struct PaintedHead {
     hair: HairMesh,
 }
 
-/// How a picture is taken: from how far (m), from how far to their left and from how high (rad, m), with how many pixels a side.
+/// How a picture is taken: of what so far below the middle of the head (m), from how far (m), from how far to their left and from how high over
+/// it (rad, m), with how many pixels a side.
 #[derive(Debug, Clone, Copy)]
 pub struct Shot {
+    pub below: f32,
     pub distance: f32,
     pub yaw: f32,
     pub height: f32,
@@ -76,8 +78,8 @@ impl PaintedHead {
     }
 
     fn camera(&self, shot: &Shot) -> Camera {
-        let target = middle(Shapes::of(self.sex).base()).as_vec3();
-        let Shot { distance, yaw, height, fov_y, .. } = *shot;
+        let Shot { below, distance, yaw, height, fov_y, .. } = *shot;
+        let target = middle(Shapes::of(self.sex).base()).as_vec3() - Vec3::Y * below;
         Camera { target, yaw, height, distance, fov_y }
     }
 
@@ -124,7 +126,7 @@ impl PaintedHead {
                 look: None,
             },
         ];
-        let scene = TracedScene::build(Scene { surfaces: &surfaces, floor: false });
+        let scene = TracedScene::build(Scene { surfaces: &surfaces, floor: shot.below > 0.5 });
         let image = scene.render(&self.camera(shot), shot.size, TraceQuality::Motion);
         let rgb = image.bytes().to_vec();
         let picture = ColourImage { width: shot.size.width, height: shot.size.height, rgb };

@@ -61,6 +61,13 @@ impl Debug for OwnHead {
 
 impl Drop for OwnHead {
     fn drop(&mut self) {
+        self.overwrite();
+    }
+}
+
+impl OwnHead {
+    /// Its picture overwrites itself.
+    fn overwrite(&mut self) {
         self.moved.fill(Vec3::ZERO);
         (self.skin, self.hair) = ([0; 3], [0; 3]);
         // Looked at, so that the writing is not left out as one that nobody sees.
@@ -199,4 +206,83 @@ fn sample(picture: &OwnHeadPicture<'_>, at: Vec2) -> [u8; 3] {
         let lower = texel(low.x, next.y, k) * (1.0 - part.x) + texel(next.x, next.y, k) * part.x;
         (upper * (1.0 - part.y) + lower * part.y).round() as u8
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use toile_assets::body::Measures;
+
+    use super::super::{Appearance, Figure, Hair};
+    use super::*;
+
+    /// The drawn head of a sex, larger by a tenth to the sides, with a picture of one colour.
+    fn wide(sex: Sex, rgb: [u8; 3]) -> OwnHead {
+        let base = Shapes::of(sex).base();
+        let widened = |(p, region): (&Vec3, &Region)| match region {
+            Region::Head => Vec3::new(1.1 * p.x, p.y, p.z),
+            _ => *p,
+        };
+        let rest: Vec<Vec3> = base.positions.iter().zip(&base.regions).map(widened).collect();
+        let picture: Vec<u8> = (0..64 * 64).flat_map(|_| rgb).collect();
+        OwnHead::new(sex, &rest, OwnHeadPicture { side: 64, rgb: &picture, skin: rgb, hair: [20, 30, 40] }).unwrap()
+    }
+
+    #[test]
+    fn a_head_comes_to_the_size_of_the_bodys_and_leaves_the_body_as_it_is() {
+        for sex in Sex::ALL {
+            let mut measures = Measures::average(sex);
+            measures.stature *= 1.1;
+            let body = Body::build(sex, &measures).unwrap();
+            let own = wide(sex, [200, 150, 120]);
+            let figure = Figure::with_head(&body, Appearance::default(), Some(&own));
+            assert_eq!(figure.colour, own.skin());
+            for (v, p) in body.mesh.positions.iter().enumerate() {
+                let at = figure.rest[v];
+                let expected = if body.regions[v] == Region::Head { Vec3::new(1.1 * p.x, p.y, p.z) } else { *p };
+                assert!(at.distance(expected) < 1e-4, "{sex:?} {v}: {at} and not {expected}");
+            }
+            // The face has its picture, the body the base layer, and the hair its colour.
+            let tile = figure.look.tile.as_ref().unwrap();
+            let seen = |t: usize| tile.sample(figure.look.corners[t].iter().sum::<Vec2>() / 3.0, 0.0);
+            let head = |t: &usize| body.mesh.triangles[*t].iter().all(|v| body.regions[*v as usize] == Region::Head);
+            let face = (0..body.mesh.triangles.len()).find(head).unwrap();
+            assert!((seen(face).truncate() - own.skin()).length() < 0.02 && seen(face).w > 0.99);
+            let arm = (0..body.mesh.triangles.len())
+                .find(|t| body.mesh.triangles[*t].iter().all(|v| body.regions[*v as usize] == Region::LeftArm));
+            assert!(seen(arm.unwrap()).w < 0.01, "nothing is painted on an arm");
+            let hair = seen(figure.triangles.len() - 1).truncate();
+            let dark = Vec3::from_array([20_u8, 30, 40].map(|b| linear(f32::from(b) / 255.0)));
+            assert!((hair - dark).length() < 0.01, "{hair}");
+            assert!(figure.rest.len() > body.mesh.positions.len(), "it has hair where mannequins have none");
+            let bun = Figure::with_head(&body, Appearance { hair: Hair::Bun, ..Appearance::default() }, Some(&own));
+            assert_ne!(bun.rest.len(), figure.rest.len(), "and the shop's cut where they have some");
+        }
+    }
+
+    #[test]
+    fn a_head_of_another_drawing_is_not_put_on() {
+        let body = Body::build(Sex::Male, &Measures::average(Sex::Male)).unwrap();
+        let plain = Figure::of(&body, Appearance::default());
+        let own = wide(Sex::Female, [200, 150, 120]);
+        for head in [None, Some(&own)] {
+            assert_eq!(Figure::with_head(&body, Appearance::default(), head).rest, plain.rest);
+        }
+        assert!(
+            OwnHead::new(
+                Sex::Female,
+                &body.mesh.positions[1..],
+                OwnHeadPicture { side: 0, rgb: &[], skin: [0; 3], hair: [0; 3] }
+            )
+            .is_none()
+        );
+    }
+
+    #[test]
+    fn a_head_is_overwritten_and_in_no_debug_text() {
+        let mut own = wide(Sex::Female, [200, 150, 120]);
+        assert!(own.moved.iter().any(|way| *way != Vec3::ZERO));
+        assert_eq!(format!("{own:?}"), "OwnHead");
+        own.overwrite();
+        assert!(own.moved.iter().all(|way| *way == Vec3::ZERO) && own.skin == [0; 3]);
+    }
 }
