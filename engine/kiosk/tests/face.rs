@@ -151,6 +151,12 @@ fn a_portrait_becomes_a_head_or_a_word() {
     let made = maker.make(&near, &[Sex::Female]).unwrap();
     println!("a head of a picture in {:.0} ms", begun.elapsed().as_secs_f64() * 1e3);
     assert!(made.len() == 1 && made[0].sex() == Sex::Female);
+    // Somebody who stands before a webcam that sees all of them.
+    let whole = Shot { below: 0.7, distance: 2.3, height: 0.35, size: Size::new(720, 1280), fov_y: 0.84, ..SHOT };
+    let mut standing = portrait(&whole);
+    keep("standing", &standing.picture);
+    standing.head = Some((Vec2::new(360.0, 290.0), 400.0));
+    assert_eq!(maker.make(&standing, &[Sex::Female]).map(|heads| heads.len()), Ok(1));
     let trouble = |maker: &mut FaceMaker, portrait: &Portrait| maker.make(portrait, &[Sex::Female]).unwrap_err();
     let side = portrait(&Shot { yaw: 1.3, ..SHOT });
     let word = trouble(&mut maker, &side);

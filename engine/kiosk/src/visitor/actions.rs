@@ -188,7 +188,7 @@ impl VisitModel {
         if face.asked.is_none() && self.visit.dressing.is_none() {
             add(&[Action::TakeFace]);
             if face.on {
-                add(&[Action::RemoveFace, Action::Turn(-1), Action::Turn(1)]);
+                add(&[Action::RemoveFace]);
             }
         }
         add(&[Action::Back]);

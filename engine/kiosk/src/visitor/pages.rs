@@ -301,7 +301,6 @@ impl PageWriter<'_> {
             | (Page::Fitting, Action::Open(Page::Garments))
             | (Page::Compare, Action::Wear)
             | (Page::Picture, Action::DeletePicture | Action::TakePicture)
-            | (Page::Face, Action::TakeFace)
             | (Page::MeasureEntry, Action::Accept)
             | (Page::Second | Page::Leaving, Action::Stay) => {
                 if page == Page::Unmeasured && self.is_partly() {
@@ -310,6 +309,7 @@ impl PageWriter<'_> {
                     ControlStyle::Primary
                 }
             }
+            (Page::Face, Action::TakeFace) if !self.model.visit.face.on => ControlStyle::Primary,
             (_, Action::Digit(_) | Action::Point | Action::DeleteDigit) => ControlStyle::Key,
             (Page::Unmeasured, Action::Back) if self.is_partly() => ControlStyle::Primary,
             (_, Action::Back | Action::Leave | Action::Open(Page::Settings) | Action::LargeType | Action::Unit) => {
