@@ -25,8 +25,8 @@ pub mod smoothing;
 pub mod scale;
 pub mod sides;
 
-pub mod face_finder;
 pub mod tracker;
 
+pub mod face_finder;
 pub mod joints;
 pub mod picture_fit;
