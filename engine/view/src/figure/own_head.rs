@@ -239,7 +239,8 @@ mod tests {
             for (v, p) in body.mesh.positions.iter().enumerate() {
                 let at = figure.rest[v];
                 let expected = if body.regions[v] == Region::Head { Vec3::new(1.1 * p.x, p.y, p.z) } else { *p };
-                assert!(at.distance(expected) < 1e-4, "{sex:?} {v}: {at} and not {expected}");
+                // The drawn head is that of the mean body, whose sides are not quite in this one's proportion.
+                assert!(at.distance(expected) < 1e-3, "{sex:?} {v}: {at} and not {expected}");
             }
             // The face has its picture, the body the base layer, and the hair its colour.
             let tile = figure.look.tile.as_ref().unwrap();
