@@ -122,13 +122,6 @@ pub struct PictureReceiver {
     switch: PictureSwitch,
 }
 
-/// A channel of pictures, switched off. Called at load: it allocates; the first pictures of a size allocate once more.
-pub fn channel() -> (PictureSender, PictureReceiver, PictureSwitch) {
-    let mut sender = PictureSender::default();
-    let (receiver, switch) = sender.also();
-    (sender, receiver, switch)
-}
-
 impl PictureOutlet {
     fn new(switches: Vec<PictureSwitch>, switch: PictureSwitch) -> (Self, PictureReceiver) {
         let TripleBuffer { writer, reader } = TripleBuffer::new(&SeenPicture::default());
@@ -148,7 +141,8 @@ impl PictureOutlet {
 }
 
 impl PictureSender {
-    /// One more who looks at pictures, at times of their own; switched off. Called at load: it allocates.
+    /// One more who looks at pictures, at times of their own; switched off. Called at load: it allocates, and the first pictures of a size allocate
+    /// once more.
     pub fn also(&mut self) -> (PictureReceiver, PictureSwitch) {
         let switch = PictureSwitch::default();
         let (outlet, receiver) = PictureOutlet::new(vec![switch.clone()], switch.clone());
@@ -219,6 +213,13 @@ impl PictureReceiver {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A channel of pictures, switched off.
+    fn channel() -> (PictureSender, PictureReceiver, PictureSwitch) {
+        let mut sender = PictureSender::default();
+        let (receiver, switch) = sender.also();
+        (sender, receiver, switch)
+    }
 
     fn picture(seen: &mut SeenPicture) {
         seen.picture = ColourImage { width: 2, height: 1, rgb: vec![9; 6] };
