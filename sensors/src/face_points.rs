@@ -22,6 +22,9 @@ use crate::limits::MAX_CAMERAS;
 /// Points of a face.
 pub const FACE_POINTS: usize = 68;
 
+/// Points of MediaPipe's face mesh.
+pub const MESH_POINTS: usize = 468;
+
 /// Fewest points of a photograph: a pose has six numbers.
 const FEWEST: usize = 8;
 
@@ -31,6 +34,14 @@ const OF_MESH: [usize; FACE_POINTS] = [
     334, 293, 301, 168, 197, 5, 4, 75, 97, 2, 326, 305, 33, 160, 158, 133, 153, 144, 362, 385, 387, 263, 373, 380, 61,
     39, 37, 0, 267, 269, 291, 405, 314, 17, 84, 181, 78, 82, 13, 312, 308, 317, 14, 87,
 ];
+
+/// The 68 points among all those of MediaPipe's face mesh.
+///
+/// # Panics
+/// Where there are fewer than [`MESH_POINTS`].
+pub fn of_mesh<T: Copy>(mesh: &[T]) -> [T; FACE_POINTS] {
+    OF_MESH.map(|k| mesh[k])
+}
 
 /// Most frames of a sequence: five minutes at 30 Hz.
 const MAX_FRAMES: usize = 9_000;

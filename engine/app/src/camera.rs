@@ -79,7 +79,7 @@ pub fn watch(
     clock: RealClock,
 ) -> Result<StartedCamera, AppError> {
     let (name, options, webcam) = (name.clone(), mount.options(wanted.colour), mount.webcam(sex, wanted.own_picture));
-    let setup = CameraSetup { name, options, kept: 0, zone: Zone::default(), webcam };
+    let setup = CameraSetup { name, options, kept: 0, zone: Zone::default(), webcam, portraits: false };
     camera_start::start(setup, clock).map_err(|why| match why {
         CameraStartError::Camera(why) => error(&why),
         CameraStartError::Network(why) => AppError::Device(why.to_string()),

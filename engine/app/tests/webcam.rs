@@ -13,7 +13,7 @@ use image::imageops::{self, FilterType};
 use image::{Rgb, RgbImage};
 use serde_json::Value;
 use toile_assets::numeric::random::SplitMix64;
-use toile_pose::files;
+use toile_pose::files::{self, NetworkPackage};
 
 /// Runs a command with the network of a folder.
 fn run(scratch: &Scratch, network: &Path, args: &[&str]) -> Output {
@@ -61,8 +61,26 @@ fn without_the_network_a_webcam_is_refused_with_the_command_that_fetches_it() {
     }
     let doctor = run(&scratch, scratch.path(), &["doctor", "--json"]);
     let doctor: Value = serde_json::from_slice(&doctor.stdout).unwrap();
-    let check = doctor["checks"].as_array().unwrap().iter().find(|c| c["name"] == "pose network").unwrap();
-    assert_eq!(check["cure"], format!("`{}`", files::FETCH), "{check}");
+    for package in NetworkPackage::ALL {
+        let check = doctor["checks"].as_array().unwrap().iter().find(|c| c["name"] == package.name()).unwrap();
+        assert_eq!(check["cure"], format!("`{}`", package.fetch()), "{check}");
+    }
+}
+
+#[test]
+fn without_its_network_a_face_is_refused_with_the_command_that_fetches_it() {
+    let scratch = Scratch::new("face-refused");
+    image::RgbImage::new(64, 64).save(scratch.path().join("a.png")).unwrap();
+    let refused = run(&scratch, scratch.path(), &["capture", "face", "a.png"]);
+    let words = String::from_utf8_lossy(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(5), "{words}");
+    assert!(words.contains(files::FETCH_FACE) && words.lines().count() == 1, "{words}");
+    if NetworkPackage::Face.check(&files::folder()).is_ok() {
+        let refused = run(&scratch, &files::folder(), &["capture", "face", "a.png"]);
+        let words = String::from_utf8_lossy(&refused.stderr);
+        assert_eq!(refused.status.code(), Some(4), "{words}");
+        assert!(words.contains("a.png: no face is seen; give one of a face from before"), "{words}");
+    }
 }
 
 #[test]

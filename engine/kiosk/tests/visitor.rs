@@ -9,10 +9,12 @@ use std::io::{self, Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::{AtomicBool, AtomicU64};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use toile_assets::body::Sex;
+use toile_assets::body::shape::Shapes;
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::frame::Snapshot;
 use toile_engine::frame_loop::physics_thread::FrameScene;
@@ -35,14 +37,16 @@ use toile_kiosk::service::runner::{Service, ServiceEnvironment, ServiceOptions};
 use toile_kiosk::service::service_manager::{ServiceManager, ServiceStatus, StopSignal};
 use toile_kiosk::service::session::SessionState;
 use toile_kiosk::service::stock::Stock;
-use toile_kiosk::visitor::controller::{OutfitPair, WindowChannels};
+use toile_kiosk::visitor::controller::{OutfitPair, VisitController, WindowChannels};
 use toile_kiosk::visitor::model::Input;
+use toile_kiosk::visitor::own_face::WornFace;
 use toile_kiosk::visitor::plain;
 use toile_kiosk::visitor::screen::{Action, Block, BodyView, Page, Screen};
 use toile_kiosk::visitor::setup::VisitorSetup;
 use toile_sensors::segment::Zone;
 use toile_sensors::source::Session;
 use toile_sensors::source::live::CameraOptions;
+use toile_view::figure::{OwnHead, OwnHeadPicture};
 use toile_view::image::Size;
 use toile_view::own_picture::{OwnPicture, OwnPictureInput, OwnPictureModel, OwnPictureOptions};
 
@@ -276,8 +280,10 @@ fn who_sees_themselves_is_neither_stored_nor_sent() {
                 thread::sleep(Duration::from_millis(2));
             }
         });
+        let face = Arc::downgrade(&wear_a_face());
         serve_with("", true, |finger| {
             finger.page(Page::Fitting);
+            assert!(WORN.of(Sex::Female).is_some());
             finger.press(Action::OwnPicture);
             finger.wait("themselves", |s| matches!(s.body_view, BodyView::Shopper { own_picture: true, .. }));
             let begun = Instant::now();
@@ -295,12 +301,25 @@ fn who_sees_themselves_is_neither_stored_nor_sent() {
                 assert!(begun.elapsed() < LONGEST, "the picture of whoever has left is still there");
                 thread::sleep(Duration::from_millis(20));
             }
+            assert!(WORN.of(Sex::Female).is_none() && face.upgrade().is_none(), "their face is still there");
         });
         over.store(true, Relaxed);
     });
     let new: Vec<String> = opened.into_inner().unwrap().difference(&before.0).cloned().collect();
     assert_eq!(new, [""; 0]);
     assert_eq!(written() - before.1, 0, "bytes written");
+}
+
+/// The face that the visitor's figure wears.
+static WORN: LazyLock<WornFace> = LazyLock::new(WornFace::default);
+
+/// Puts a face on, which nobody else holds but whoever is given it.
+fn wear_a_face() -> Arc<OwnHead> {
+    let rest = &Shapes::of(Sex::Female).base().positions;
+    let picture = OwnHeadPicture { side: 64, rgb: &[120; 3 * 64 * 64], skin: [120; 3], hair: [120; 3] };
+    let head = Arc::new(OwnHead::new(Sex::Female, rest, picture).unwrap());
+    WORN.put_on(vec![head.clone()]);
+    head
 }
 
 /// Pictures on which the garment was drawn, and whether what the renderer holds now is blank.
@@ -363,7 +382,7 @@ fn source(session: &Arc<Session>, own: bool, clock: RealClock) -> VisitSource {
     let recording = concat!("recording:", env!("CARGO_MANIFEST_DIR"), "/../../assets/data/sessions/shopper.mcap");
     let webcam = WebcamOptions { own_picture: true, ..WebcamOptions::default() };
     let (name, options) = (recording.parse().unwrap(), CameraOptions::default());
-    let setup = CameraSetup { name, options, kept: GATHERED, zone: Zone::default(), webcam };
+    let setup = CameraSetup { name, options, kept: GATHERED, zone: Zone::default(), webcam, portraits: false };
     let StartedCamera { feed, handle, pictures, .. } = camera_start::start(setup, clock).unwrap();
     (Feed::Camera(feed), ShopperSource::Camera(handle), pictures)
 }
@@ -430,11 +449,19 @@ fn serve_with(config: &str, own: bool, visit: impl FnOnce(&mut Finger) + Send) -
             flight_recorder: None,
         };
         let service = Service::new(live, SceneChanger::new(handover, true, None), options, environment);
-        let (_, _, record) =
-            service.controlled_by(Box::new(setup.controller(window, played).switching(switch))).run().unwrap();
+        let (_, _, record) = service.controlled_by(Box::new(visit_of(setup, window, played, switch))).run().unwrap();
         hand.join().expect("the visit goes through all pages");
         record.states
     })
+}
+
+fn visit_of(
+    setup: VisitorSetup,
+    window: WindowChannels<'_, Worn>,
+    played: Option<ShopperSource>,
+    switch: Option<PictureSwitch>,
+) -> VisitController<'_, Worn> {
+    setup.controller(window, played).switching(switch).taking_faces(None, WORN.clone())
 }
 
 /// Ends the service when the visit is over, and where it failed.

@@ -63,6 +63,18 @@ own-picture-nobody = The mirror does not see you. Step onto the mark.
 own-picture-back = Step back a little, so that the clothes fit into the picture.
 own-picture-still = Stand still for a moment, facing the mirror.
 
+# The shopper’s own face on the mannequin
+face-heading = Your face on the mannequin
+face-what = When you press, one picture of you is taken, and the mannequin gets your face. Stand upright and look at the mirror.
+face-kept = Picture and face are in this mirror’s memory alone. They are sent nowhere, and are wiped when you take the face away or leave.
+face-taking = Your face is being put on
+face-on = The mannequin has your face.
+face-no-picture = The camera gave no picture. Please try again in a moment.
+face-unseen = No face was seen. Stand before the mirror, look at it, and try again.
+face-far = Your face is too far away. Step nearer and try again.
+face-turned = Your face was turned away. Look straight at the mirror and try again.
+face-unlike = Your face could not be put on. Take hair and hands from it and try again.
+
 # The garments
 garments-heading = What would you like to try on?
 garments-worn = You are wearing it
@@ -229,6 +241,10 @@ do-turn-right = Turn right
 do-fit-map = Fit map
 do-own-picture = See myself
 do-mannequin = See the mannequin
+do-face = My face
+do-face-put-on = Put my face on
+do-face-again = Try again
+do-face-away = Take it away
 do-picture = Take a picture
 do-show-picture = Show the picture
 do-delete-picture = Delete now

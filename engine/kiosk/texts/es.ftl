@@ -62,6 +62,18 @@ own-picture-nobody = El espejo no le ve. Colóquese sobre la marca.
 own-picture-back = Retroceda un poco, para que la ropa quepa en la imagen.
 own-picture-still = Quédese quieto un momento, de cara al espejo.
 
+# The shopper’s own face on the mannequin
+face-heading = Su cara en el maniquí
+face-what = Al pulsar se toma una imagen suya, y el maniquí recibe su cara. Póngase derecho y mire al espejo.
+face-kept = La imagen y la cara están solo en la memoria de este espejo. No se envían a ninguna parte y se borran cuando usted quita la cara o se va.
+face-taking = Poniendo su cara
+face-on = El maniquí tiene su cara.
+face-no-picture = La cámara no ha dado ninguna imagen. Inténtelo otra vez en un momento.
+face-unseen = No se ha visto ninguna cara. Póngase ante el espejo, mírelo e inténtelo otra vez.
+face-far = Su cara está demasiado lejos. Acérquese e inténtelo otra vez.
+face-turned = Su cara estaba girada. Mire de frente al espejo e inténtelo otra vez.
+face-unlike = No se ha podido poner su cara. Aparte de ella el pelo y las manos e inténtelo otra vez.
+
 # The garments
 garments-heading = ¿Qué le gustaría probarse?
 garments-worn = La lleva puesta
@@ -228,6 +240,10 @@ do-turn-right = Girar a la derecha
 do-fit-map = Mapa de ajuste
 do-own-picture = Verme a mí
 do-mannequin = Ver el maniquí
+do-face = Mi cara
+do-face-put-on = Poner mi cara
+do-face-again = Intentarlo otra vez
+do-face-away = Quitar la cara
 do-picture = Hacer una imagen
 do-show-picture = Mostrar la imagen
 do-delete-picture = Borrar ahora

@@ -62,6 +62,18 @@ own-picture-nobody = Le miroir ne vous voit pas. Placez-vous sur la marque.
 own-picture-back = Reculez un peu, pour que les vêtements entrent dans l’image.
 own-picture-still = Restez un instant immobile, face au miroir.
 
+# The shopper’s own face on the mannequin
+face-heading = Votre visage sur le mannequin
+face-what = Quand vous appuyez, une image de vous est prise, et le mannequin reçoit votre visage. Tenez-vous droit et regardez le miroir.
+face-kept = L’image et le visage restent dans la seule mémoire de ce miroir. Ils ne sont envoyés nulle part et sont effacés dès que vous retirez le visage ou partez.
+face-taking = Votre visage est mis en place
+face-on = Le mannequin a votre visage.
+face-no-picture = La caméra n’a pas donné d’image. Veuillez réessayer dans un instant.
+face-unseen = Aucun visage n’a été vu. Placez-vous devant le miroir, regardez-le et réessayez.
+face-far = Votre visage est trop loin. Approchez-vous et réessayez.
+face-turned = Votre visage était tourné. Regardez le miroir bien en face et réessayez.
+face-unlike = Votre visage n’a pas pu être mis. Écartez-en cheveux et mains et réessayez.
+
 # The garments
 garments-heading = Que souhaitez-vous essayer ?
 garments-worn = Vous le portez
@@ -228,6 +240,10 @@ do-turn-right = Tourner à droite
 do-fit-map = Carte d’ajustement
 do-own-picture = Me voir
 do-mannequin = Voir le mannequin
+do-face = Mon visage
+do-face-put-on = Mettre mon visage
+do-face-again = Réessayer
+do-face-away = Retirer le visage
 do-picture = Prendre une image
 do-show-picture = Montrer l’image
 do-delete-picture = Effacer maintenant

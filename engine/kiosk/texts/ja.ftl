@@ -62,6 +62,18 @@ own-picture-nobody = 鏡にあなたが映っていません。印の上に立�
 own-picture-back = 服が映像に収まるように、少し下がってください。
 own-picture-still = 鏡に向かって、少しの間動かないでください。
 
+# The shopper’s own face on the mannequin
+face-heading = マネキンにあなたの顔
+face-what = 押すとあなたの写真を一枚撮り、マネキンの顔があなたの顔になります。まっすぐ立って鏡を見てください。
+face-kept = 写真と顔はこの鏡のメモリーの中だけにあります。どこにも送信せず、顔を外すかその場を離れると消去します。
+face-taking = あなたの顔を付けています
+face-on = マネキンの顔があなたの顔になりました。
+face-no-picture = カメラから写真が得られませんでした。少し待ってもう一度お試しください。
+face-unseen = 顔が見つかりませんでした。鏡の前に立ち、鏡を見てもう一度お試しください。
+face-far = 顔が遠すぎます。近づいてもう一度お試しください。
+face-turned = 顔が横を向いていました。鏡をまっすぐ見てもう一度お試しください。
+face-unlike = 顔を付けられませんでした。髪や手を顔からよけて、もう一度お試しください。
+
 # The garments
 garments-heading = どれを試しますか？
 garments-worn = 着用中です
@@ -224,6 +236,10 @@ do-turn-right = 右へ回す
 do-fit-map = フィットマップ
 do-own-picture = 自分を見る
 do-mannequin = マネキンを見る
+do-face = 自分の顔
+do-face-put-on = 自分の顔を付ける
+do-face-again = もう一度試す
+do-face-away = 顔を外す
 do-picture = 画像を作る
 do-show-picture = 画像を見る
 do-delete-picture = 今すぐ削除

@@ -62,6 +62,18 @@ own-picture-nobody = Ayna sizi görmüyor. İşaretin üstüne geçin.
 own-picture-back = Giysilerin görüntüye sığması için biraz geri gidin.
 own-picture-still = Aynaya dönük olarak bir an kıpırdamadan durun.
 
+# The shopper’s own face on the mannequin
+face-heading = Mankende sizin yüzünüz
+face-what = Bastığınızda bir resminiz çekilir ve manken yüzünüzü alır. Dik durun ve aynaya bakın.
+face-kept = Resim ve yüz yalnızca bu aynanın belleğindedir. Hiçbir yere gönderilmez; yüzü kaldırdığınızda ya da gittiğinizde silinir.
+face-taking = Yüzünüz yerleştiriliyor
+face-on = Mankende sizin yüzünüz var.
+face-no-picture = Kamera görüntü vermedi. Lütfen birazdan yeniden deneyin.
+face-unseen = Hiç yüz görülmedi. Aynanın önünde durun, aynaya bakın ve yeniden deneyin.
+face-far = Yüzünüz çok uzakta. Yaklaşın ve yeniden deneyin.
+face-turned = Yüzünüz başka yöne dönüktü. Aynaya düz bakın ve yeniden deneyin.
+face-unlike = Yüzünüz yerleştirilemedi. Saçınızı ve ellerinizi yüzünüzden çekip yeniden deneyin.
+
 # The garments
 garments-heading = Ne denemek istersiniz?
 garments-worn = Üzerinizde
@@ -228,6 +240,10 @@ do-turn-right = Sağa döndür
 do-fit-map = Uyum haritası
 do-own-picture = Kendimi gör
 do-mannequin = Mankeni gör
+do-face = Yüzüm
+do-face-put-on = Yüzümü yerleştir
+do-face-again = Yeniden dene
+do-face-away = Yüzü kaldır
 do-picture = Resim çek
 do-show-picture = Resmi göster
 do-delete-picture = Şimdi sil

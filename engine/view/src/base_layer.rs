@@ -25,6 +25,12 @@ pub fn base_layer(body: &Body, hair: [u8; 3]) -> GarmentLook {
     let inside = heights(body);
     let along = |d: f32| 0.25 + 0.25 * (d / REACH_M).clamp(-0.98, 0.98);
     let corners = body.mesh.triangles.iter().map(|t| t.map(|v| Vec2::new(along(inside[v as usize]), 0.5)));
+    let edge = TileLevels::of(&edge(hair));
+    GarmentLook { tile: Some(edge), corners: corners.collect(), opacity: 1.0, ..GarmentLook::default() }
+}
+
+/// The picture of the edge, one row, with the colour of hair (sRGB).
+pub(crate) fn edge(hair: [u8; 3]) -> Texture {
     let painted = |x: u32| match 10 * x / (2 * TEXELS) {
         _ if x < TEXELS / 2 => (COTTON, 0),
         0..6 => (COTTON, 255),
@@ -32,8 +38,7 @@ pub fn base_layer(body: &Body, hair: [u8; 3]) -> GarmentLook {
         _ => (COTTON, 0),
     };
     let texels = (0..2 * TEXELS).map(painted).map(|([r, g, b], cover)| [r, g, b, cover]).collect();
-    let edge = TileLevels::of(&Texture { width: 2 * TEXELS, height: 1, texels });
-    GarmentLook { tile: Some(edge), corners: corners.collect(), opacity: 1.0, ..GarmentLook::default() }
+    Texture { width: 2 * TEXELS, height: 1, texels }
 }
 
 /// How far inside of the base layer each vertex lies at rest, negative outside of it (m).

@@ -1,5 +1,8 @@
 //! How cloth shows beside its colour: its print, its seams and stitched hems, and how much is seen through it.
 
+use std::fmt::{self, Debug, Formatter};
+use std::sync::Arc;
+
 use glam::{Vec2, Vec3, Vec4};
 use toile_assets::fabric::Fabric;
 use toile_assets::garment::{Garment, Look};
@@ -25,35 +28,79 @@ pub(crate) const STITCH_DARK: f32 = 0.3;
 
 /// A picture with its coarser levels, each half as wide and as high, down to one texel: what is seen from afar is the mean of
 /// what is seen close by.
-#[derive(Debug, Clone, PartialEq)]
+///
+/// Copies share it.
+#[derive(Clone, PartialEq)]
 pub struct TileLevels {
+    shared: Arc<SharedLevels>,
+}
+
+/// The levels of a picture.
+#[derive(PartialEq)]
+struct SharedLevels {
     levels: Vec<Texture>,
+    /// Whether somebody can be known by it: then it is overwritten when the last copy goes.
+    of_somebody: bool,
+}
+
+impl SharedLevels {
+    fn overwrite(&mut self) {
+        self.levels.iter_mut().for_each(|level| level.texels.fill([0; 4]));
+        // Looked at, so that the writing is not left out as one that nobody sees.
+        std::hint::black_box(&self.levels);
+    }
+}
+
+impl Drop for SharedLevels {
+    fn drop(&mut self) {
+        if self.of_somebody {
+            self.overwrite();
+        }
+    }
+}
+
+impl Debug for TileLevels {
+    /// Its sizes, and nothing that it shows.
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let finest = &self.levels()[0];
+        write!(f, "TileLevels({} x {}, {} levels)", finest.width, finest.height, self.levels().len())
+    }
 }
 
 impl TileLevels {
     /// All levels of a picture.
     pub fn of(texture: &Texture) -> Self {
-        let mut levels = vec![texture.clone()];
+        Self::new(texture.clone(), false)
+    }
+
+    /// All levels of a picture by which somebody can be known: its memory is overwritten when the last copy goes.
+    pub fn of_somebody(texture: Texture) -> Self {
+        Self::new(texture, true)
+    }
+
+    fn new(texture: Texture, of_somebody: bool) -> Self {
+        let mut levels = vec![texture];
         while let Some(next) = coarser(&levels[levels.len() - 1]) {
             levels.push(next);
         }
-        Self { levels }
+        Self { shared: Arc::new(SharedLevels { levels, of_somebody }) }
     }
 
     /// The levels, the finest first.
     pub fn levels(&self) -> &[Texture] {
-        &self.levels
+        &self.shared.levels
     }
 
     /// Colour (linear RGB) and how much of the ground it covers at a texture point (v upwards), seen by a pixel so wide there
     /// (texture units).
     pub fn sample(&self, at: Vec2, pixel: f32) -> Vec4 {
-        let finest = &self.levels[0];
+        let levels = self.levels();
+        let finest = &levels[0];
         let texels = pixel * finest.width.max(finest.height) as f32;
-        let level = texels.max(1.0).log2().min((self.levels.len() - 1) as f32);
-        let near = bilinear(&self.levels[level as usize], at);
+        let level = texels.max(1.0).log2().min((levels.len() - 1) as f32);
+        let near = bilinear(&levels[level as usize], at);
         let part = level.fract();
-        if part == 0.0 { near } else { near.lerp(bilinear(&self.levels[level as usize + 1], at), part) }
+        if part == 0.0 { near } else { near.lerp(bilinear(&levels[level as usize + 1], at), part) }
     }
 }
 
@@ -266,6 +313,16 @@ mod tests {
         // In the middle of a texel it is that texel, on every repetition; the first row is the uppermost.
         let texel = |x: f32, y: f32| tile.sample(Vec2::new((x + 0.5) / 16.0, 1.0 - (y + 0.5) / 16.0), 0.0);
         assert_eq!((texel(0.0, 0.0).w, texel(1.0, 0.0).w, texel(17.0, 16.0).w), (1.0, 0.0, 0.0));
+    }
+
+    #[test]
+    fn a_picture_of_somebody_is_overwritten_on_every_level_and_in_no_debug_text() {
+        let TileLevels { shared } = TileLevels::of_somebody(checks(16));
+        assert_eq!(format!("{:?}", TileLevels { shared: shared.clone() }), "TileLevels(16 x 16, 5 levels)");
+        assert!(shared.of_somebody && !TileLevels::of(&checks(2)).shared.of_somebody);
+        let mut levels = Arc::into_inner(shared).expect("copies share one, and the other is gone");
+        levels.overwrite();
+        assert!(levels.levels.iter().flat_map(|level| &level.texels).all(|texel| *texel == [0; 4]));
     }
 
     #[test]

@@ -1,7 +1,7 @@
-//! The network's files: which they are, where they are sought, and the command that fetches them.
+//! The networks' files: which they are, where they are sought, and the commands that fetch them.
 //!
-//! Reads: files of the npm package `@mediapipe/pose` (Apache-2.0). Writes: their bytes, once their SHA-256 is the known one.
-//! Budget: at load; 6 MB are hashed in 20 ms.
+//! Reads: files of the npm packages `@mediapipe/pose` and `@mediapipe/face_mesh` (Apache-2.0). Writes: their bytes, once their SHA-256 is the known one.
+//! Budget: at load; 13 MB are hashed in 40 ms.
 //! Thread: the loading thread.
 
 use std::fmt::Write as _;
@@ -16,7 +16,7 @@ pub const FOLDER_VARIABLE: &str = "TOILE_POSE_NETWORK";
 /// Where the files are put.
 pub const OWN_FOLDER: &str = "/usr/local/lib/toile/pose";
 
-/// The one command that fetches the files and checks the package's hash.
+/// The one command that fetches the pose network's files and checks the package's hash.
 pub const FETCH: &str = "cd $(mktemp -d) && npm pack --silent @mediapipe/pose@0.5.1675469404 && \
                          echo '8bb349a7b3a3ba699df23be804ddd3b3eab810b50b15406894be257859388a84 *mediapipe-pose-0.5.1675469404.tgz' \
                          | sha256sum --check --quiet && sudo mkdir -p /usr/local/lib/toile/pose && sudo tar --extract --gzip \
@@ -24,8 +24,53 @@ pub const FETCH: &str = "cd $(mktemp -d) && npm pack --silent @mediapipe/pose@0.
                          /usr/local/lib/toile/pose package/pose_landmark_lite.tflite package/pose_landmark_full.tflite \
                          package/pose_solution_packed_assets.data && sudo chmod --recursive a+rX /usr/local/lib/toile/pose";
 
+/// The one command that fetches the face network's file and checks the package's hash.
+pub const FETCH_FACE: &str = "cd $(mktemp -d) && npm pack --silent @mediapipe/face_mesh@0.4.1657299874 && \
+                              echo 'c08a7e0742a326285da666cf81d77c8b6f3a181a2ee948cadaf166008e0d3bc7 *mediapipe-face_mesh-0.4.1657299874.tgz' \
+                              | sha256sum --check --quiet && sudo mkdir -p /usr/local/lib/toile/pose && sudo tar --extract --gzip \
+                              --file mediapipe-face_mesh-0.4.1657299874.tgz --no-same-owner --strip-components=1 --directory \
+                              /usr/local/lib/toile/pose package/face_mesh_solution_packed_assets.data && \
+                              sudo chmod --recursive a+rX /usr/local/lib/toile/pose";
+
 toile_assets::named! {
-    /// Files of the network.
+    /// Networks, each of which comes in a package of its own.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+    pub enum NetworkPackage {
+        /// Finds joints in a webcam's pictures.
+        Pose = "pose network",
+        /// Finds the points of a face.
+        Face = "face network",
+    }
+}
+
+impl NetworkPackage {
+    /// The one command that fetches its files and checks the package's hash.
+    pub const fn fetch(self) -> &'static str {
+        match self {
+            Self::Pose => FETCH,
+            Self::Face => FETCH_FACE,
+        }
+    }
+
+    /// What needs it, in a sentence.
+    const fn needed_by(self) -> &'static str {
+        match self {
+            Self::Pose => "a webcam",
+            Self::Face => "a shopper's own face",
+        }
+    }
+
+    /// Whether all its files are there, whole and known.
+    ///
+    /// # Errors
+    /// The first that is not.
+    pub fn check(self, folder: &Path) -> Result<(), PoseError> {
+        PoseFile::ALL.into_iter().filter(|f| f.package() == self).try_for_each(|f| f.read(folder).map(|_| ()))
+    }
+}
+
+toile_assets::named! {
+    /// Files of the networks.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
     pub enum PoseFile {
         /// Landmarks, the small network.
@@ -34,6 +79,8 @@ toile_assets::named! {
         Full = "full",
         /// Where somebody is.
         Detector = "detector",
+        /// A face's detector and points, two networks in one file.
+        Face = "face",
     }
 }
 
@@ -44,6 +91,15 @@ impl PoseFile {
             Self::Lite => "pose_landmark_lite.tflite",
             Self::Full => "pose_landmark_full.tflite",
             Self::Detector => "pose_solution_packed_assets.data",
+            Self::Face => "face_mesh_solution_packed_assets.data",
+        }
+    }
+
+    /// The package that it comes in.
+    pub const fn package(self) -> NetworkPackage {
+        match self {
+            Self::Lite | Self::Full | Self::Detector => NetworkPackage::Pose,
+            Self::Face => NetworkPackage::Face,
         }
     }
 
@@ -53,6 +109,7 @@ impl PoseFile {
             Self::Lite => 2_819_824,
             Self::Full => 6_440_512,
             Self::Detector => 2_962_288,
+            Self::Face => 3_986_256,
         }
     }
 
@@ -61,7 +118,13 @@ impl PoseFile {
             Self::Lite => "f17bfbecadb61c3be1baa8b8d851cc6619c870a87167b32848ad20db306b9d61",
             Self::Full => "e9a5c5cb17f736fafd4c2ec1da3b3d331d6edbe8a0d32395855aeb2cdfd64b9f",
             Self::Detector => "a63c614bef30d35947f13be361820b1e4e3bec9cfeebf4d11216a18373108e85",
+            Self::Face => "dbe5905c582c0462cdaea17e7e6ecea92edaa8cccc515c5e2e7291f2cbb5fb99",
         }
+    }
+
+    /// That the file of a folder is another one: in what it differs.
+    pub fn another(self, folder: &Path, what: String) -> PoseError {
+        PoseError::Another { path: folder.join(self.file_name()), what, file: self }
     }
 
     /// Its bytes, from a folder.
@@ -71,12 +134,12 @@ impl PoseFile {
     pub fn read(self, folder: &Path) -> Result<Vec<u8>, PoseError> {
         let path = folder.join(self.file_name());
         let refused = |e: io::Error| match e.kind() {
-            io::ErrorKind::NotFound => PoseError::Missing { folder: folder.to_path_buf(), file: self.file_name() },
-            _ => PoseError::Unreadable { path: path.clone(), problem: e.to_string() },
+            io::ErrorKind::NotFound => PoseError::Missing { folder: folder.to_path_buf(), file: self },
+            _ => PoseError::Unreadable { path: path.clone(), problem: e.to_string(), file: self },
         };
         // The size first: whatever has this name may be larger than memory.
         let found = fs::metadata(&path).map_err(refused)?.len();
-        let other = |what: String| PoseError::Another { path: path.clone(), what };
+        let other = |what: String| self.another(folder, what);
         if found != self.size() {
             return Err(other(format!("it has {found} bytes instead of {}", self.size())));
         }
@@ -94,29 +157,40 @@ impl PoseFile {
 pub enum PoseError {
     /// A file is not there.
     #[error(
-        "a webcam needs the pose network of MediaPipe, and {} holds no {file}; fetch it: `{FETCH}`", folder.display()
+        "{} needs the {} of MediaPipe, and {} holds no {}; fetch it: `{}`",
+        file.package().needed_by(), file.package(), folder.display(), file.file_name(), file.package().fetch()
     )]
     Missing {
         /// The folder in which it was sought.
         folder: PathBuf,
-        /// Name of the file in the folder.
-        file: &'static str,
+        /// The file.
+        file: PoseFile,
     },
     /// A file cannot be read.
-    #[error("{} cannot be read ({problem}); give it its rights or fetch it again: `{FETCH}`", path.display())]
+    #[error(
+        "{} cannot be read ({problem}); give it its rights or fetch it again: `{}`",
+        path.display(), file.package().fetch()
+    )]
     Unreadable {
         /// Path of the file.
         path: PathBuf,
         /// What the system says.
         problem: String,
+        /// The file.
+        file: PoseFile,
     },
     /// A file is not the one that is known.
-    #[error("{} is not the pose network that is known: {what}; fetch it again: `{FETCH}`", path.display())]
+    #[error(
+        "{} is not the {} that is known: {what}; fetch it again: `{}`",
+        path.display(), file.package(), file.package().fetch()
+    )]
     Another {
         /// Path of the file.
         path: PathBuf,
         /// In what it differs.
         what: String,
+        /// The file that it should be.
+        file: PoseFile,
     },
 }
 
@@ -124,9 +198,9 @@ impl PoseError {
     /// What is wrong, without the cure.
     pub fn what(&self) -> String {
         match self {
-            Self::Missing { folder, file } => format!("{} holds no {file}", folder.display()),
-            Self::Unreadable { path, problem } => format!("{} cannot be read ({problem})", path.display()),
-            Self::Another { path, what } => format!("{} is another file: {what}", path.display()),
+            Self::Missing { folder, file } => format!("{} holds no {}", folder.display(), file.file_name()),
+            Self::Unreadable { path, problem, .. } => format!("{} cannot be read ({problem})", path.display()),
+            Self::Another { path, what, .. } => format!("{} is another file: {what}", path.display()),
         }
     }
 }
@@ -137,12 +211,12 @@ pub fn folder() -> PathBuf {
     given.map_or_else(|| PathBuf::from(OWN_FOLDER), PathBuf::from)
 }
 
-/// Whether all files of a network are there, whole and known.
+/// Whether all files of the pose network are there, whole and known.
 ///
 /// # Errors
 /// The first that is not.
 pub fn check(folder: &Path) -> Result<(), PoseError> {
-    PoseFile::ALL.into_iter().try_for_each(|file| file.read(folder).map(|_| ()))
+    NetworkPackage::Pose.check(folder)
 }
 
 #[cfg(test)]
@@ -170,7 +244,13 @@ mod tests {
     fn a_network_that_is_not_there_is_named_with_the_command_that_fetches_it() {
         let error = check(Path::new("no/such")).unwrap_err().to_string();
         assert!(error.contains("no/such holds no pose_landmark_lite.tflite; fetch it: `cd $(mktemp"), "{error}");
-        assert!(!FETCH.contains("  ") && !FETCH.contains('\n'), "errors are one line with single spaces: {FETCH}");
+        for package in NetworkPackage::ALL {
+            let fetch = package.fetch();
+            assert!(!fetch.contains("  ") && !fetch.contains('\n'), "errors are one line with single spaces: {fetch}");
+        }
+        let error = NetworkPackage::Face.check(Path::new("no/such")).unwrap_err().to_string();
+        let words = "a shopper's own face needs the face network of MediaPipe, and no/such holds no face_mesh_solution";
+        assert!(error.starts_with(words) && error.contains("npm pack --silent @mediapipe/face_mesh@"), "{error}");
     }
 
     #[test]

@@ -69,10 +69,7 @@ impl Landmarker {
     pub fn load(bytes: &[u8], with_mask: bool) -> Result<Self, NetworkFault> {
         let wanted: [&[usize]; 4] = [&[1, ALL * NUMBERS], &[1, 1], &[1, ALL * 3], &[1, SIDE, SIDE, 1]];
         let network = Network::load(bytes, &wanted[..3 + usize::from(with_mask)])?;
-        let shape = network.input_shape();
-        if [shape.height, shape.width, shape.channels] != [SIDE, SIDE, 3] {
-            return Err(NetworkFault::new(format!("it takes an image of {} x {} pixels", shape.width, shape.height)));
-        }
+        network.takes_square(SIDE)?;
         let side = SIDE / COARSER;
         let mask = with_mask.then(|| PersonMask { side: 0, odds: vec![0.0; side * side], ..PersonMask::default() });
         Ok(Self { network, mask })

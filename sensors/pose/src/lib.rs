@@ -1,7 +1,7 @@
-//! A person's joints in a plain colour picture: the pose network of MediaPipe (BlazePose) on the processor.
+//! A person's joints in a plain colour picture, and the points of a face: networks of MediaPipe (BlazePose, face mesh) on the processor.
 //!
 //! Reads: colour pictures; the network's files, which are fetched and are no part of this program. Writes: landmarks and
-//! directions of the body's segments, never its scale.
+//! directions of the body's segments, never its scale; points of a face.
 //! Budget: 30 ms a picture; nothing is allocated once the first one was seen.
 //! Thread: the camera's thread.
 
@@ -12,7 +12,11 @@ pub mod tflite;
 
 pub mod network;
 
+mod boxes;
+
 pub mod detector;
+pub mod face_detector;
+pub mod face_mesh;
 pub mod landmarks;
 
 pub mod plausible;
@@ -23,5 +27,6 @@ pub mod sides;
 
 pub mod tracker;
 
+pub mod face_finder;
 pub mod joints;
 pub mod picture_fit;

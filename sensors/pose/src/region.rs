@@ -42,6 +42,13 @@ impl Region {
         Self { centre: hips, side: 2.0 * up.length() * 1.25, turned: up.x.atan2(-up.y) }
     }
 
+    /// The square of a face: around this middle, `times` as large as the longer side of a box of this size, turned so that the eyes, the
+    /// wearer's right one first, lie on a level.
+    pub fn of_eyes(middle: Vec2, size: Vec2, [right, left]: [Vec2; 2], times: f32) -> Self {
+        let along = left - right;
+        Self { centre: middle, side: times * size.max_element(), turned: along.y.atan2(along.x) }
+    }
+
     /// Whether another square differs by so little that this one shows the same: with a new one in each picture of somebody who stands still, the
     /// landmarks and the square that comes of them move each other to and fro.
     pub fn is_like(&self, other: &Self) -> bool {

@@ -77,12 +77,7 @@ impl PoseTracker {
     /// Files that are missing or others than those that are known.
     pub fn load(folder: &Path, model: PoseModel, with_mask: bool) -> Result<Self, PoseError> {
         let file = if model == PoseModel::Lite { PoseFile::Lite } else { PoseFile::Full };
-        let unfit = |file: PoseFile| {
-            move |fault: crate::tflite::NetworkFault| PoseError::Another {
-                path: folder.join(file.file_name()),
-                what: fault.to_string(),
-            }
-        };
+        let unfit = |file: PoseFile| move |fault: crate::tflite::NetworkFault| file.another(folder, fault.to_string());
         Ok(Self {
             detector: Detector::load(&PoseFile::Detector.read(folder)?).map_err(unfit(PoseFile::Detector))?,
             landmarker: Landmarker::load(&file.read(folder)?, with_mask).map_err(unfit(file))?,

@@ -16,6 +16,7 @@ pub(crate) mod face;
 mod face_frames;
 mod face_picture;
 pub(crate) mod flow;
+mod found_face;
 pub(crate) mod pose;
 
 /// Turn the pictures of several calibrated cameras into motion, a pose, a body or a face.

@@ -94,8 +94,11 @@ fn examine(out: &Path) -> DoctorReport {
         folder,
         surroundings::ffmpeg(),
     ];
-    let checks: Vec<Check> =
-        checks.into_iter().chain(cameras::cameras()).chain([cameras::webcams(), cameras::pose_network()]).collect();
+    let checks: Vec<Check> = checks
+        .into_iter()
+        .chain(cameras::cameras())
+        .chain([cameras::webcams(), cameras::pose_network(), cameras::face_network()])
+        .collect();
     let adapters = adapters.into_iter();
     let adapters =
         adapters.map(|a| AdapterReport { name: a.name, backend: a.backend, kind: a.kind, driver: a.driver }).collect();

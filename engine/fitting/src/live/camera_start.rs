@@ -10,7 +10,7 @@ use toile_sensors::segment::Zone;
 use toile_sensors::source::live::{self, CameraError, CameraName, CameraOptions, LiveColour, LiveDepth};
 
 use super::depth_camera::{self, CameraFeed, CameraHandle, TrackerOptions};
-use super::own_picture::{self, PictureReceiver, PictureSwitch};
+use super::own_picture::{PictureReceiver, PictureSender, PictureSwitch};
 use super::webcam::{self, WebcamJoints, WebcamOptions};
 
 /// Which camera is opened, and how somebody is seen through it.
@@ -26,6 +26,8 @@ pub struct CameraSetup {
     pub zone: Zone,
     /// How a webcam sees, and whose body is fitted first, to depth as well; whether the shopper may see their own picture.
     pub webcam: WebcamOptions,
+    /// Whether a shopper's face may be taken from pictures.
+    pub portraits: bool,
 }
 
 /// Why a camera cannot be started.
@@ -55,6 +57,8 @@ pub struct StartedCamera {
     pub handle: CameraHandle,
     /// Its pictures, and whether they are handed on; none where own pictures are not shown.
     pub pictures: Option<(PictureReceiver, PictureSwitch)>,
+    /// The same for taking faces; none where none are taken.
+    pub portraits: Option<(PictureReceiver, PictureSwitch)>,
 }
 
 /// Depth images that own pictures hold: those on their way, and the one that is drawn.
@@ -68,13 +72,15 @@ pub fn start<C>(setup: CameraSetup, clock: C) -> Result<StartedCamera, CameraSta
 where
     C: Clock + Clone + Send + 'static,
 {
-    let CameraSetup { name, mut options, kept, zone, webcam } = setup;
+    let CameraSetup { name, mut options, kept, zone, mut webcam, portraits } = setup;
     let is_webcam = name.kind.is_colour();
+    let shown = webcam.own_picture;
+    // Where a face is sought is known by where in the picture somebody is.
+    webcam.own_picture |= portraits;
     options.colour |= is_webcam || webcam.own_picture;
-    let (sender, pictures) = match webcam.own_picture.then(own_picture::channel) {
-        Some((sender, receiver, switch)) => (Some(sender), Some((receiver, switch))),
-        None => (None, None),
-    };
+    let mut sender = webcam.own_picture.then(PictureSender::default);
+    let pictures = sender.as_mut().filter(|_| shown).map(PictureSender::also);
+    let portraits = sender.as_mut().filter(|_| portraits).map(PictureSender::also);
     // Without the network no webcam is switched on.
     let joints = if is_webcam { Some(WebcamJoints::load(&files::folder(), webcam)?) } else { None };
     let opener = Box::new(move || live::open(&name, &options));
@@ -82,10 +88,10 @@ where
         let depth = LiveDepth::open(opener, kept + SHOWN, clock.now_ns())?;
         let (device, k) = (depth.info().device.clone(), depth.intrinsics());
         let (feed, handle) = depth_camera::start(depth, clock, TrackerOptions { zone, sex: webcam.sex }, sender)?;
-        return Ok(StartedCamera { device, size: [k.width, k.height], feed, handle, pictures });
+        return Ok(StartedCamera { device, size: [k.width, k.height], feed, handle, pictures, portraits });
     };
     let colour = LiveColour::open(opener, clock.now_ns())?;
     let (device, k) = (colour.info().device.clone(), colour.info().sensor());
     let (feed, handle) = webcam::start(colour, joints, clock, sender)?;
-    Ok(StartedCamera { device, size: [k.width, k.height], feed, handle, pictures })
+    Ok(StartedCamera { device, size: [k.width, k.height], feed, handle, pictures, portraits })
 }

@@ -1,5 +1,5 @@
-//! The camera's pictures on their way to the mirror, each with what was seen in it: the latest only, in memory alone, and only while
-//! somebody looks at themselves.
+//! The camera's pictures on their way to the mirror, and to whoever takes a shopper's face, each with what was seen in it: the latest only, in
+//! memory alone, and only while somebody looks at themselves or has their face taken.
 //!
 //! A picture is handed on once its joints are there, so that garment and picture are of one moment. What the renderer shows of it comes
 //! back as a number that means something to the two of them.
@@ -99,65 +99,92 @@ impl PictureSwitch {
     }
 }
 
-/// The camera's end.
-#[derive(Debug)]
+/// The camera's end, of one receiver or of two.
+#[derive(Debug, Default)]
 pub struct PictureSender {
+    outlets: Vec<PictureOutlet>,
+}
+
+/// One receiver's pictures.
+#[derive(Debug)]
+struct PictureOutlet {
     writer: Writer<SeenPicture>,
-    switch: PictureSwitch,
+    /// Any of them switches it on.
+    switches: Vec<PictureSwitch>,
     /// Copies that have yet to be wiped.
     unwiped: u8,
 }
 
-/// The renderer's end.
+/// The end of whoever looks at the pictures.
 #[derive(Debug)]
 pub struct PictureReceiver {
     reader: Reader<SeenPicture>,
     switch: PictureSwitch,
 }
 
-/// A channel of pictures, switched off. Called at load: it allocates; the first pictures of a size allocate once more.
-pub fn channel() -> (PictureSender, PictureReceiver, PictureSwitch) {
-    let TripleBuffer { writer, reader } = TripleBuffer::new(&SeenPicture::default());
-    let switch = PictureSwitch::default();
-    let sender = PictureSender { writer, switch: switch.clone(), unwiped: 0 };
-    (sender, PictureReceiver { reader, switch: switch.clone() }, switch)
-}
-
-impl PictureSender {
-    /// A channel before this one, switched by the same switch: pictures on their way to whoever adds what was seen in them.
-    pub(super) fn relay(&self) -> (Self, PictureReceiver) {
+impl PictureOutlet {
+    fn new(switches: Vec<PictureSwitch>, switch: PictureSwitch) -> (Self, PictureReceiver) {
         let TripleBuffer { writer, reader } = TripleBuffer::new(&SeenPicture::default());
-        let sender = Self { writer, switch: self.switch.clone(), unwiped: 0 };
-        (sender, PictureReceiver { reader, switch: self.switch.clone() })
+        (Self { writer, switches, unwiped: 0 }, PictureReceiver { reader, switch })
     }
 
-    /// Hands a picture on, where somebody wants it: `fill` writes every part of an older one.
-    pub fn send(&mut self, fill: impl FnOnce(&mut SeenPicture)) {
-        if self.switch.is_on() {
-            self.unwiped = COPIES;
-            self.writer.publish_with(fill);
-        } else {
-            self.wipe();
-        }
+    fn is_on(&self) -> bool {
+        self.switches.iter().any(PictureSwitch::is_on)
     }
 
-    /// Whether somebody wants pictures.
-    pub fn is_on(&self) -> bool {
-        self.switch.is_on()
-    }
-
-    /// Wipes one of the copies, as long as there are any.
-    pub fn wipe(&mut self) {
+    fn wipe(&mut self) {
         if self.unwiped > 0 {
             self.unwiped -= 1;
             self.writer.publish_with(SeenPicture::wipe);
         }
     }
+}
+
+impl PictureSender {
+    /// One more who looks at pictures, at times of their own; switched off. Called at load: it allocates, and the first pictures of a size allocate
+    /// once more.
+    pub fn also(&mut self) -> (PictureReceiver, PictureSwitch) {
+        let switch = PictureSwitch::default();
+        let (outlet, receiver) = PictureOutlet::new(vec![switch.clone()], switch.clone());
+        self.outlets.push(outlet);
+        (receiver, switch)
+    }
+
+    /// A channel before this one, switched by the same switches: pictures on their way to whoever adds what was seen in them.
+    pub(super) fn relay(&self) -> (Self, PictureReceiver) {
+        let switches = self.outlets.iter().flat_map(|outlet| outlet.switches.clone()).collect();
+        let (outlet, receiver) = PictureOutlet::new(switches, PictureSwitch::default());
+        (Self { outlets: vec![outlet] }, receiver)
+    }
+
+    /// Hands a picture on to whoever wants it: `fill` writes every part of an older one.
+    pub fn send(&mut self, mut fill: impl FnMut(&mut SeenPicture)) {
+        for outlet in &mut self.outlets {
+            if outlet.is_on() {
+                outlet.unwiped = COPIES;
+                outlet.writer.publish_with(&mut fill);
+            } else {
+                outlet.wipe();
+            }
+        }
+    }
+
+    /// Whether somebody wants pictures.
+    pub fn is_on(&self) -> bool {
+        self.outlets.iter().any(PictureOutlet::is_on)
+    }
+
+    /// Wipes one of the copies of each who wants none, as long as there are any.
+    pub fn wipe(&mut self) {
+        self.outlets.iter_mut().filter(|outlet| !outlet.is_on()).for_each(PictureOutlet::wipe);
+    }
 
     /// Whoever was seen has left: every copy is wiped, also while pictures are wanted.
     pub fn forget(&mut self) {
-        self.unwiped = COPIES;
-        self.wipe();
+        for outlet in &mut self.outlets {
+            outlet.unwiped = COPIES;
+            outlet.wipe();
+        }
     }
 }
 
@@ -187,6 +214,13 @@ impl PictureReceiver {
 mod tests {
     use super::*;
 
+    /// A channel of pictures, switched off.
+    fn channel() -> (PictureSender, PictureReceiver, PictureSwitch) {
+        let mut sender = PictureSender::default();
+        let (receiver, switch) = sender.also();
+        (sender, receiver, switch)
+    }
+
     fn picture(seen: &mut SeenPicture) {
         seen.picture = ColourImage { width: 2, height: 1, rgb: vec![9; 6] };
         (seen.taken_ns, seen.arrived_ns) = (5, 7);
@@ -202,6 +236,26 @@ mod tests {
         assert_eq!(receiver.news().map(|seen| seen.taken_ns), Some(5));
         receiver.report(3);
         assert_eq!(switch.outcome(), 3);
+    }
+
+    #[test]
+    fn who_looks_at_times_of_their_own_gets_pictures_then_and_no_other_does() {
+        let (mut sender, mut mirror, mirror_switch) = channel();
+        let (mut portrait, portrait_switch) = sender.also();
+        let (relayed, _) = sender.relay();
+        portrait_switch.set(true);
+        assert!(sender.is_on() && relayed.is_on() && !mirror_switch.is_on());
+        sender.send(picture);
+        assert!(mirror.news().is_none() && portrait.news().is_some_and(|seen| seen.taken_ns == 5));
+        portrait_switch.set(false);
+        mirror_switch.set(true);
+        for _ in 0..COPIES {
+            sender.send(picture);
+            let seen = portrait.news().expect("a blank one");
+            assert!(seen.taken_ns == 0 && seen.picture.rgb.iter().all(|b| *b == 0));
+        }
+        sender.send(picture);
+        assert!(portrait.news().is_none() && mirror.news().is_some());
     }
 
     #[test]

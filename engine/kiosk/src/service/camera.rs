@@ -27,6 +27,8 @@ pub struct CameraFeeds {
     pub pictures: Option<PictureReceiver>,
     /// Whether they are.
     pub switch: Option<PictureSwitch>,
+    /// Its pictures for faces, where those may be taken, and whether they are handed on.
+    pub portraits: Option<(PictureReceiver, PictureSwitch)>,
 }
 
 /// Opens a camera of any kind.
@@ -50,6 +52,7 @@ pub fn feed(config: &Config, name: CameraName, clock: RealClock) -> Result<Camer
         kept: depth_camera::GATHERED,
         zone: Zone { mark: config.display.mark_m.map(Vec2::from), ..Zone::default() },
         webcam: WebcamOptions { sex, model: PoseModel::Lite, mount, stature_m, own_picture },
+        portraits: config.display.face,
     };
     let started = camera_start::start(setup, clock).map_err(|why| match why {
         // What was given, or the device.
@@ -58,5 +61,11 @@ pub fn feed(config: &Config, name: CameraName, clock: RealClock) -> Result<Camer
         CameraStartError::Camera(_) | CameraStartError::Network(_) => KioskError::Device(why.to_string()),
     })?;
     let (pictures, switch) = started.pictures.unzip();
-    Ok(CameraFeeds { feed: Feed::Camera(started.feed), handle: started.handle, pictures, switch })
+    Ok(CameraFeeds {
+        feed: Feed::Camera(started.feed),
+        handle: started.handle,
+        pictures,
+        switch,
+        portraits: started.portraits,
+    })
 }

@@ -230,6 +230,8 @@ pub struct DisplayConfig {
     pub hair: String,
     /// Whether shoppers may see the camera's own picture of them with the clothes on it.
     pub own_picture: OwnPictureUse,
+    /// Whether shoppers may have their own face put on the mannequin.
+    pub face: bool,
 }
 
 /// Figures for Prometheus.
@@ -302,6 +304,7 @@ impl Default for DisplayConfig {
             skin: SkinTone::default().name().into(),
             hair: Hair::default().name().into(),
             own_picture: OwnPictureUse::default(),
+            face: false,
         }
     }
 }

@@ -39,6 +39,7 @@ pub const KEYS: [(&str, &[&str]); 10] = [
             "skin",
             "hair",
             "own_picture",
+            "face",
         ],
     ),
     ("picture", &["serve", "network"]),

@@ -170,6 +170,8 @@ pub struct ControllerStart {
     pub played: Option<ShopperSource>,
     /// Whether the camera's pictures are handed on, where shoppers may see themselves.
     pub switch: Option<PictureSwitch>,
+    /// The camera's pictures for faces, where those may be taken, and whether they are handed on.
+    pub portraits: Option<(PictureReceiver, PictureSwitch)>,
     /// How the mannequin stands.
     pub pose: Joints,
     /// The session's times, and that of measuring (ns).
@@ -201,7 +203,7 @@ where
     // The mannequin stands as somebody does in the recording: a pose, and no body.
     let pose = sessions::standing(&session)?[0];
     let dressed = dressed::mannequin_in(&stock.first, &pose)?;
-    let SensorFeeds { feed, played, pictures, switch } = feed(config, session, clock)?;
+    let SensorFeeds { feed, played, pictures, switch, portraits } = feed(config, session, clock)?;
     let workers = config.machine.workers.unwrap_or_else(workers);
     let (crew, worker) = threads::worker_pool(workers).map_err(KioskError::input)?;
     let locked = if config.machine.lock_memory { memory::lock(options.may_lock_memory) } else { Ok(()) };
@@ -240,6 +242,7 @@ where
     let start = ControllerStart {
         played: service_options.played.clone(),
         switch,
+        portraits,
         pose,
         times: service_options.times,
         measure_ns: service_options.measure_ns,
@@ -268,13 +271,15 @@ struct SensorFeeds {
     played: Option<ShopperSource>,
     pictures: Option<PictureReceiver>,
     switch: Option<PictureSwitch>,
+    portraits: Option<(PictureReceiver, PictureSwitch)>,
 }
 
 /// What the sensor reads, and what shoppers are then measured from.
 fn feed(config: &Config, session: Session, clock: RealClock) -> Result<SensorFeeds, KioskError> {
     if let Some(name) = config.sensor.camera().map_err(KioskError::input)? {
-        let CameraFeeds { feed, handle, pictures, switch } = camera::feed(config, name, clock)?;
-        return Ok(SensorFeeds { feed, played: Some(ShopperSource::Camera(handle)), pictures, switch });
+        let CameraFeeds { feed, handle, pictures, switch, portraits } = camera::feed(config, name, clock)?;
+        let played = Some(ShopperSource::Camera(handle));
+        return Ok(SensorFeeds { feed, played, pictures, switch, portraits });
     }
     let address = config.sensor.vmc;
     if config.sensor.source == SensorSource::Vmc {
@@ -282,12 +287,12 @@ fn feed(config: &Config, session: Session, clock: RealClock) -> Result<SensorFee
             KioskError::Device(format!("nothing can be received at {address} ({e}); name a free one in sensor.vmc"))
         };
         let feed = Feed::listen(address, clock).map_err(refused)?;
-        return Ok(SensorFeeds { feed, played: None, pictures: None, switch: None });
+        return Ok(SensorFeeds { feed, played: None, pictures: None, switch: None, portraits: None });
     }
     let session = Arc::new(session);
     let visits = Visits::of(&session, clock.now_ns(), config::ns(config.sensor.pause_s));
     let played = Some(ShopperSource::Recording(session));
-    Ok(SensorFeeds { feed: Feed::Played(visits), played, pictures: None, switch: None })
+    Ok(SensorFeeds { feed: Feed::Played(visits), played, pictures: None, switch: None, portraits: None })
 }
 
 fn workers() -> usize {

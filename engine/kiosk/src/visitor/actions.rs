@@ -114,6 +114,7 @@ impl VisitModel {
             }
             Page::Picture if self.visit.snap_failed => add(&[TakePicture, Back]),
             Page::Picture => add(&[Back]),
+            Page::Face => self.face(&mut add),
             Page::OwnMeasures => {
                 (0..measure_entry::OwnMeasure::ALL.len()).for_each(|i| add(&[OwnMeasure(i)]));
                 add(&[Unit, Back]);
@@ -166,16 +167,31 @@ impl VisitModel {
         if self.own_picture.is_some() {
             add(&[OwnPicture]);
         }
+        if self.offers_face() {
+            add(&[Open(Page::Face)]);
+        }
         // Whoever sees themselves turns by turning.
         if !self.sees_themselves() {
             add(&[Turn(-1), Turn(1)]);
         }
         let held = self.visit.picture.code().is_some();
         add(&[if held { Open(Page::Picture) } else { TakePicture }]);
-        if self.wants_tape() {
+        if self.wants_tape() && !self.is_crowded() {
             add(&[Open(Page::OwnMeasures)]);
         }
         add(&[Open(Page::Settings), Leave]);
+    }
+
+    /// While a picture is taken or put on there is nothing to press but the way back.
+    fn face(&self, add: &mut impl FnMut(&[Action])) {
+        let face = &self.visit.face;
+        if face.asked.is_none() && self.visit.dressing.is_none() {
+            add(&[Action::TakeFace]);
+            if face.on {
+                add(&[Action::RemoveFace]);
+            }
+        }
+        add(&[Action::Back]);
     }
 
     fn compare(&self, add: &mut impl FnMut(&[Action])) {

@@ -16,7 +16,9 @@ use toile_sensors::frame::Joints;
 use toile_track::gesture::Gestures;
 
 use super::dressing_worker::{DressingContext, DressingJob, DressingWorker, JobResult, MeasuredVisitor, MeasuringJob};
+use super::face_camera::FaceCamera;
 use super::model::{Effect, Input, VisitModel};
+use super::own_face::{Portrait, WornFace};
 use super::photographs::Photographs;
 use super::presence::{Presence, PresenceTracker};
 use super::reach::DisplayMount;
@@ -59,6 +61,7 @@ struct PendingJobs {
     dress: Option<(u32, Outfit)>,
     two: Option<(u32, Box<[Outfit; 2]>)>,
     snap: Option<(u32, Outfit, f32)>,
+    face: Option<(u32, Outfit, Arc<Portrait>)>,
 }
 
 /// A measurement under way.
@@ -95,6 +98,11 @@ pub struct VisitController<'a, O> {
     shown: Option<Screen>,
     /// Whether the camera's pictures are handed to the renderer, where shoppers may see themselves.
     switch: Option<PictureSwitch>,
+    /// Takes pictures for faces, where shoppers may have theirs taken, and what they wear while one is taken.
+    faces: Option<FaceCamera>,
+    portrayed: Outfit,
+    /// The face that their figure wears.
+    worn_face: WornFace,
     photographs: Photographs,
     watch: Option<StockWatch<Arc<Wardrobe>>>,
     /// Lines for whoever looks after the kiosk.
@@ -129,6 +137,9 @@ impl<'a, O> VisitController<'a, O> {
             afresh: true,
             shown: None,
             switch: None,
+            faces: None,
+            portrayed: Outfit::new(),
+            worn_face: WornFace::default(),
             photographs: Photographs::default(),
             watch: None,
             lines: Vec::new(),
@@ -145,6 +156,17 @@ impl<'a, O> VisitController<'a, O> {
     #[must_use]
     pub fn switching(self, switch: Option<PictureSwitch>) -> Self {
         Self { switch, ..self }
+    }
+
+    /// The same, which takes the faces of those who ask for it; whoever dresses them looks at `worn`. Nothing is offered where no face can be
+    /// taken.
+    #[must_use]
+    pub fn taking_faces(mut self, faces: Option<FaceCamera>, worn: WornFace) -> Self {
+        if faces.is_some() && self.worker.makes_faces() {
+            self.model.offer_faces();
+            self.faces = faces;
+        }
+        Self { worn_face: worn, ..self }
     }
 
     /// Takes a stock that was read again, when nobody is there: a visitor keeps what they see.
@@ -187,6 +209,10 @@ impl<'a, O> VisitController<'a, O> {
             Effect::Dress { number, outfit } => self.jobs.dress = Some((number, outfit)),
             Effect::DrapeTwo { number, outfits } => self.jobs.two = Some((number, outfits)),
             Effect::Snap { number, outfit, yaw } => self.jobs.snap = Some((number, outfit, yaw)),
+            Effect::TakeFace { number, outfit } => {
+                self.portrayed = outfit;
+                self.faces.iter_mut().for_each(|faces| faces.ask(number, now));
+            }
             Effect::Hide => self.clear(context),
             Effect::Forget => {
                 self.clear(context);
@@ -203,6 +229,9 @@ impl<'a, O> VisitController<'a, O> {
     /// Nothing of the shopper is to be seen any more, and no work for them goes on.
     fn clear<S: Scene>(&mut self, context: &mut ControllerContext<S, O>) {
         self.worker.forget();
+        self.worn_face.take_away();
+        self.faces.iter_mut().for_each(FaceCamera::cancel);
+        self.portrayed.clear();
         (self.jobs, self.measuring, self.afresh) = (PendingJobs::default(), None, true);
         context.changer.wipe();
         self.window.pairs.push(None);
@@ -233,9 +262,23 @@ impl<'a, O> VisitController<'a, O> {
                 Input::Draped(number)
             }
             JobResult::Picture(offered) => Input::PictureTaken(number, offered),
+            JobResult::Face(made) => {
+                let taken = made.map(|heads| self.worn_face.put_on(heads));
+                Input::FaceTaken(number, taken)
+            }
             JobResult::Failed => Input::Failed(number),
         };
         self.update(now, input, context);
+    }
+
+    /// Gives the worker the picture that was asked for, or says that there is none.
+    fn take_face<S: Scene>(&mut self, now: u64, context: &mut ControllerContext<S, O>) {
+        let taken = self.faces.as_mut().and_then(|faces| faces.poll(now));
+        match taken {
+            Some((number, Ok(portrait))) => self.jobs.face = Some((number, self.portrayed.clone(), portrait)),
+            Some((number, Err(trouble))) => self.update(now, Input::FaceTaken(number, Err(trouble)), context),
+            None => {}
+        }
     }
 
     /// Ends measuring when enough was seen, or when too little came for too long.
@@ -271,6 +314,8 @@ impl<'a, O> VisitController<'a, O> {
             client().map(|client| (number, DressingJob::Two(client, outfits)))
         } else if let Some((number, outfit, yaw)) = jobs.snap.take() {
             client().map(|client| (number, DressingJob::Snap(client, outfit, yaw)))
+        } else if let Some((number, outfit, portrait)) = jobs.face.take() {
+            client().map(|client| (number, DressingJob::Face(client, outfit, portrait)))
         } else {
             None
         };
@@ -342,6 +387,7 @@ impl<S: Scene, O> SessionController<S, O> for VisitController<'_, O> {
         if let Some((number, done)) = self.worker.poll()? {
             self.done(now, number, done, context);
         }
+        self.take_face(now, context);
         self.measure(now, context);
         self.start_next_job()?;
         self.restock(context);

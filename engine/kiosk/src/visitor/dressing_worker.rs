@@ -1,10 +1,11 @@
-//! The dressing worker: measures a shopper, dresses them, drapes two sizes and takes a picture, one after the other, on a thread of its own that
+//! The dressing worker: measures a shopper, dresses them, drapes two sizes, takes a picture and makes a head of their face, one after the other, on a thread of its own that
 //! nothing waits for.
 
 use std::net::SocketAddr;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use toile_assets::body::Sex;
 use toile_assets::file;
 use toile_assets::sizes::Population;
 use toile_engine::cloth::Quality;
@@ -20,9 +21,10 @@ use toile_fitting::live::dresser::ShopperSource;
 use toile_sensors::frame::Joints;
 use toile_track::tape_readings;
 use toile_view::drawn_frame::{self, DrawnFrame};
-use toile_view::figure::Appearance;
+use toile_view::figure::{Appearance, OwnHead};
 use toile_view::image::{Size, linear};
 
+use super::own_face::{FaceMaker, FaceTrouble, Portrait};
 use super::picture::{self, RgbImage};
 use super::picture_link::PictureServer;
 use super::picture_store::{OfferedPicture, PictureLink};
@@ -74,6 +76,8 @@ pub enum DressingJob {
     Two(Box<MeasuredVisitor>, Box<[Outfit; 2]>),
     /// Take a picture of them from an angle (rad).
     Snap(Box<MeasuredVisitor>, Outfit, f32),
+    /// Make a head of the face in a picture of them, for the body that wears this outfit.
+    Face(Box<MeasuredVisitor>, Outfit, Arc<Portrait>),
 }
 
 /// Result of a job.
@@ -86,6 +90,8 @@ pub enum JobResult {
     Two(Box<[DrapedFrame; 2]>),
     /// The picture, by its codes.
     Picture(OfferedPicture),
+    /// Their head, of each drawing that their body may have; or why there is none.
+    Face(Result<Vec<Arc<OwnHead>>, FaceTrouble>),
     /// It could not be done; why is not reported, for it may say something about them.
     Failed,
 }
@@ -105,6 +111,8 @@ pub struct DressingContext {
     appearance: Appearance,
     /// Where pictures are served, if they are.
     served: PictureConfig,
+    /// Makes heads of faces, where shoppers may have theirs taken.
+    faces: Option<Arc<Mutex<FaceMaker>>>,
     /// What this shopper has put on, open, the last one last: they keep it, whatever becomes of its file.
     worn: Mutex<Vec<Arc<Choice>>>,
 }
@@ -124,6 +132,11 @@ impl DressingWorker {
     /// Whether a job is under way, wanted or not.
     pub fn is_busy(&self) -> bool {
         self.job.is_running()
+    }
+
+    /// Whether it makes heads of faces.
+    pub fn makes_faces(&self) -> bool {
+        self.context.faces.is_some()
     }
 
     /// Begins a job, by its number.
@@ -173,7 +186,7 @@ impl DressingContext {
         appearance: Appearance,
     ) -> Self {
         let served = PictureConfig::default();
-        Self { wardrobe, first, quality, facts, appearance, served, worn: Mutex::default() }
+        Self { wardrobe, first, quality, facts, appearance, served, faces: None, worn: Mutex::default() }
     }
 
     /// The same, whose pictures are served.
@@ -182,10 +195,17 @@ impl DressingContext {
         Self { served, ..self }
     }
 
+    /// The same, which makes heads of faces.
+    #[must_use]
+    pub fn making_faces(self, faces: Option<Arc<Mutex<FaceMaker>>>) -> Self {
+        Self { faces, ..self }
+    }
+
     /// The same for the next shopper.
     fn anew(&self) -> Self {
         Self::new(self.wardrobe.clone(), self.first.clone(), self.quality, self.facts, self.appearance)
             .serving(self.served.clone())
+            .making_faces(self.faces.clone())
     }
 
     /// A garment as it hangs: one whose file is another one by now is not what the shopper has seen.
@@ -223,6 +243,7 @@ impl DressingContext {
                 JobResult::Two(Box::new([self.draped(&client, left)?, self.draped(&client, right)?]))
             }
             DressingJob::Snap(client, outfit, yaw) => JobResult::Picture(self.picture(&client, &outfit, yaw)?),
+            DressingJob::Face(client, outfit, portrait) => JobResult::Face(self.face(&client, &outfit, &portrait)?),
         })
     }
 
@@ -237,7 +258,6 @@ impl DressingContext {
     }
 
     fn recipe(&self, client: &MeasuredVisitor, worn: &Outfit) -> Result<Recipe, KioskError> {
-        let mut population = Population::Mixed;
         let mut garments = Vec::with_capacity(worn.len());
         for w in worn {
             let item = self
@@ -246,13 +266,30 @@ impl DressingContext {
                 .get(w.item)
                 .ok_or_else(|| KioskError::internal("a garment is not in the wardrobe"))?;
             let size = item.sizes.get(w.size).ok_or_else(|| KioskError::internal("a size is not made"))?;
-            if population == Population::Mixed {
-                population = item.population;
-            }
             garments.push((item.name.clone(), size.clone()));
         }
-        let sex = measured::sex(client.known.population, population);
-        Recipe::of("shopper", &client.known.measured, sex, garments, self.quality)
+        Recipe::of("shopper", &client.known.measured, self.sex(client, worn), garments, self.quality)
+    }
+
+    /// The sex of the body that is shown of somebody in an outfit: that of the innermost garment that is made for one, where it was not measured.
+    fn sex(&self, client: &MeasuredVisitor, worn: &Outfit) -> Sex {
+        let made_for = worn.iter().filter_map(|w| self.wardrobe.items.get(w.item)).map(|item| item.population);
+        let garments = made_for.into_iter().find(|p| *p != Population::Mixed).unwrap_or(Population::Mixed);
+        measured::sex(client.known.population, garments)
+    }
+
+    /// The heads that a face in a picture makes.
+    fn face(
+        &self,
+        client: &MeasuredVisitor,
+        worn: &Outfit,
+        portrait: &Portrait,
+    ) -> Result<Result<Vec<Arc<OwnHead>>, FaceTrouble>, KioskError> {
+        let faces = self.faces.as_ref().ok_or_else(|| KioskError::internal("no network finds faces"))?;
+        let sex = self.sex(client, worn);
+        // Whose sex is not known changes the drawing with the garment.
+        let either: Vec<Sex> = if client.known.population == Population::Mixed { Sex::ALL.into() } else { vec![sex] };
+        Ok(faces.lock().unwrap_or_else(PoisonError::into_inner).make(portrait, &either))
     }
 
     fn dressed(&self, client: &MeasuredVisitor, worn: &Outfit) -> Result<Dressed, KioskError> {

@@ -4,6 +4,7 @@ use toile_sensors::source::live::CameraState;
 use toile_track::gesture::Gesture;
 use toile_track::tape_readings::TapeReadings;
 
+use super::own_face::FaceTrouble;
 use super::picture_store::OfferedPicture;
 use super::presence::Presence;
 use super::screen::Action;
@@ -130,6 +131,8 @@ pub enum Input {
     Draped(u32),
     /// The picture is taken.
     PictureTaken(u32, OfferedPicture),
+    /// The shopper's face was taken and is at hand for whoever dresses them, or why not.
+    FaceTaken(u32, Result<(), FaceTrouble>),
     /// What was asked for cannot be done.
     Failed(u32),
 }
@@ -172,7 +175,14 @@ pub enum Effect {
         /// From where it is looked at (rad).
         yaw: f32,
     },
-    /// Show the mannequin at once: somebody else looks.
+    /// Take the shopper's face from the next picture; [`Input::FaceTaken`].
+    TakeFace {
+        /// Number of the effect, which its reply carries.
+        number: u32,
+        /// What the body wears, for whom its drawing may be.
+        outfit: Outfit,
+    },
+    /// Show the mannequin at once, without a face: somebody else looks, or the shopper takes their face away.
     Hide,
     /// The shopper has left: nothing of them is to stay anywhere.
     Forget,

@@ -6,11 +6,12 @@
 use std::sync::Arc;
 
 pub use super::message::{Effect, Effects, Input, NavigationKey, VisitDefaults, VisitTimes};
+use super::own_face::FaceTrouble;
 use super::presence::Presence;
 use super::screen::Page;
 use super::size_fit::{self, SizeFit, VisitorMeasures};
 use super::texts::Language;
-use super::visit::{ComparedSizes, MeasureProgress, ViewTurn, Visit};
+use super::visit::{ComparedSizes, MeasureProgress, OwnFace, ViewTurn, Visit};
 use super::wardrobe::{Outfit, Wardrobe, WornItem};
 use crate::service::session::{SessionInput, SessionMachine, SessionState};
 use toile_fitting::dress::offer::GarmentOffer;
@@ -28,6 +29,8 @@ pub struct VisitModel {
     pub(super) camera: CameraState,
     /// What became of the camera's last picture, where shoppers may see themselves ([`super::plain::code`]).
     pub(super) own_picture: Option<u8>,
+    /// Whether shoppers may have their own face taken.
+    pub(super) face_offered: bool,
     /// Since when nobody is seen (ns), and whether the one who has said that they are done is still there.
     unseen_ns: u64,
     resting: bool,
@@ -50,11 +53,17 @@ impl VisitModel {
             seen: Presence::default(),
             camera: CameraState::Seeing,
             own_picture: None,
+            face_offered: false,
             unseen_ns: now_ns,
             resting: false,
             focus: 0,
             number: 0,
         }
+    }
+
+    /// Shoppers may have their own face taken from now on.
+    pub fn offer_faces(&mut self) {
+        self.face_offered = true;
     }
 
     /// Whether nobody is there and nobody looks: then another stock may hang.
@@ -236,7 +245,7 @@ impl VisitModel {
         (visit.asked_ns, visit.hidden) = (Some(self.now_ns), true);
         visit.picture.wipe();
         // Work under way is for the visitor before.
-        (visit.dressing, visit.snapping, visit.pair) = (None, None, None);
+        (visit.dressing, visit.snapping, visit.pair, visit.face) = (None, None, None, OwnFace::default());
         if matches!(visit.progress, MeasureProgress::Measuring(_) | MeasureProgress::Turning) {
             visit.progress = MeasureProgress::Guide { ready_ns: None, not_before_ns: 0 };
         }
@@ -332,6 +341,9 @@ impl VisitModel {
             Input::PictureTaken(number, offered) if is_asked(&mut visit.snapping, number) => {
                 visit.picture.put(offered, self.now_ns, self.now_ns + self.defaults.times.picture_ns);
             }
+            Input::FaceTaken(number, taken) if is_asked(&mut visit.face.asked, number) => {
+                self.face_taken(taken, effects);
+            }
             Input::Failed(number) => self.failed(number, effects),
             _ => {}
         }
@@ -354,6 +366,8 @@ impl VisitModel {
                 self.take_in_hand(None);
                 self.finish_dressing();
             }
+        } else if is_asked(&mut visit.face.asked) {
+            visit.face.trouble = Some(FaceTrouble::Unlike);
         } else if is_asked(&mut visit.snapping) {
             visit.snap_failed = true;
         } else if let Some(pair) = visit.pair.as_mut().filter(|pair| pair.asked == Some(number)) {

@@ -116,6 +116,7 @@ impl VisitModel {
             Action::Begin => self.begin(effects),
             Action::Measure => self.measure_again(walk_ns),
             Action::Open(Page::Compare) => self.open_compare(effects),
+            Action::Open(Page::Face) => self.open_face(),
             Action::Open(page) => {
                 self.visit.shelf = self.visit.in_hand / SHELF;
                 self.open(page);
@@ -132,6 +133,8 @@ impl VisitModel {
             Action::Turn(eighths) => self.turn(eighths),
             Action::FitMap => self.visit.fit_map = !self.visit.fit_map,
             Action::OwnPicture => self.visit.own_picture = !self.visit.own_picture,
+            Action::TakeFace => self.take_face(effects),
+            Action::RemoveFace => self.remove_face(effects),
             Action::TakePicture => self.snap(effects),
             Action::OtherCode => self.visit.picture.show_other(),
             Action::DeletePicture => {

@@ -5,6 +5,7 @@
 //! Thread: the service's.
 
 mod clothes;
+mod face;
 mod fit;
 mod own_measures;
 mod visit;
@@ -64,7 +65,7 @@ impl VisitModel {
                 BodyView::Two { yaw }
             }
             page if self.shows_body(page) => {
-                let own_picture = self.sees_themselves();
+                let own_picture = self.sees_themselves() && page != Page::Face;
                 BodyView::Shopper { yaw, fit: false, unknown: [false; 3], judged: None, own_picture }
             }
             Page::Zones | Page::Zone if shown => {
@@ -83,6 +84,7 @@ impl VisitModel {
                 | Page::Garments
                 | Page::Compare
                 | Page::Picture
+                | Page::Face
                 | Page::Settings
                 | Page::Unmeasured
                 | Page::OwnMeasures
@@ -192,6 +194,7 @@ impl PageWriter<'_> {
             Page::Zone => self.zone_heading(),
             Page::Compare => self.compare_heading(),
             Page::Picture => self.words(TextKey::PictureHeading),
+            Page::Face => self.words(TextKey::FaceHeading),
             Page::OwnMeasures => self.words(TextKey::OwnHeading),
             Page::MeasureEntry => self.entry_heading(),
             Page::Settings => self.words(TextKey::SettingsHeading),
@@ -212,6 +215,7 @@ impl PageWriter<'_> {
             Page::Zone => self.zone(),
             Page::Compare => self.compare(),
             Page::Picture => self.picture(),
+            Page::Face => self.face(),
             Page::OwnMeasures => self.own_measures(),
             Page::MeasureEntry => self.entry(),
             Page::Settings => self.settings(),
@@ -256,6 +260,7 @@ impl PageWriter<'_> {
             Action::Open(Page::Compare) => TextKey::DoCompare,
             Action::Open(Page::Picture) => TextKey::DoShowPicture,
             Action::Open(Page::OwnMeasures) => TextKey::DoOwnMeasures,
+            Action::Open(Page::Face) => TextKey::DoFace,
             Action::Open(_) => TextKey::DoSettings,
             Action::Back if page == Page::Unmeasured => TextKey::DoGoOn,
             Action::Back => TextKey::DoBack,
@@ -264,6 +269,9 @@ impl PageWriter<'_> {
             Action::FitMap => TextKey::DoFitMap,
             Action::OwnPicture if self.model.visit.own_picture => TextKey::DoMannequin,
             Action::OwnPicture => TextKey::DoOwnPicture,
+            Action::TakeFace if self.model.visit.face.is_untried() => TextKey::DoFacePutOn,
+            Action::TakeFace => TextKey::DoFaceAgain,
+            Action::RemoveFace => TextKey::DoFaceAway,
             Action::TakePicture => TextKey::DoPicture,
             Action::DeletePicture => TextKey::DoDeletePicture,
             Action::OtherCode if self.model.visit.picture.link().is_some() => TextKey::DoPictureOwn,
@@ -301,6 +309,7 @@ impl PageWriter<'_> {
                     ControlStyle::Primary
                 }
             }
+            (Page::Face, Action::TakeFace) if !self.model.visit.face.on => ControlStyle::Primary,
             (_, Action::Digit(_) | Action::Point | Action::DeleteDigit) => ControlStyle::Key,
             (Page::Unmeasured, Action::Back) if self.is_partly() => ControlStyle::Primary,
             (_, Action::Back | Action::Leave | Action::Open(Page::Settings) | Action::LargeType | Action::Unit) => {

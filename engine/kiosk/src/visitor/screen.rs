@@ -31,6 +31,8 @@ pub enum Page {
     Compare,
     /// A picture that was asked for, as a code to scan.
     Picture,
+    /// The shopper's own face on the mannequin: what happens, and whether it is on.
+    Face,
     /// Measures that the shopper took by tape.
     OwnMeasures,
     /// One of them, being typed.
@@ -104,6 +106,10 @@ pub enum Action {
     FitMap,
     /// See oneself in the camera's picture, or the mannequin.
     OwnPicture,
+    /// Take the shopper's face, and put it on the mannequin.
+    TakeFace,
+    /// Take it away.
+    RemoveFace,
     /// Take a picture of the dressed body.
     TakePicture,
     /// Show the other code of the picture.

@@ -1,10 +1,12 @@
 //! Setup: the visitor's parts as the configuration of the kiosk has them.
 
-use std::sync::Arc;
+use std::path::Path;
+use std::sync::{Arc, Mutex};
 
 use super::controller::{VisitController, WindowChannels};
 use super::dressing_worker::DressingContext;
 use super::model::{VisitDefaults, VisitModel, VisitTimes};
+use super::own_face::FaceMaker;
 use super::reach::DisplayMount;
 use super::screen::Screen;
 use super::texts::{Language, Texts};
@@ -15,6 +17,7 @@ use crate::service::picture_config::OwnPictureUse;
 use crate::service::stock::{LeftOut, Stock};
 use crate::service::stock_watch::Hang;
 use toile_fitting::live::dresser::ShopperSource;
+use toile_pose::files;
 
 /// A minute (s).
 const MINUTE_S: f64 = 60.0;
@@ -60,7 +63,7 @@ impl VisitorSetup {
         let first = stock.first.clone();
         let (quality, appearance) = (config.wish().quality, display.appearance());
         let context = DressingContext::new(wardrobe.clone(), first, quality, facts, appearance);
-        let context = context.serving(config.picture.clone());
+        let context = context.serving(config.picture.clone()).making_faces(faces(config, &files::folder())?);
         let model = VisitModel::new(defaults, wardrobe, now_ns);
         Ok(Self { model, texts: Texts::load()?, mount, context, mark: display.mark_m, left_out })
     }
@@ -85,6 +88,19 @@ impl VisitorSetup {
     }
 }
 
+/// What makes heads of faces, where shoppers may have theirs taken and there is a camera.
+///
+/// # Errors
+/// The network's file is missing, or another one.
+fn faces(config: &Config, folder: &Path) -> Result<Option<Arc<Mutex<FaceMaker>>>, KioskError> {
+    let has_camera = config.sensor.camera().map_err(KioskError::input)?.is_some();
+    if !config.display.face || !has_camera {
+        return Ok(None);
+    }
+    let maker = FaceMaker::load(folder).map_err(|why| KioskError::Device(why.to_string()))?;
+    Ok(Some(Arc::new(Mutex::new(maker))))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -104,6 +120,24 @@ mod tests {
         assert!(first.type_scale > 1.0);
         let high = 300.0 + first.reach * 1500.0;
         assert!((high - 1220.0).abs() < 0.5, "{high}");
+    }
+
+    #[test]
+    fn faces_are_off_by_default_and_refused_without_their_network() {
+        let none = Path::new("no/such");
+        let made = |text: &str| faces(&Config::parse("k.toml", text).unwrap(), none);
+        assert!(!config::DisplayConfig::default().face);
+        assert!(made("[sensor]\ncamera = \"webcam\"\n").unwrap().is_none());
+        assert!(made("[display]\nface = true\n").unwrap().is_none(), "without a camera there is no face to take");
+        let refused = made("[display]\nface = true\n[sensor]\ncamera = \"webcam\"\n").err().unwrap();
+        let KioskError::Device(why) = refused else { panic!("{refused}") };
+        assert!(
+            why.starts_with("a shopper's own face needs the face network of MediaPipe, and no/such holds no"),
+            "{why}"
+        );
+        assert!(why.contains("; fetch it: `cd $(mktemp -d) && npm pack") && !why.contains('\n'), "{why}");
+        assert!(Config::parse("k.toml", "[display]\nface = 3\n").is_err());
+        assert!(config::EXAMPLE.contains("\nface = false\n"));
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Whole visits: the model, its pages and its texts, driven as sensor, finger, keyboard and dressing worker drive them.
 
+mod own_face;
 mod own_measures;
 mod privacy;
 mod shelves;
@@ -11,6 +12,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use super::model::{Effect, Input, VisitDefaults, VisitModel, VisitTimes};
+use super::own_face::FaceTrouble;
 use super::picture::{self, PictureCode};
 use super::picture_store::{OfferedPicture, PictureLink};
 use super::presence::Presence;
@@ -58,6 +60,8 @@ pub(crate) struct Play {
     fails: bool,
     /// The link that pictures come with, where they are served.
     link: Option<PictureLink>,
+    /// What becomes of a face that is taken.
+    face: Result<(), FaceTrouble>,
 }
 
 impl Play {
@@ -73,6 +77,7 @@ impl Play {
             pages: BTreeSet::new(),
             fails: false,
             link: None,
+            face: Ok(()),
         }
     }
 
@@ -101,6 +106,7 @@ impl Play {
                 Effect::DrapeTwo { number, .. } => Input::Draped(*number),
                 Effect::Snap { number, .. } if self.fails => Input::Failed(*number),
                 Effect::Snap { number, .. } => Input::PictureTaken(*number, code()),
+                Effect::TakeFace { number, .. } => Input::FaceTaken(*number, self.face),
                 Effect::Hide | Effect::Forget => Input::Tick,
             };
             self.due.push((in_a_second, reply));
@@ -117,6 +123,12 @@ impl Play {
     /// The camera's picture can be shown, and this became of the last one.
     pub(crate) fn picture_is(&mut self, outcome: u8) {
         self.update(Input::OwnPicture(outcome));
+    }
+
+    /// Faces can be taken, and this becomes of them.
+    pub(crate) fn offer_faces(&mut self, face: Result<(), FaceTrouble>) {
+        self.model.offer_faces();
+        self.face = face;
     }
 
     /// The first shopper is seen in depth, facing so far to their left (rad).

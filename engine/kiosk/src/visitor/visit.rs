@@ -5,6 +5,7 @@ use toile_track::tape_readings::TapeReadings;
 use super::body_turn::BodyTurn;
 use super::measure_entry::{LengthUnit, MeasureEntry};
 use super::message::VisitDefaults;
+use super::own_face::FaceTrouble;
 use super::picture_store::PictureStore;
 use super::screen::Page;
 use super::size_fit::{SizeFit, VisitorMeasures};
@@ -60,6 +61,24 @@ pub(super) struct ComparedSizes {
     pub refused: bool,
 }
 
+/// A shopper's own face on the mannequin, as far as the pages know of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct OwnFace {
+    /// Whether they have put it on.
+    pub on: bool,
+    /// The picture that is being taken, until it is a head.
+    pub asked: PendingJob,
+    /// Why the last one was not put on.
+    pub trouble: Option<FaceTrouble>,
+}
+
+impl OwnFace {
+    /// Whether none was taken, and none went wrong.
+    pub const fn is_untried(&self) -> bool {
+        !self.on && self.trouble.is_none()
+    }
+}
+
 /// All that is known of one shopper.
 #[derive(Debug, Clone)]
 pub(super) struct Visit {
@@ -111,6 +130,8 @@ pub(super) struct Visit {
     pub picture: PictureStore,
     pub snapping: PendingJob,
     pub snap_failed: bool,
+    /// Their own face.
+    pub face: OwnFace,
     /// Since when somebody else stands there (ns), and since when they are asked (ns).
     pub stranger_ns: Option<u64>,
     pub asked_ns: Option<u64>,
@@ -155,6 +176,7 @@ impl Visit {
             picture: PictureStore::default(),
             snapping: None,
             snap_failed: false,
+            face: OwnFace::default(),
             stranger_ns: None,
             asked_ns: None,
             language: defaults.language,

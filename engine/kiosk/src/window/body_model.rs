@@ -8,7 +8,7 @@ use toile_assets::mesh::vertex_normals;
 use toile_assets::sizes::Girth;
 use toile_engine::cloth::measure;
 use toile_engine::frame::{Frame, Snapshot};
-use toile_view::figure::{Appearance, Figure, PlacedHead};
+use toile_view::figure::{Appearance, Figure, OwnHead, PlacedHead};
 use toile_view::hidden_skin::CoveringCloth;
 use toile_view::own_picture::OwnPictureModel;
 use toile_view::raster::Model;
@@ -60,8 +60,8 @@ impl BodyModel {
     }
 
     /// Of a frame that was dressed, in rest as it lies in a snapshot of its own.
-    pub fn draped(frame: &Frame, snapshot: &Snapshot, appearance: Appearance) -> Self {
-        let mut model = Self::of(frame, appearance);
+    pub fn draped(frame: &Frame, snapshot: &Snapshot, appearance: Appearance, face: Option<&OwnHead>) -> Self {
+        let mut model = Self::of(frame, appearance, face);
         let mut normals = vec![Vec3::ZERO; snapshot.skin.vertices() + model.head.hair()];
         let points = snapshot.garments.iter().map(|g| g.to_vec());
         for (surface, points) in model.meshes.surfaces.iter_mut().skip(1).zip(points) {
@@ -74,8 +74,8 @@ impl BodyModel {
         model
     }
 
-    /// Of a frame that was dressed.
-    pub fn of(frame: &Frame, appearance: Appearance) -> Self {
+    /// Of a frame that was dressed, with the shopper's own head where it is on.
+    pub fn of(frame: &Frame, appearance: Appearance, face: Option<&OwnHead>) -> Self {
         let (body, garments) = (frame.body(), frame.garments());
         let over = |first: usize| {
             let worn = garments.iter().skip(first);
@@ -87,7 +87,7 @@ impl BodyModel {
             let depth = RECESS_M * (garments.len() + 1 - first) as f32 / (garments.len() + 1) as f32;
             dressed.into_iter().map(|d| if d { depth.max(RECESS_M * 0.25) } else { 0.0 }).collect()
         };
-        let figure = Figure::of(body, appearance);
+        let figure = Figure::with_head(body, appearance, face);
         let mut recesses: Vec<Vec<f32>> = vec![recess(0, &body.mesh.positions, &body.normals)];
         // Hair lies over everything.
         recesses[0].resize(figure.rest.len(), 0.0);

@@ -16,7 +16,9 @@ use crate::service::report::KioskReport;
 use crate::service::stock_watch::{self, LOOK_EVERY, StockWatch, WatchStart};
 use crate::service::{BoxedController, ControllerStart, Frontend, KioskRun, serve};
 use crate::visitor::controller;
+use crate::visitor::face_camera::FaceCamera;
 use crate::visitor::model::Input;
+use crate::visitor::own_face::WornFace;
 use crate::visitor::setup::VisitorSetup;
 
 /// Runs `toile kiosk` at a window.
@@ -37,16 +39,21 @@ pub fn run(kiosk: KioskRun<'_>) -> Result<KioskReport, KioskError> {
         first: setup.first(),
         stop: kiosk.stop.clone(),
     };
-    let appearance = display.appearance();
+    let (appearance, worn) = (display.appearance(), WornFace::default());
     open::run(options, |channels| {
         let ServiceChannels { screens, mut user_events, pairs, opening } = channels;
         let next_input = Box::new(move || user_events.pop().map(input));
-        let draped = Box::new(move |frame: &Frame, snapshot: &Snapshot| BodyModel::draped(frame, snapshot, appearance));
+        let (face, to_scene) = (worn.clone(), to_scene(appearance, worn.clone()));
+        let draped = Box::new(move |frame: &Frame, snapshot: &Snapshot| {
+            BodyModel::draped(frame, snapshot, appearance, face.of(frame.body().sex).as_deref())
+        });
         let channels = controller::WindowChannels { screens, next_input, pairs, draped };
         let controller = move |start: ControllerStart| -> Result<BoxedController<'_, BodyModel>, KioskError> {
             let (left_out, hang, pose) = (setup.left_out.clone(), setup.hang(), start.pose);
             let watch = StockWatch::start(WatchStart { config, stock, left_out, pose, every: LOOK_EVERY, hang })?;
-            Ok(Box::new(setup.controller(channels, start.played).switching(start.switch).watching(watch)))
+            let faces = start.portraits.map(|(pictures, switch)| FaceCamera::new(pictures, switch));
+            let visit = setup.controller(channels, start.played).switching(start.switch).taking_faces(faces, worn);
+            Ok(Box::new(visit.watching(watch)))
         };
         let print_line = kiosk.print_line;
         let renderer = |mannequin: &Frame, pictures: Option<PictureReceiver>| {
@@ -54,9 +61,9 @@ pub fn run(kiosk: KioskRun<'_>) -> Result<KioskReport, KioskError> {
             if let Some(slow) = renderer.slowness() {
                 print_line(&slow);
             }
-            Ok(renderer.showing(BodyModel::of(mannequin, appearance)))
+            Ok(renderer.showing(BodyModel::of(mannequin, appearance, None)))
         };
-        let (mut report, drawn) = serve(kiosk, Frontend { renderer, to_scene: to_scene(appearance), controller })?;
+        let (mut report, drawn) = serve(kiosk, Frontend { renderer, to_scene, controller })?;
         if let Some(mut renderer) = drawn {
             let (window, warnings) = WindowRenderer::report(&mut renderer);
             report.window = Some(window);
@@ -67,9 +74,9 @@ pub fn run(kiosk: KioskRun<'_>) -> Result<KioskReport, KioskError> {
 }
 
 /// A frame as a scene of the loop, and what is drawn of it.
-fn to_scene(appearance: Appearance) -> ToScene<FrameScene, BodyModel> {
+fn to_scene(appearance: Appearance, worn: WornFace) -> ToScene<FrameScene, BodyModel> {
     Box::new(move |frame| {
-        let model = BodyModel::of(&frame, appearance);
+        let model = BodyModel::of(&frame, appearance, worn.of(frame.body().sex).as_deref());
         (FrameScene::new(frame), model)
     })
 }

@@ -3,6 +3,7 @@
 use std::str::FromStr;
 
 use glam::Vec3;
+use toile_assets::body::Sex;
 use toile_assets::toml_keys;
 
 use super::moulded::Cut;
@@ -41,6 +42,16 @@ toile_assets::named! {
         Bob = "bob",
         /// Combed back into a bun.
         Bun = "bun",
+    }
+}
+
+impl Hair {
+    /// What is put on a head of which nothing is said: a bob on a woman's, short hair on a man's.
+    pub const fn usual(sex: Sex) -> Self {
+        match sex {
+            Sex::Female => Self::Bob,
+            Sex::Male => Self::Short,
+        }
     }
 }
 

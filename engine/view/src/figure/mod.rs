@@ -1,4 +1,5 @@
-//! The figure that is drawn of a body: a shop mannequin's head in the place of the drawn one, the tone of the skin, the hair.
+//! The figure that is drawn of a body: a shop mannequin's head in the place of the drawn one, or the shopper's own; the tone of the
+//! skin, the hair.
 //!
 //! Reads: a body at rest, and its skin as it was posed. Writes: what is drawn: the body's vertices in their order, then the hair's.
 //! Budget: 30 ms at load; 50 us a picture, nothing allocated. Thread: that which dresses, then the renderer's.
@@ -13,20 +14,23 @@ mod head_space;
 
 mod face;
 mod moulded;
+mod own_head;
 
 mod appearance;
 mod placed_head;
 #[cfg(test)]
 mod tests;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use toile_assets::body::{Body, Region, base};
 use toile_assets::mesh::vertex_normals;
+use toile_assets::skeleton::Joint;
 
 use crate::base_layer::{HAIR_AT, base_layer};
 use crate::cloth_look::GarmentLook;
 
 pub use appearance::{Appearance, Hair, SkinTone, UnknownName};
+pub use own_head::{OwnHead, OwnHeadPicture};
 pub use placed_head::PlacedHead;
 
 use face::Face;
@@ -64,16 +68,40 @@ impl Figure {
         if let Some(space) = HeadSpace::of(body).filter(|_| base::is_drawn(&body.mesh)) {
             let Face { positions, normals } = Face::of(body, &space);
             (figure.rest, figure.normals) = (positions, normals);
-            figure.take_hair(body, &space, appearance.hair);
+            figure.take_hair(body, &space, appearance.hair, HAIR_AT);
             figure.head = PlacedHead::new(body, &figure.rest, &figure.normals);
         }
         figure
     }
 
-    fn take_hair(&mut self, body: &Body, space: &HeadSpace, hair: Hair) {
+    /// The figure of a body with the shopper's own head, where there is one that fits: of the same sex's drawing. A mannequin's otherwise.
+    pub fn with_head(body: &Body, appearance: Appearance, own: Option<&OwnHead>) -> Self {
+        let space = HeadSpace::of(body).filter(|_| base::is_drawn(&body.mesh));
+        let Some((own, space)) = own.filter(|own| own.sex() == body.sex).zip(space) else {
+            return Self::of(body, appearance);
+        };
+        let (rest, normals) = own.on(body, &space);
+        let mut figure = Self {
+            rest,
+            normals,
+            triangles: body.mesh.triangles.clone(),
+            look: own.look(base_layer(body, own.hair())),
+            colour: own.skin(),
+            head: PlacedHead::default(),
+        };
+        // A shop whose mannequins have no hair has said nothing of shoppers.
+        let cut = if appearance.hair == Hair::None { Hair::usual(body.sex) } else { appearance.hair };
+        let around = HeadSpace::around(&figure.rest, &body.regions, body.skeleton.at(Joint::Head)).unwrap_or(space);
+        figure.take_hair(body, &around, cut, own.hair_at());
+        figure.head = PlacedHead::new(body, &figure.rest, &figure.normals);
+        figure
+    }
+
+    /// Puts hair on, which has its colour at a point of the look's picture.
+    fn take_hair(&mut self, body: &Body, space: &HeadSpace, hair: Hair, at: Vec2) {
         let Some(hair) = HairMesh::on(&self.rest, &body.mesh.triangles, space, hair) else { return };
         let first = self.rest.len() as u32;
-        self.look.corners.extend(hair.triangles.iter().map(|_| [HAIR_AT; 3]));
+        self.look.corners.extend(hair.triangles.iter().map(|_| [at; 3]));
         self.triangles.extend(hair.triangles.into_iter().map(|t| t.map(|v| v + first)));
         self.rest.extend(hair.positions);
         self.normals.extend(hair.normals);

@@ -3,7 +3,7 @@
 use toile_engine::lanes::Width;
 
 use super::conv::{self, PackedConv, Product};
-use super::kernels::{AddKernel, DepthwiseKernel, ResizeKernel};
+use super::kernels::{AddKernel, DepthwiseKernel, ResizeKernel, SlopesKernel};
 use super::op::Op;
 use super::reference;
 use super::single::{self, Single};
@@ -48,6 +48,9 @@ pub fn run(
         }
         (Op::Resize(small, large), _) => {
             narrow(width, small.channels).run(ResizeKernel { shapes: [*small, *large], from: inputs[0], to: out });
+        }
+        (Op::Slopes(slopes), _) => {
+            narrow(width, slopes.len()).run(SlopesKernel { slopes, from: inputs[0], to: out });
         }
         // These copy, or are a handful of numbers: their twin is as fast as can be.
         _ => reference::run(op, inputs, out),

@@ -146,6 +146,33 @@ impl Kernel for AddKernel<'_> {
     }
 }
 
+/// Numbers of which those below 0 have a slope.
+pub struct SlopesKernel<'a> {
+    /// Slopes `[channel]`.
+    pub slopes: &'a [f32],
+    /// The image `[height][width][channel]`.
+    pub from: &'a [f32],
+    /// The image that is written `[height][width][channel]`.
+    pub to: &'a mut [f32],
+}
+
+impl Kernel for SlopesKernel<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let (channels, pixels) = (self.slopes.len(), self.to.len() / self.slopes.len());
+        let (slopes, from, to) = (ReadColumn::new(self.slopes), ReadColumn::new(self.from), WriteColumn::new(self.to));
+        let zero = L::splat(0.0);
+        for pixel in 0..pixels {
+            vectors::<L>(channels, |c, n| {
+                let (x, at) = (load::<L>(from, pixel * channels + c, n), pixel * channels + c);
+                store(x.max(zero) + x.min(zero) * load::<L>(slopes, c, n), to, at, n);
+            });
+        }
+    }
+}
+
 /// An image of another size, bilinear.
 pub struct ResizeKernel<'a> {
     /// Sizes of both.

@@ -64,7 +64,9 @@ pub enum Op {
     Logistic,
     /// Greatest number of a window, channel by channel.
     MaxPool(Sliding),
-    /// Zeros above and left of an image; the rest of the output is zeros too.
+    /// What is below 0 times the slope of its channel `[channel]`.
+    Slopes(Box<[f32]>),
+    /// Zeros above and left of an image; the rest of the output is zeros too, and so are channels that it has more.
     Pad {
         /// Shape of the image that is made larger.
         input: Shape,

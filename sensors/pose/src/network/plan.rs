@@ -167,17 +167,23 @@ fn typed_op(operator: &Operator, tensors: &mut [TensorInfo]) -> Result<Op, Netwo
             fits([output.height, output.width, output.channels * block * block] == [height, width, input.channels])?;
             Ok(Op::DepthToSpace(input, block))
         }
+        RawOp::Slopes { given } => {
+            let slopes = if given { floats(operator, 1, tensors)?.0 } else { vec![0.0; input.channels].into() };
+            fits(input == output && slopes.len() == input.channels)?;
+            Ok(Op::Slopes(slopes))
+        }
         RawOp::Logistic => fits(input == output).map(|()| Op::Logistic),
         RawOp::Resize => fits(input.channels == output.channels).map(|()| Op::Resize(input, output)),
         RawOp::Pad => {
             let constant = operator.inputs.get(1).copied().flatten().and_then(|i| tensors[i].constant.as_ref());
             let Some(Constant::Ints(sides)) = constant else { return Err(unfit()) };
-            let &[0, 0, top, bottom, left, right, 0, 0] = &sides[..] else { return Err(unfit()) };
-            let [top, bottom, left, right] =
-                [top, bottom, left, right].map(|n| usize::try_from(n).unwrap_or(usize::MAX / 4));
+            let &[0, 0, top, bottom, left, right, 0, more] = &sides[..] else { return Err(unfit()) };
+            let [top, bottom, left, right, more] =
+                [top, bottom, left, right, more].map(|n| usize::try_from(n).unwrap_or(usize::MAX / 4));
             let height = top.saturating_add(bottom).saturating_add(input.height);
             let width = left.saturating_add(right).saturating_add(input.width);
-            fits(output == Shape { height, width, channels: input.channels })?;
+            let channels = more.saturating_add(input.channels);
+            fits(output == Shape { height, width, channels })?;
             Ok(Op::Pad { input, output, before: [top, left] })
         }
         RawOp::Reshape | RawOp::Dequantize | RawOp::Densify => Err(unfit()),
@@ -194,6 +200,7 @@ fn name(op: &RawOp) -> &'static str {
         RawOp::Dequantize | RawOp::Densify => "packed constant",
         RawOp::Logistic => "logistic function",
         RawOp::MaxPool(..) => "maximum",
+        RawOp::Slopes { .. } => "slope",
         RawOp::Reshape => "reshaping",
         RawOp::Resize => "resizing",
         RawOp::Pad => "border",

@@ -39,9 +39,20 @@ pub fn run(op: &Op, inputs: &[&[f32]], out: &mut [f32]) {
         Op::DepthToSpace(shape, block) => depth_to_space(*shape, *block, inputs[0], out),
         Op::Logistic => out.iter_mut().zip(inputs[0]).for_each(|(to, x)| *to = logistic(*x)),
         Op::MaxPool(sliding) => max_pool(sliding, inputs[0], out),
+        Op::Slopes(slopes) => {
+            for (to, from) in out.chunks_exact_mut(slopes.len()).zip(inputs[0].chunks_exact(slopes.len())) {
+                to.iter_mut().zip(from).zip(slopes).for_each(|((to, x), slope)| *to = sloped(*x, *slope));
+            }
+        }
         Op::Pad { input, output, before } => pad(*input, *output, *before, inputs[0], out),
         Op::Resize(from, to) => resize(*from, *to, inputs[0], out),
     }
+}
+
+/// One number, times a slope where it is below 0. Of a NaN it makes 0.
+pub fn sloped(x: f32, slope: f32) -> f32 {
+    let (above, below) = (if x > 0.0 { x } else { 0.0 }, if x < 0.0 { x } else { 0.0 });
+    above + below * slope
 }
 
 /// 1 / (1 + e^-x).
@@ -125,10 +136,9 @@ fn depth_to_space(shape: Shape, block: usize, from: &[f32], out: &mut [f32]) {
 
 fn pad(input: Shape, output: Shape, before: [usize; 2], from: &[f32], out: &mut [f32]) {
     out.fill(0.0);
-    let row = input.width * input.channels;
-    for y in 0..input.height {
-        let to = ((y + before[0]) * output.width + before[1]) * input.channels;
-        out[to..to + row].copy_from_slice(&from[y * row..][..row]);
+    for (at, pixel) in from.chunks_exact(input.channels).enumerate() {
+        let (y, x) = (at / input.width + before[0], at % input.width + before[1]);
+        out[(y * output.width + x) * output.channels..][..input.channels].copy_from_slice(pixel);
     }
 }
 

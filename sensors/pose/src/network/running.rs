@@ -53,6 +53,18 @@ impl Network {
         self.plan.input.0
     }
 
+    /// Refuses a network that takes anything but a square picture of so many pixels a side.
+    ///
+    /// # Errors
+    /// What it takes instead.
+    pub fn takes_square(&self, side: usize) -> Result<(), NetworkFault> {
+        let Shape { height, width, channels } = self.input_shape();
+        if [height, width, channels] == [side, side, 3] {
+            return Ok(());
+        }
+        Err(NetworkFault::new(format!("it takes an image of {width} x {height} pixels")))
+    }
+
     /// The image, to be filled in before each run.
     pub fn input(&mut self) -> &mut [f32] {
         self.buffers[self.plan.input.1].as_mut()
@@ -67,6 +79,12 @@ impl Network {
     /// On so many lanes from now on; the results are the same bits.
     pub fn set_width(&mut self, width: Width) {
         self.width = width;
+    }
+
+    /// Overwrites what it has of the last image.
+    pub fn wipe(&mut self) {
+        self.buffers.iter_mut().for_each(|buffer| buffer.as_mut().fill(0.0));
+        self.scratch.as_mut().fill(0.0);
     }
 
     /// Multiply-adds of a run.

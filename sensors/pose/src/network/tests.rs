@@ -109,6 +109,29 @@ fn sums_and_other_sizes_are_those_of_their_twin_to_the_bit() {
     }
 }
 
+#[test]
+fn slopes_are_those_of_their_twin_to_the_bit() {
+    let mut random = SplitMix64::new(6);
+    for channels in [1, 5, 16, 19, 128] {
+        let shape = Shape { height: 3, width: 5, channels };
+        let mut image = drawn(&mut random, shape.numbers());
+        (image[0], image[1], image[2]) = (0.0, -0.0, f32::NAN);
+        agrees(&Op::Slopes(drawn(&mut random, channels)), &[&image], shape);
+        agrees(&Op::Slopes(vec![0.0; channels].into()), &[&image], shape);
+    }
+    let mut out = [0.0; 4];
+    reference::run(&Op::Slopes(vec![0.5, -2.0].into()), &[&[3.0, 3.0, -3.0, -3.0]], &mut out);
+    assert_eq!(out, [3.0, 3.0, -1.5, 6.0]);
+}
+
+#[test]
+fn a_border_has_zeros_around_and_in_channels_that_are_more() {
+    let [input, output] = [(1, 2, 1), (2, 3, 2)].map(|(height, width, channels)| Shape { height, width, channels });
+    let mut out = [f32::NAN; 12];
+    reference::run(&Op::Pad { input, output, before: [1, 1] }, &[&[7.0, 8.0]], &mut out);
+    assert_eq!(out, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 7.0, 0.0, 8.0, 0.0]);
+}
+
 /// What the twin itself computes, against numbers worked out by hand.
 #[test]
 fn a_convolution_of_ones_counts_the_places_of_its_window() {

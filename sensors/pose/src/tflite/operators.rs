@@ -64,6 +64,11 @@ pub enum RawOp {
     Logistic,
     /// Greatest of a window of this height and width.
     MaxPool(Window, [usize; 2]),
+    /// What is below 0 times a slope of its channel, where there are slopes; else 0.
+    Slopes {
+        /// Whether the file has slopes.
+        given: bool,
+    },
     /// The same numbers in another shape.
     Reshape,
     /// An image of another size, bilinear.
@@ -125,9 +130,11 @@ pub fn operator(code: i32, options: Option<&Table<'_>>) -> Result<RawOp, Network
             let size = [side(options, 4, "a window")?, side(options, 3, "a window")?];
             RawOp::MaxPool(window(options, 5)?, size)
         }
+        19 => RawOp::Slopes { given: false },
         22 => RawOp::Reshape,
         23 if byte(2)? == 0 && byte(3)? != 0 => RawOp::Resize,
         34 => RawOp::Pad,
+        54 => RawOp::Slopes { given: true },
         124 => RawOp::Densify,
         other => return Err(NetworkFault::new(format!("it has an operator that is not known here (number {other})"))),
     })

@@ -1,4 +1,4 @@
-//! `toile capture face`: photographs with marked points become a mannequin's head that is like them.
+//! `toile capture face`: photographs with marked points, or one whose points are found, become a mannequin's head that is like them.
 
 use std::path::PathBuf;
 use std::slice::from_ref;
@@ -14,6 +14,7 @@ use toile_view::image::linear;
 
 use super::face_frames::{self, SequenceReport};
 use super::face_picture::{HAIR, before_and_after, hair_on};
+use super::found_face;
 use crate::arguments::{Printing, one_of};
 use crate::exit::AppError;
 use crate::output::{Inputs, OutputFolder};
@@ -23,19 +24,20 @@ use crate::terminal;
 
 /// Adapt the mannequin's head to a face on one or more photographs, or follow it through a sequence.
 ///
-/// Reads a JSON file of photographs with marked points: 68 in the order of Multi-PIE, 468 in that of MediaPipe's face mesh, or by number;
+/// Reads a photograph, whose points MediaPipe's face mesh finds, or a JSON file of photographs with marked points: 68 in the order of Multi-PIE, 468 in that of MediaPipe's face mesh, or by number;
 /// and, where they are marked, curves along the head's outline. The mannequin's head is deformed by radial functions around the points
 /// and the outline, symmetric and smooth where they say nothing, and the photographs become its texture. Of a sequence pose and
 /// expressions are reported for each frame. Nothing is kept but what --out is given. docs/capture.md describes the file.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(
     after_help = "Example: one photograph, and a picture of the head before and after\n  toile capture face face.json --out head --picture\n\
+                  Example: the same, whose points are found\n  toile capture face face.jpg --out head --picture\n\
                   Example: three of calibrated cameras\n  toile capture face faces.json --calibration cameras.toml --sex male --out head\n\
                   Example: pose and expressions of each frame of a sequence\n  toile capture face frames.json --json"
 )]
 pub struct FaceArgs {
-    /// File of photographs with their points
-    #[arg(value_name = "F.json")]
+    /// File of photographs with their points (JSON), or one photograph (JPEG, PNG)
+    #[arg(value_name = "FILE")]
     pub file: PathBuf,
     /// Calibration of the cameras that it names: TOML of Pose2Sim, YAML of OpenCV, or a folder of those
     #[arg(long, value_name = "F")]
@@ -43,9 +45,9 @@ pub struct FaceArgs {
     /// Whose head it is adapted from: female or male
     #[arg(long, value_name = "S", value_parser = one_of(Sex::ALL, Sex::name), default_value = "female")]
     pub sex: Sex,
-    /// Standard deviation of a marked point (px)
-    #[arg(long, value_name = "PX", value_parser = pixels, default_value = "2")]
-    pub sigma: f64,
+    /// Standard deviation of a point (px) [default: 2 of a marked one, 3 % of the face of one that is found]
+    #[arg(long, value_name = "PX", value_parser = pixels)]
+    pub sigma: Option<f64>,
     /// Moulded hair of the head [default: bob for a woman, short for a man]
     #[arg(long, value_name = "CUT", value_parser = one_of(Hair::ALL, Hair::name))]
     pub hair: Option<Hair>,
@@ -58,6 +60,9 @@ pub struct FaceArgs {
     #[command(flatten)]
     printing: Printing,
 }
+
+/// Standard deviation of a point that somebody marked, where nothing is said (px).
+const MARKED_SIGMA_PX: f64 = 2.0;
 
 fn pixels(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| "it is no number".to_owned())?;
@@ -110,15 +115,20 @@ struct FoundFace {
 pub fn run(args: &FaceArgs) -> Result<(), AppError> {
     let out = args.out.as_deref().map(OutputFolder::prepare).transpose()?;
     let out = out.map(|out| out.sparing(Inputs::new([&args.file])));
-    let marked = read_marked(&args.file).map_err(AppError::input)?;
+    let (marked, usual_sigma) = if found_face::is_picture(&args.file) {
+        found_face::find(&args.file)?
+    } else {
+        (read_marked(&args.file).map_err(AppError::input)?, MARKED_SIGMA_PX)
+    };
+    let sigma = args.sigma.unwrap_or(usual_sigma);
     let rig = args.calibration.as_deref().map(calibration::open).transpose().map_err(AppError::input)?;
     let photographs = &marked.photographs;
     let found = if marked.sequence {
-        of_sequence(args, photographs, rig.as_ref())?
+        of_sequence((args.sex, sigma), photographs, rig.as_ref())?
     } else {
-        of_photographs(args, photographs, rig.as_ref())?
+        of_photographs((args.sex, sigma), photographs, rig.as_ref())?
     };
-    let hair = args.hair.unwrap_or(if args.sex == Sex::Female { Hair::Bob } else { Hair::Short });
+    let hair = args.hair.unwrap_or(Hair::usual(args.sex));
     let outline = found.head.outline;
     let mut document = FaceDocument {
         photographs: photographs.len(),
@@ -148,7 +158,11 @@ pub fn run(args: &FaceArgs) -> Result<(), AppError> {
 }
 
 /// The head of photographs of one moment.
-fn of_photographs(args: &FaceArgs, marked: &[MarkedPhotograph], rig: Option<&Rig>) -> Result<FoundFace, AppError> {
+fn of_photographs(
+    (sex, sigma): (Sex, f64),
+    marked: &[MarkedPhotograph],
+    rig: Option<&Rig>,
+) -> Result<FoundFace, AppError> {
     if rig.is_none() && marked.len() > 1 {
         return Err(AppError::Usage(format!(
             "{} photographs need --calibration, which says where their cameras stood; give it, one photograph, or \"sequence\": true",
@@ -159,16 +173,20 @@ fn of_photographs(args: &FaceArgs, marked: &[MarkedPhotograph], rig: Option<&Rig
     for m in marked {
         let photograph = read_picture(&m.picture).map_err(AppError::input)?;
         let camera = camera(m, rig, [photograph.width(), photograph.height()])?;
-        views.push(view(m, camera, args.sigma));
+        views.push(view(m, camera, sigma));
         photographs.push(photograph);
     }
-    let head = adapt(&views, args.sex).map_err(AppError::input)?;
+    let head = adapt(&views, sex).map_err(AppError::input)?;
     let texture = texture(&head, &views, &photographs);
     Ok(FoundFace { head, texture, sequence: None })
 }
 
 /// The head of a sequence. Pictures but the one that gives the texture, and the first for its size, are not read.
-fn of_sequence(args: &FaceArgs, marked: &[MarkedPhotograph], rig: Option<&Rig>) -> Result<FoundFace, AppError> {
+fn of_sequence(
+    (sex, sigma): (Sex, f64),
+    marked: &[MarkedPhotograph],
+    rig: Option<&Rig>,
+) -> Result<FoundFace, AppError> {
     let Some(first) = marked.first() else { return Err(AppError::input("a sequence without frames; give some")) };
     if let Some(other) = marked.iter().find(|m| m.camera != first.camera || m.focal_px != first.focal_px) {
         let (a, b) = (other.picture.display(), first.picture.display());
@@ -178,8 +196,8 @@ fn of_sequence(args: &FaceArgs, marked: &[MarkedPhotograph], rig: Option<&Rig>) 
     }
     let photograph = read_picture(&first.picture).map_err(AppError::input)?;
     let camera = camera(first, rig, [photograph.width(), photograph.height()])?;
-    let views: Vec<FaceView> = marked.iter().map(|m| view(m, camera.clone(), args.sigma)).collect();
-    let found = follow(&views, args.sex).map_err(AppError::input)?;
+    let views: Vec<FaceView> = marked.iter().map(|m| view(m, camera.clone(), sigma)).collect();
+    let found = follow(&views, sex).map_err(AppError::input)?;
     let photograph = match found.first {
         0 => photograph,
         k => read_picture(&marked[k].picture).map_err(AppError::input)?,

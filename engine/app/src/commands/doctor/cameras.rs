@@ -1,6 +1,6 @@
 //! Libraries of live cameras: which are there, and the exact command for those that are not.
 
-use toile_pose::files;
+use toile_pose::files::{self, NetworkPackage};
 use toile_sensors::source::live::{self, CameraError, CameraKind};
 
 use super::check::Check;
@@ -22,11 +22,19 @@ const fn words(kind: CameraKind) -> (&'static str, &'static str) {
 
 /// The network that finds joints in a webcam's pictures, and the one command that fetches it.
 pub fn pose_network() -> Check {
-    let (name, needed_for) = ("pose network", "joints by any webcam");
+    network(NetworkPackage::Pose, "joints by any webcam")
+}
+
+/// The network that finds the points of a face, and the one command that fetches it.
+pub fn face_network() -> Check {
+    network(NetworkPackage::Face, "a face from a photograph, and a shopper's own")
+}
+
+fn network(package: NetworkPackage, needed_for: &'static str) -> Check {
     let folder = files::folder();
-    match files::check(&folder) {
-        Ok(()) => Check::ok(name, needed_for, folder.display().to_string()),
-        Err(error) => Check::missing(name, needed_for, error.what(), format!("`{}`", files::FETCH)),
+    match package.check(&folder) {
+        Ok(()) => Check::ok(package.name(), needed_for, folder.display().to_string()),
+        Err(error) => Check::missing(package.name(), needed_for, error.what(), format!("`{}`", package.fetch())),
     }
 }
 

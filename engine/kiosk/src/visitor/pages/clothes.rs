@@ -57,8 +57,9 @@ impl PageWriter<'_> {
             let size = TextValue::Text(self.size(fit.best));
             blocks.push(Block::Text(self.format(TextKey::FittingBetter, &[("size", size)])));
         }
-        // Who sees themselves reads less beside: the word on their picture, and what to take by tape only without one.
-        if let Some(zone) = fit.girth_to_take.filter(|_| self.own_picture(Page::Fitting).is_none()) {
+        // Who sees themselves reads less beside: the word on their picture, and what to take by tape only without one, where the page leads on to it.
+        let has_room = self.own_picture(Page::Fitting).is_none() && !self.model.is_crowded();
+        if let Some(zone) = fit.girth_to_take.filter(|_| has_room) {
             let zone = self.part(zone);
             blocks.push(Block::Text(self.format(TextKey::FittingTape, &[("zone", TextValue::Text(&zone))])));
         }

@@ -150,6 +150,24 @@ fn every_page_speaks_every_language_whole() {
         look(&mut play);
         play.press(Action::OwnPicture);
     }
+    play.offer_faces(Err(FaceTrouble::TooFar));
+    look(&mut play);
+    play.press(Action::Open(Page::Face));
+    for face in [FaceTrouble::NoPicture, FaceTrouble::Unseen, FaceTrouble::Turned, FaceTrouble::Unlike].map(Err) {
+        look(&mut play);
+        play.press(Action::TakeFace);
+        look(&mut play);
+        play.wait(800);
+        look(&mut play);
+        play.face = face;
+    }
+    play.face = Ok(());
+    play.press(Action::TakeFace);
+    for _ in 0..2 {
+        play.wait(800);
+        look(&mut play);
+    }
+    play.press(Action::Back);
     play.press(Action::TakePicture);
     play.wait(1_000);
     look(&mut play);
@@ -185,7 +203,7 @@ fn every_page_speaks_every_language_whole() {
     }
     play.press(Action::OwnMeasure(1));
     look(&mut play);
-    assert_eq!(seen.len(), 15, "{seen:?}");
+    assert_eq!(seen.len(), 16, "{seen:?}");
 }
 
 #[test]

@@ -135,6 +135,8 @@ impl ScreenPainter {
 }
 
 #[cfg(test)]
+mod face_page;
+#[cfg(test)]
 mod pages;
 #[cfg(test)]
 mod tests;

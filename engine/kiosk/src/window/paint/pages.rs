@@ -8,6 +8,7 @@ use toile_view::raster::{AdapterChoice, Gpu, Offscreen};
 
 use super::tests::DISPLAYS;
 use super::*;
+use crate::visitor::own_face::FaceTrouble;
 use crate::visitor::screen::{Action, Block, BodyView, Page};
 use crate::visitor::tests::Play;
 use crate::visitor::texts::Language;
@@ -19,6 +20,7 @@ pub fn all(language: usize, large: bool) -> BTreeMap<String, Screen> {
     let mut seen = usual(language, large);
     seen.extend(by_tape(language, large));
     seen.extend(own_picture(language, large));
+    seen.extend(own_face(language, large));
     seen
 }
 
@@ -33,6 +35,29 @@ fn own_picture(language: usize, large: bool) -> BTreeMap<String, Screen> {
     play.picture_is(3);
     let plain = play.screen();
     [("30-see-myself".to_owned(), offered), ("31-myself".to_owned(), plain)].into()
+}
+
+/// The pages of somebody who puts their own face on the mannequin: offered beside all else, asked for, with the longest trouble, and on.
+fn own_face(language: usize, large: bool) -> BTreeMap<String, Screen> {
+    let mut seen = BTreeMap::new();
+    let mut play = begun(language, large);
+    play.see(Some(1));
+    play.wait(6_000);
+    play.picture_is(1);
+    play.offer_faces(Err(FaceTrouble::Unseen));
+    let mut keep = |name: &str, play: &Play| seen.insert(format!("4{}-{name}", seen.len()), play.screen());
+    keep("fitting-with-face", &play);
+    play.press(Action::Open(Page::Face));
+    keep("face", &play);
+    play.press(Action::TakeFace);
+    keep("face-taking", &play);
+    play.wait(1_000);
+    keep("face-unseen", &play);
+    play.offer_faces(Ok(()));
+    play.press(Action::TakeFace);
+    play.wait(2_000);
+    keep("face-on", &play);
+    seen
 }
 
 /// A visit in a language, and in large type.
