@@ -65,14 +65,14 @@ own-picture-still = Bleiben Sie einen Moment stehen, dem Spiegel zugewandt.
 # The shopper’s own face on the mannequin
 face-heading = Ihr Gesicht an der Figur
 face-what = Wenn Sie drücken, wird ein Bild von Ihnen aufgenommen, und die Figur bekommt Ihr Gesicht. Stehen Sie aufrecht und sehen Sie in den Spiegel.
-face-kept = Bild und Gesicht sind nur im Speicher dieses Spiegels. Sie werden nirgendwohin gesendet und gelöscht, sobald Sie das Gesicht abnehmen oder gehen.
-face-taking = Ihr Gesicht wird aufgesetzt
+face-kept = Bild und Gesicht sind nur im Speicher dieses Spiegels. Sie werden nirgendwohin gesendet und gelöscht, sobald Sie das Gesicht entfernen oder gehen.
+face-taking = Ihr Gesicht wird übertragen
 face-on = Die Figur hat Ihr Gesicht.
 face-no-picture = Die Kamera hat kein Bild geliefert. Bitte versuchen Sie es gleich noch einmal.
 face-unseen = Es war kein Gesicht zu sehen. Stellen Sie sich vor den Spiegel, sehen Sie hinein und versuchen Sie es noch einmal.
 face-far = Ihr Gesicht ist zu weit weg. Kommen Sie näher und versuchen Sie es noch einmal.
 face-turned = Ihr Gesicht war abgewandt. Sehen Sie gerade in den Spiegel und versuchen Sie es noch einmal.
-face-unlike = Ihr Gesicht ließ sich nicht aufsetzen. Halten Sie Haare und Hände davon weg und versuchen Sie es noch einmal.
+face-unlike = Ihr Gesicht ließ sich nicht übertragen. Halten Sie Haare und Hände davon weg und versuchen Sie es noch einmal.
 
 # The garments
 garments-heading = Was möchten Sie anprobieren?
@@ -241,9 +241,9 @@ do-fit-map = Passform in Farben
 do-own-picture = Mich selbst sehen
 do-mannequin = Die Figur sehen
 do-face = Mein Gesicht
-do-face-put-on = Mein Gesicht aufsetzen
+do-face-put-on = Mein Gesicht übertragen
 do-face-again = Noch einmal versuchen
-do-face-away = Gesicht abnehmen
+do-face-away = Gesicht entfernen
 do-picture = Bild machen
 do-show-picture = Bild zeigen
 do-delete-picture = Jetzt löschen

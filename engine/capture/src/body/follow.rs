@@ -1,7 +1,8 @@
 //! Somebody who was measured in one frame, followed through the next: the same body, moved to each frame's silhouettes.
 //!
 //! A frame starts from where the frame before ended, and from where its motion leads, whichever covers the silhouettes better. Where the fit
-//! ends in less than the frames before, an arm was lost: those that people hold their arms in are tried, as at the start.
+//! ends in less than the frames before, an arm was lost: those that people hold their arms in are tried, and each forearm elsewhere, as at
+//! the start.
 
 use std::sync::Arc;
 
@@ -12,7 +13,7 @@ use toile_track::fit::FitState;
 use super::fit::BodyFitter;
 use super::joint_point::JointPoint;
 use super::measured::{FEWEST, LEAST_AGREEMENT, SilhouetteBody, SilhouetteView};
-use super::start::with_arms;
+use super::start::{ARM_JOINTS, other_forearm, with_arms};
 use super::view::View;
 
 /// Stages of a frame: largest distance of a match (m), distance at which it has a quarter of its weight (m), steps.
@@ -21,8 +22,9 @@ const STAGES: [(f64, f64, usize); 3] = [(0.20, 0.12, 4), (0.10, 0.05, 4), (0.06,
 /// By how much less than in the frames before body and silhouettes agree where an arm is looked for.
 const LOST: f64 = 0.015;
 
-/// What a frame's agreement counts in what is expected of the next.
-const NEWEST: f64 = 0.2;
+/// What a frame's agreement counts in what is expected of the next, where it is more and where it is less: an arm that was lost for
+/// half a second is not given up.
+const NEWEST: [f64; 2] = [0.2, 0.02];
 
 /// A frame in which somebody was followed.
 #[derive(Debug, Clone)]
@@ -73,7 +75,7 @@ impl BodyFollower {
             return self.frame(agreement, false);
         }
         self.before = Some(std::mem::replace(&mut self.state, state));
-        self.expected += NEWEST * (agreement - self.expected);
+        self.expected += NEWEST[usize::from(agreement < self.expected)] * (agreement - self.expected);
         self.frame(agreement, true)
     }
 
@@ -88,13 +90,22 @@ impl BodyFollower {
         if best.0 < self.expected - LOST {
             self.fitter.before = None;
             let arms = with_arms(&mut self.fitter, best.1);
-            self.fitter.before = Some(arms);
-            let again = self.settled(&arms);
-            if again.0 > best.0 {
-                best = again;
+            best = self.better(best, &arms);
+            for arm in ARM_JOINTS {
+                if let Some(other) = other_forearm(&mut self.fitter, &best.1, arm) {
+                    best = self.better(best, &other);
+                }
             }
         }
         best
+    }
+
+    /// What was found, or what is found from somewhere else, if that agrees better.
+    fn better(&mut self, found: (f64, FitState), from: &FitState) -> (f64, FitState) {
+        self.fitter.before = Some(*from);
+        let again = self.settled(from);
+        self.fitter.before = None;
+        if again.0 > found.0 { again } else { found }
     }
 
     fn settled(&mut self, from: &FitState) -> (f64, FitState) {

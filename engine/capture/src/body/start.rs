@@ -4,7 +4,7 @@ use glam::{DVec3, Quat, Vec3};
 use toile_assets::skeleton::{JOINTS, Joint};
 use toile_track::fit::{ARMS, FitState, of_stature, set_arm};
 
-use super::fit::{BodyFitter, COARSE};
+use super::fit::{BodyFitter, COARSE, FINE};
 use super::hull::HullShape;
 
 /// Ways of facing that are tried: across the hull's spread, both ways, and along it, for somebody who holds both arms ahead; and how
@@ -95,6 +95,20 @@ pub(super) fn with_arms(fitter: &mut BodyFitter, state: FitState) -> FitState {
         }
     }
     best.1
+}
+
+/// The fit of a body that faces another way by so much (rad), upright and of the same shape, arms looked for as at the start.
+pub(super) fn turned(fitter: &mut BodyFitter, state: &FitState, by: f32) -> FitState {
+    let ahead = state.local[0] * Vec3::Z;
+    let mut other = *state;
+    other.local = [Quat::IDENTITY; JOINTS];
+    other.local[0] = Quat::from_rotation_y(ahead.x.atan2(ahead.z) + by);
+    let mut other = with_arms(fitter, other);
+    for (k, stage) in COARSE.into_iter().enumerate() {
+        other = fitter.steps(&other, &[stage], k == 0);
+        other = with_arms(fitter, other);
+    }
+    fitter.steps(&other, &FINE, false)
 }
 
 /// Turns of an upper arm about itself (rad) and bends of its elbow, as shares of what it can, with which a forearm is looked for.
