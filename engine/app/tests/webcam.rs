@@ -70,7 +70,7 @@ fn without_the_network_a_webcam_is_refused_with_the_command_that_fetches_it() {
 #[test]
 fn without_its_network_a_face_is_refused_with_the_command_that_fetches_it() {
     let scratch = Scratch::new("face-refused");
-    image::RgbImage::new(64, 64).save(scratch.path().join("a.png")).unwrap();
+    RgbImage::new(64, 64).save(scratch.path().join("a.png")).unwrap();
     let refused = run(&scratch, scratch.path(), &["capture", "face", "a.png"]);
     let words = String::from_utf8_lossy(&refused.stderr);
     assert_eq!(refused.status.code(), Some(5), "{words}");
