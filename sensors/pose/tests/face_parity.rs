@@ -3,6 +3,9 @@
 //!
 //! The network's file is no part of the repository: where it is not fetched, these tests say so and do not run.
 
+#[path = "common/twins.rs"]
+mod twins;
+
 use std::env;
 use std::ops::Range;
 use std::time::Instant;
@@ -105,18 +108,7 @@ fn the_fast_networks_are_their_plain_twins_to_the_bit() {
     let Some(file) = bytes() else { return };
     for (name, range, wanted) in [("mesh", MESH, POINTS), ("detector", DETECTOR, BOXES)] {
         let mut network = Network::load(&file[range], wanted).unwrap();
-        let mut random = SplitMix64::new(2);
-        let picture: Vec<f32> = network.input().iter().map(|_| random.uniform()).collect();
-        let mut bits = |plainly: bool| -> Vec<u32> {
-            network.input().copy_from_slice(&picture);
-            if plainly {
-                network.run_plainly();
-            } else {
-                network.run();
-            }
-            (0..wanted.len()).flat_map(|i| network.output(i)).map(|x| x.to_bits()).collect()
-        };
-        assert!(bits(false) == bits(true), "{name}");
+        assert!(twins::agree(&mut network, wanted.len()), "{name}");
         network.wipe();
         assert!(
             (0..wanted.len()).flat_map(|i| network.output(i)).all(|x| *x == 0.0)

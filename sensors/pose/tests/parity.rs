@@ -3,6 +3,8 @@
 //! The network's files are no part of the repository: where they are not fetched, these tests say so and do not run.
 
 mod common;
+#[path = "common/twins.rs"]
+mod twins;
 
 use std::path::Path;
 use std::time::Instant;
@@ -131,18 +133,7 @@ fn the_fast_network_is_its_plain_twin_to_the_bit() {
     let wanted: [(PoseFile, &[&[usize]]); 2] = [(PoseFile::Lite, &LANDMARKS), (PoseFile::Detector, &BOXES)];
     for (file, wanted) in wanted {
         let mut network = Network::load(&file.read(&folder).unwrap(), wanted).unwrap();
-        let mut random = SplitMix64::new(2);
-        let picture: Vec<f32> = network.input().iter().map(|_| random.uniform()).collect();
-        let mut bits = |plainly: bool| -> Vec<u32> {
-            network.input().copy_from_slice(&picture);
-            if plainly {
-                network.run_plainly();
-            } else {
-                network.run();
-            }
-            (0..wanted.len()).flat_map(|i| network.output(i)).map(|x| x.to_bits()).collect()
-        };
-        assert!(bits(false) == bits(true), "{file}");
+        assert!(twins::agree(&mut network, wanted.len()), "{file}");
     }
 }
 

@@ -95,7 +95,7 @@ pub fn run(args: &SilhouettesArgs) -> Result<(), AppError> {
     )))
 }
 
-/// What is told of a person who was measured: pictures, each with the end of its name.
+/// Called after each person with their pictures, each with the end of its file's name.
 type Seen<'a> = dyn FnMut(Vec<(String, Vec<u8>)>) + 'a;
 
 /// A study of each family by each number of cameras, with its pictures in the folder that was asked for.
