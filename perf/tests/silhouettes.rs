@@ -13,7 +13,8 @@ fn people_of_another_family_are_found_and_measured_by_their_silhouettes() {
     let file = |name: &str| Survey::read(&folder.join("anthropometry/ansur2").join(name)).expect("the survey's file");
     let surveys = [file("ANSUR_II_FEMALE.csv"), file("ANSUR_II_MALE.csv")];
     let makehuman = Some(folder.join("body/makehuman-hm08"));
-    let options = SilhouetteStudyOptions { makehuman, people: 1, cameras: 4, seed: 99, pictures: false };
+    let options =
+        SilhouetteStudyOptions { makehuman, people: 1, cameras: 4, opposite: false, seed: 99, pictures: false };
     let found = study(&surveys, &options, &mut |_| ()).expect("a study");
     println!("{found:?}");
     assert_eq!((found.people, found.lost, found.measures.len()), (2, 0, 11));
@@ -31,7 +32,8 @@ fn people_who_move_are_followed_by_their_silhouettes() {
     let survey = Survey::read(&folder.join("anthropometry/ansur2/ANSUR_II_FEMALE.csv")).expect("the survey's file");
     let makehuman = Some(folder.join("body/makehuman-hm08"));
     for (makehuman, most) in [(None, [10.0, 4.0]), (makehuman, [60.0, 15.0])] {
-        let options = SilhouetteStudyOptions { makehuman, people: 1, cameras: 4, seed: 99, pictures: false };
+        let options =
+            SilhouetteStudyOptions { makehuman, people: 1, cameras: 4, opposite: false, seed: 99, pictures: false };
         let found = follow_study(std::slice::from_ref(&survey), &options, 12, &mut |_| ()).expect("a study");
         println!("{found:?}");
         assert_eq!((found.people, found.lost, found.frames, found.lost_frames), (1, 0, 11, 0));

@@ -30,7 +30,7 @@ pub struct GarmentManifest {
     pub price: Option<Price>,
     /// A fabric that is built in, or the package's fabric file.
     pub fabric: Option<String>,
-    /// Layer in which it is worn, 1 (underwear) to 5 (coats).
+    /// Layer in which it is worn, 1 (underwear) to 6 (scarves).
     pub layer: Option<u8>,
     /// Colours that it comes in, in place of its fabric's own; none is the fabric's.
     pub colours: Vec<ManifestColour>,

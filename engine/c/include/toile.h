@@ -1230,7 +1230,7 @@ toile_code toile_scene_step_to(toile_scene scene,
 toile_code toile_scene_clock(toile_scene scene, toile_clock *clock);
 
 /**
- * Opens a recording: MCAP, Kinect CSV, Kinectron JSON, BVH, Azure Kinect, OpenNI, OpenPose, depth images and others (docs/formats.md).
+ * Opens a recording: MCAP, Kinect CSV, Kinectron JSON, BVH, Azure Kinect, OpenNI, OpenPose, depth images and others (docs/depth.md).
  * `camera` is null, or a JSON file that describes the camera of depth images which have none of their own.
  */
 toile_code toile_recording_open(const char *path,

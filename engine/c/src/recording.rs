@@ -206,7 +206,7 @@ impl DepthImage {
     }
 }
 
-/// Opens a recording: MCAP, Kinect CSV, Kinectron JSON, BVH, Azure Kinect, OpenNI, OpenPose, depth images and others (docs/formats.md).
+/// Opens a recording: MCAP, Kinect CSV, Kinectron JSON, BVH, Azure Kinect, OpenNI, OpenPose, depth images and others (docs/depth.md).
 /// `camera` is null, or a JSON file that describes the camera of depth images which have none of their own.
 #[unsafe(no_mangle)]
 pub extern "C" fn toile_recording_open(path: Text, camera: Text, recording: Out<RecordingHandle>) -> Code {

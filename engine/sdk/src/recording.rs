@@ -53,7 +53,7 @@ pub struct Measured {
 
 impl Recording {
     /// Opens a recording: MCAP, Kinect CSV, Kinectron JSON, BVH, Azure Kinect, OpenNI, OpenPose, depth images and others
-    /// (docs/formats.md).
+    /// (docs/depth.md).
     ///
     /// # Errors
     /// A file that is no recording, with the place in it and the cure.

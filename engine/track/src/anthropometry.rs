@@ -190,7 +190,7 @@ impl SilhouetteModel {
 }
 
 // Least squares over 99 women and 100 men of `toile_perf::agreement` (seed 1,000,000, 10 frames each, 2.5 m off):
-// `cargo run --release -p toile-track --example calibrate -- 100 10 1000000` prints them again. Residuals are those
+// `cargo run --release -p toile-perf --example calibrate -- 100 10 1000000` prints them again. Residuals are those
 // printed, but for two that mannequins, being all alike there, make too small. Stature: 1 mm; a camera's tilt known to
 // .1 degree makes it 4 mm and more. Shoulders: 8 to 9.6 mm; how much deltoid people wear over their acromions makes it
 // 10 mm (ANSUR II leaves 14 mm between the breadth over the deltoids and that between the acromions).

@@ -35,6 +35,8 @@ pub struct FollowStudy {
     pub family: &'static str,
     /// Cameras around each person.
     pub cameras: usize,
+    /// Whether they stood opposite each other in pairs.
+    pub opposite: bool,
     /// People, and those whom no body fits in their first frame.
     pub people: usize,
     /// People who were not measured in their first frame.
@@ -85,7 +87,7 @@ pub fn follow_study(
             count += 1;
             let mut pictures = Vec::new();
             let every = if options.pictures { frames.div_ceil(DRAWN) } else { usize::MAX };
-            let found = followed(&person, [options.cameras, frames, every], &mut rng, &mut pictures);
+            let found = followed(&person, options, [frames, every], &mut rng, &mut pictures);
             lost += usize::from(found.is_empty());
             all.extend(found);
             progress(pictures);
@@ -104,6 +106,7 @@ pub fn follow_study(
     Ok(FollowStudy {
         family: if options.makehuman.is_some() { "makehuman" } else { "survey" },
         cameras: options.cameras,
+        opposite: options.opposite,
         people: count,
         lost,
         frames: all.iter().filter(|f| later(f)).count(),
@@ -123,11 +126,12 @@ pub fn follow_study(
 /// A person followed; nothing where their first frame was not enough. Every so many frames are drawn.
 fn followed(
     person: &StudyPerson,
-    [cameras, frames, every]: [usize; 3],
+    options: &SilhouetteStudyOptions,
+    [frames, every]: [usize; 2],
     rng: &mut SplitMix64,
     pictures: &mut Vec<(usize, Vec<u8>)>,
 ) -> Vec<FrameOff> {
-    let rig = rig(cameras, rng);
+    let rig = rig(options, rng);
     let facing = rng.uniform() * TAU;
     let mut filmed = |frame: usize| {
         let time = frame as f32 / HZ;

@@ -49,6 +49,8 @@ pub struct SilhouetteStudyOptions {
     pub people: usize,
     /// Cameras around them.
     pub cameras: usize,
+    /// Whether cameras stand opposite each other in pairs; else no two do.
+    pub opposite: bool,
     /// Which people, and how they stand.
     pub seed: u64,
     /// Whether each person's silhouettes are drawn with the body that was found.
@@ -99,6 +101,8 @@ pub struct SilhouetteStudy {
     pub family: &'static str,
     /// Cameras around each person.
     pub cameras: usize,
+    /// Whether they stood opposite each other in pairs.
+    pub opposite: bool,
     /// People, and those whom no body fits.
     pub people: usize,
     /// People whom no body fitted.
@@ -184,7 +188,7 @@ fn seen(
     options: &SilhouetteStudyOptions,
     rng: &mut SplitMix64,
 ) -> (SilhouetteCase, Option<Vec<u8>>) {
-    let rig = rig(options.cameras, rng);
+    let rig = rig(options, rng);
     let masks = masks(person, &rig, rng);
     let views: Vec<SilhouetteView> =
         rig.iter().zip(&masks).map(|((said, _), mask)| SilhouetteView { camera: said, mask }).collect();
@@ -206,14 +210,18 @@ fn same_height(person: &StudyPerson, found: &SilhouetteBody) -> f32 {
 }
 
 /// Cameras all round, each as it is said to be and as it is.
-pub(super) fn rig(cameras: usize, rng: &mut SplitMix64) -> Vec<(CalibratedCamera, CalibratedCamera)> {
+pub(super) fn rig(options: &SilhouetteStudyOptions, rng: &mut SplitMix64) -> Vec<(CalibratedCamera, CalibratedCamera)> {
     let about = f64::from(rng.uniform()) * TAU;
-    // Two cameras stand at a right angle: opposite ones see the same outline.
-    let apart = if cameras == 2 { TAU / 4.0 } else { TAU / cameras as f64 };
+    let cameras = options.cameras;
+    // Opposite cameras see the same outline. So half a turn is shared out, and every other camera looks from the other side.
+    let angle = |k: usize| match options.opposite {
+        true => TAU * k as f64 / cameras as f64,
+        false => 0.5 * TAU * (k as f64 / cameras as f64 + (k % 2) as f64),
+    };
     let spread = |rng: &mut SplitMix64, by: f64| by * f64::from(rng.gaussian());
     (0..cameras)
         .map(|k| {
-            let angle = about + apart * k as f64 + spread(rng, 0.05);
+            let angle = about + angle(k) + spread(rng, 0.05);
             let far = DISTANCE[0] + (DISTANCE[1] - DISTANCE[0]) * f64::from(rng.uniform());
             let from = DVec3::new(far * angle.sin(), HEIGHT + spread(rng, 0.05), far * angle.cos());
             let ahead = (DVec3::new(0.0, 0.88, 0.0) - from).normalize();
@@ -288,6 +296,7 @@ fn summed(cases: &[SilhouetteCase], options: &SilhouetteStudyOptions) -> Silhoue
     SilhouetteStudy {
         family: if options.makehuman.is_some() { "makehuman" } else { "survey" },
         cameras: options.cameras,
+        opposite: options.opposite,
         people: cases.len(),
         lost: cases.len() - found.len(),
         sex_right: right as f64 / count,

@@ -37,9 +37,13 @@ const DAMPING: f64 = 1e-3;
 /// Change of any shape parameter at which the rest normals are computed again.
 const RESHAPED: f64 = 0.01;
 
-/// Rounds of moving the surface to its outlines and posing it again, and what one match counts as there.
+/// Rounds of moving the surface to its outlines and posing it again, and as how many cells of depth one match counts there.
 const ROUNDS: usize = 3;
-const RIM_WORTH: f32 = 3.0;
+const RIM_CELLS: f32 = 3.0;
+
+/// What a match counts against the smoothness of the surface: a rim is a line, and where it counted once, as a cell of depth does, the
+/// surface came half of the way to it.
+const RIM_WORTH: f64 = 16.0;
 
 /// Farthest that an outline lies from the fitted body and is its skin's (m).
 const SKIN: f64 = 0.03;
@@ -231,12 +235,12 @@ impl BodyFitter {
         let mut out = vec![0.0; body.mesh.positions.len()];
         for _ in 0..ROUNDS {
             let positions = self.pose(&state);
-            let mut seen = SeenSurface::new(self.model.samples.len());
+            let mut seen = SeenSurface::counting(self.model.samples.len(), RIM_WORTH);
             for m in self.matches(&positions, FINE[FINE.len() - 1].0) {
                 // What points sideways tells little of how far the surface lies out, and what lies far off is another part.
                 let along = self.posed.normals[m.face].dot(m.normal.as_vec3()) > 0.8;
                 if m.by_outline && along && m.outside.abs() < SKIN {
-                    seen.add_rim(m.face, -m.outside as f32, RIM_WORTH);
+                    seen.add_rim(m.face, -m.outside as f32, RIM_CELLS);
                 }
             }
             out = seen.displacements(&self.model, &out);

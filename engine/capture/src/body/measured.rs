@@ -43,7 +43,7 @@ const UNLIKELY: f64 = 0.01;
 /// errors have beside what the fit itself states. Chosen on ten people of MakeHuman's family, other than those that
 /// they are judged on (docs/capture.md); people of the own family err less.
 const MODEL_ERROR: [f32; MEASURES.len()] =
-    [0.004, 0.006, 0.008, 0.031, 0.029, 0.027, 0.023, 0.025, 0.022, 0.026, 0.022];
+    [0.005, 0.009, 0.008, 0.040, 0.037, 0.035, 0.024, 0.016, 0.023, 0.026, 0.016];
 
 /// How much of that error the girths of the trunk have in common.
 const TOGETHER: f32 = 0.4;
@@ -350,5 +350,30 @@ fn notes(views: &[View]) -> Vec<String> {
                 .to_owned(),
         );
     }
+    notes.extend(opposite(views));
     notes
+}
+
+/// Cosine of the angle between two cameras' axes, seen from above, from which on they stand opposite each other: within 15 degrees.
+const OPPOSITE: f64 = -0.966;
+
+/// Ways in which a body's breadth is seen from which on more cameras bring little.
+const WAYS: usize = 4;
+
+/// Says which cameras stand opposite each other, where they leave few ways of looking: they see the same outline.
+pub(super) fn opposite(views: &[View]) -> Option<String> {
+    let axis = |v: &View| v.camera.rotation().row(2).with_y(0.0).normalize_or_zero();
+    let mut pairs = Vec::new();
+    for (i, a) in views.iter().enumerate() {
+        pairs.extend(views[i + 1..].iter().filter(|b| axis(a).dot(axis(b)) < OPPOSITE).map(|b| (a, b)));
+    }
+    if pairs.is_empty() || views.len() - pairs.len() >= WAYS {
+        return None;
+    }
+    let named: Vec<String> = pairs.iter().map(|(a, b)| format!("{} and {}", a.camera.name, b.camera.name)).collect();
+    Some(format!(
+        "Cameras that stand opposite each other see the same outline: {}. Ways of looking {:.0} degrees apart, from either side, show more.",
+        named.join(", "),
+        180.0 / views.len() as f64
+    ))
 }

@@ -1,10 +1,12 @@
-use glam::{DVec3, Quat};
+use glam::{DMat3, DVec3, Quat};
 use toile_assets::body::{Body, En, Sex, Wanted};
 use toile_assets::skeleton::{Joint, Pose};
 use toile_sensors::calibration::CalibratedCamera;
 use toile_sensors::masks::Mask;
 use toile_track::fit::measuring::MEASURES;
 
+use super::measured::opposite;
+use super::view::View;
 use super::*;
 use crate::depth_buffer::DepthBuffer;
 use crate::render::look_at;
@@ -111,6 +113,23 @@ fn a_body_of_the_own_family_comes_back_from_four_silhouettes() {
     let woman = SilhouetteOptions { sex: Some(Sex::Female), ..SilhouetteOptions::default() };
     let again = measure(&views(&rig, &masks), &woman).unwrap();
     assert_eq!(again.measures, found.measures);
+    // Two pairs of cameras see two outlines, and the user is told.
+    let told = "the same outline: cam0 and cam2, cam1 and cam3. Ways of looking 45 degrees apart";
+    assert!(found.notes.iter().any(|n| n.contains(told)), "{:?}", found.notes);
+}
+
+#[test]
+fn cameras_that_stand_opposite_each_other_are_named_where_they_leave_few_ways_of_looking() {
+    let said = |angles: &[f64]| {
+        let mask = Mask { width: 64, height: 64, coverage: vec![0.0; 64 * 64] };
+        let seen: Vec<View> = cameras(angles).iter().map(|c| View::new(&mask, c, DMat3::IDENTITY)).collect();
+        opposite(&seen)
+    };
+    assert!(said(&[0.0, 90.0, 180.0]).is_some_and(|n| n.contains("60 degrees apart")));
+    let eight: Vec<f64> = (0..8).map(|k| 45.0 * f64::from(k)).collect();
+    for few_opposite in [&[0.0, 90.0, 225.0, 315.0][..], &[0.0, 90.0], &[0.0, 120.0, 240.0], &eight] {
+        assert_eq!(said(few_opposite), None, "{few_opposite:?}");
+    }
 }
 
 #[test]

@@ -30,12 +30,14 @@ pub struct SeenSurface {
     cells: Vec<f32>,
     /// Sum of how far they lay outside of it (m) `[samples]`.
     sum: Vec<f32>,
+    /// What a sample counts that is well known.
+    most: f64,
 }
 
 /// What is known of one sample.
 struct KnownSample {
     corners: [usize; 4],
-    /// How much it counts, 0 to 1.
+    /// How much it counts.
     share: f64,
     /// Its displacement (m).
     out: f64,
@@ -44,7 +46,13 @@ struct KnownSample {
 impl SeenSurface {
     /// Nothing seen of so many samples.
     pub fn new(samples: usize) -> Self {
-        Self { cells: vec![0.0; samples], sum: vec![0.0; samples] }
+        Self::counting(samples, 1.0)
+    }
+
+    /// Nothing seen of so many samples, of which one that is well known counts `most` times, not once: where
+    /// what is seen are lines, each stands for the surface as far as the next one.
+    pub fn counting(samples: usize, most: f64) -> Self {
+        Self { cells: vec![0.0; samples], sum: vec![0.0; samples], most }
     }
 
     /// Adds what one view shows.
@@ -71,7 +79,7 @@ impl SeenSurface {
             .map(|((sample, cells), sum)| {
                 let corners = sample.corners.map(|c| c as usize);
                 let before = corners.iter().map(|c| about[*c]).sum::<f32>() / 4.0;
-                let share = f64::from(cells / (cells + HALF_KNOWN));
+                let share = self.most * f64::from(cells / (cells + HALF_KNOWN));
                 KnownSample { corners, share, out: f64::from(before + sum / cells) }
             })
             .collect();

@@ -18,13 +18,13 @@ use crate::terminal;
 /// Measure synthetic people by their silhouettes, and compare with their true measures.
 ///
 /// People of ANSUR II, each with sections of their own, and people of MakeHuman's family, another mesh altogether, stand as they like
-/// before cameras all round, whose calibration is a little off and whose masks are black and white. All eleven measures are taken with
+/// before cameras all round, no two of them opposite, whose calibration is a little off and whose masks are black and white. All eleven measures are taken with
 /// their errors; the mean of the squared error over the stated variance (chi square) is 1 where these are honest. Girths that miss
 /// their goal on the other family make the exit code 3.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(
     after_help = "Example: the table of docs/capture.md, some minutes\n  toile bench silhouettes --ansur ANSUR_II_FEMALE.csv --ansur \
-                  ANSUR_II_MALE.csv --makehuman hm08"
+                  ANSUR_II_MALE.csv --makehuman hm08 --people 4"
 )]
 pub struct SilhouettesArgs {
     /// A file of ANSUR II, such as ANSUR_II_FEMALE.csv; repeat it for the other sex
@@ -39,6 +39,9 @@ pub struct SilhouettesArgs {
     /// Cameras around them, 2 to 8; repeat it for more than one number
     #[arg(long, value_name = "N", value_parser = count(2..=8), default_value = "4")]
     cameras: Vec<usize>,
+    /// Cameras stand opposite each other in pairs, evenly all round; else no two do, since these see the same outline
+    #[arg(long)]
+    opposite: bool,
     /// Which people, and how they stand
     #[arg(long, value_name = "S", default_value = "4242")]
     seed: u64,
@@ -79,7 +82,7 @@ pub fn run(args: &SilhouettesArgs) -> Result<(), AppError> {
     let missed: Vec<String> = studies
         .iter()
         .filter(|s| s.family == "makehuman" && s.girths_mm > GIRTH_MM)
-        .map(|s| format!("{:.1} mm by {} cameras", s.girths_mm, s.cameras))
+        .map(|s| format!("{:.1} mm by {}", s.girths_mm, named(s.cameras, s.opposite)))
         .collect();
     if args.printing.json {
         terminal::print_json(&Document::new("bench-silhouettes", SilhouettesDocument { seed: args.seed, studies }))?;
@@ -136,6 +139,7 @@ fn options(args: &SilhouettesArgs, makehuman: &Option<PathBuf>, cameras: usize) 
         makehuman: makehuman.clone(),
         people: args.people,
         cameras,
+        opposite: args.opposite,
         seed: args.seed,
         pictures: args.pictures.is_some(),
     }
@@ -179,23 +183,35 @@ fn follow(
         let [first, others, most, last] = s.joints_mm;
         let [surface, surfaces, far] = s.surface_mm;
         text += &format!(
-            "| {}, {} cameras | {}, {} | {}, {} | {first:.1}, {others:.1}, {most:.1}, {last:.1} | {surface:.1}, {surfaces:.1}, {far:.1} | \
+            "| {}, {} | {}, {} | {}, {} | {first:.1}, {others:.1}, {most:.1}, {last:.1} | {surface:.1}, {surfaces:.1}, {far:.1} | \
              {:.3} | {:.2} |\n",
-            s.family, s.cameras, s.people, s.lost, s.frames, s.lost_frames, s.agreement, s.seconds
+            s.family,
+            named(s.cameras, s.opposite),
+            s.people,
+            s.lost,
+            s.frames,
+            s.lost_frames,
+            s.agreement,
+            s.seconds
         );
     }
     terminal::print(&text)
+}
+
+/// Cameras by name.
+fn named(cameras: usize, opposite: bool) -> String {
+    format!("{cameras} cameras{}", if opposite { " in opposite pairs" } else { "" })
 }
 
 fn table(studies: &[SilhouetteStudy]) -> String {
     let mut text = String::new();
     for s in studies {
         text += &format!(
-            "\n{}, {} cameras: {} people, {} lost, sex right for {:.0} %, overlap {:.3}, {:.1} s a person; girths {:.1} mm, of the trunk at the same \
+            "\n{}, {}: {} people, {} lost, sex right for {:.0} %, overlap {:.3}, {:.1} s a person; girths {:.1} mm, of the trunk at the same \
              heights {:.1} mm; chi square {:.2}\n\n| measure | bias | mean absolute | 95 % | stated sigma | chi square | within 1, 2 sigma | missing |\n\
              |---|---|---|---|---|---|---|---|\n",
             s.family,
-            s.cameras,
+            named(s.cameras, s.opposite),
             s.people,
             s.lost,
             100.0 * s.sex_right,

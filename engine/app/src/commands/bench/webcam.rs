@@ -16,7 +16,7 @@ use crate::terminal::{self, Words};
 /// Draws people of several sizes who move before a webcam and a depth camera at one place, finds their joints by the pose network, lite and
 /// full, and by the body fitted to depth, and reports the angle between each limb and its truth. Needs the network that `toile doctor` names.
 #[derive(Debug, Clone, PartialEq, Eq, clap::Args)]
-#[command(after_help = "Example: the table of docs/webcam.md\n  toile bench webcam --people 4")]
+#[command(after_help = "Example: the table of docs/webcam.md\n  toile bench webcam")]
 pub struct WebcamBenchArgs {
     /// People
     #[arg(long, value_name = "N", value_parser = value_parser!(u8).range(1..=6), default_value = "2")]
