@@ -1,7 +1,7 @@
 //! Recording: what a replay needs of a run, without images: the filtered frames, and of each step when it was due, the
 //! quality it was taken at and a hash of what came out.
 //!
-//! The file: the magic `toile-tape/2\n`, u32 length of a text that says how the scene is made, the text, then records: u8
+//! The file: the magic `toile-tape/3\n`, u32 length of a text that says how the scene is made, the text, then records: u8
 //! kind, u8 length of the body / 8, the body, u32 check (FNV-1a of kind, length and body). Numbers are little endian. A
 //! file that was cut off is read up to the cut.
 
@@ -13,10 +13,10 @@ use toile_sensors::frame::{Joints, TrackedJoint};
 use super::sensor_thread::SensorFrame;
 
 /// First bytes of a file. The number changes where old files would mean something else: with the ladder's rungs, which steps name.
-pub const MAGIC: &[u8] = b"toile-tape/2\n";
+pub const MAGIC: &[u8] = b"toile-tape/3\n";
 
-/// First bytes of files whose rungs are those of a ladder of seven.
-const SEVEN_RUNGS: &[u8] = b"toile-tape/1\n";
+/// First bytes of files whose rungs are those of ladders of seven and of eleven.
+const OLD_RUNGS: [&[u8]; 2] = [b"toile-tape/1\n", b"toile-tape/2\n"];
 
 /// Entries that wait to be written: six seconds at 150 a second.
 pub const ENTRIES: usize = 1024;
@@ -86,12 +86,12 @@ pub struct Recording {
 pub enum RecordingError {
     /// The first line is not that of a recording.
     #[error(
-        "this is not a recording of a run (it does not begin with `toile-tape/2`); make one with `toile latency --record F` or `toile soak --record F`"
+        "this is not a recording of a run (it does not begin with `toile-tape/3`); make one with `toile latency --record F` or `toile soak --record F`"
     )]
     Magic,
     /// Written by a version whose ladder of quality had other rungs.
     #[error(
-        "this recording names rungs of a ladder that is no longer used (it begins with `toile-tape/1`); replay it with the version \
+        "this recording names rungs of a ladder that is no longer used (it begins with `toile-tape/1` or `/2`); replay it with the version \
          of the program that made it, or record the run again"
     )]
     OldRungs,
@@ -176,7 +176,7 @@ fn check(bytes: &[u8]) -> u32 {
 /// # Errors
 /// [`RecordingError`].
 pub fn read(bytes: &[u8]) -> Result<Recording, RecordingError> {
-    if bytes.starts_with(SEVEN_RUNGS) {
+    if OLD_RUNGS.iter().any(|old| bytes.starts_with(old)) {
         return Err(RecordingError::OldRungs);
     }
     let rest = bytes.strip_prefix(MAGIC).ok_or(RecordingError::Magic)?;
@@ -291,8 +291,10 @@ mod tests {
         assert_eq!(read(&bytes[..bytes.len() - step - 1]), Err(RecordingError::Short), "no step is left");
         assert_eq!(read(&bytes[..20]), Err(RecordingError::Short));
         assert_eq!(read(b"toile"), Err(RecordingError::Magic));
-        let old = [SEVEN_RUNGS, &bytes[MAGIC.len()..]].concat();
-        assert_eq!(read(&old), Err(RecordingError::OldRungs), "its rungs would be taken for others");
+        for first in OLD_RUNGS {
+            let old = [first, &bytes[MAGIC.len()..]].concat();
+            assert_eq!(read(&old), Err(RecordingError::OldRungs), "its rungs would be taken for others");
+        }
     }
 
     #[test]
