@@ -367,7 +367,7 @@ pub(super) fn opposite(views: &[View]) -> Option<String> {
     for (i, a) in views.iter().enumerate() {
         pairs.extend(views[i + 1..].iter().filter(|b| axis(a).dot(axis(b)) < OPPOSITE).map(|b| (a, b)));
     }
-    if pairs.is_empty() || views.len() - pairs.len() >= WAYS {
+    if pairs.is_empty() || views.len().saturating_sub(pairs.len()) >= WAYS {
         return None;
     }
     let named: Vec<String> = pairs.iter().map(|(a, b)| format!("{} and {}", a.camera.name, b.camera.name)).collect();

@@ -126,6 +126,8 @@ fn cameras_that_stand_opposite_each_other_are_named_where_they_leave_few_ways_of
         opposite(&seen)
     };
     assert!(said(&[0.0, 90.0, 180.0]).is_some_and(|n| n.contains("60 degrees apart")));
+    // More pairs than cameras.
+    assert!(said(&[0.0, 1.0, 180.0, 181.0, 179.0]).is_some_and(|n| n.contains("cam1 and cam4")));
     let eight: Vec<f64> = (0..8).map(|k| 45.0 * f64::from(k)).collect();
     for few_opposite in [&[0.0, 90.0, 225.0, 315.0][..], &[0.0, 90.0], &[0.0, 120.0, 240.0], &eight] {
         assert_eq!(said(few_opposite), None, "{few_opposite:?}");
