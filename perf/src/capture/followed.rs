@@ -35,7 +35,7 @@ pub struct FollowStudy {
     pub family: &'static str,
     /// Cameras around each person.
     pub cameras: usize,
-    /// Whether they stood opposite each other in pairs.
+    /// Whether they stood evenly all round, an even number of them in opposite pairs.
     pub opposite: bool,
     /// People, and those whom no body fits in their first frame.
     pub people: usize,

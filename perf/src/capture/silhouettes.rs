@@ -49,7 +49,7 @@ pub struct SilhouetteStudyOptions {
     pub people: usize,
     /// Cameras around them.
     pub cameras: usize,
-    /// Whether cameras stand opposite each other in pairs; else no two do.
+    /// Whether cameras stand evenly all round, an even number of them in opposite pairs; else no two are opposite.
     pub opposite: bool,
     /// Which people, and how they stand.
     pub seed: u64,
@@ -101,7 +101,7 @@ pub struct SilhouetteStudy {
     pub family: &'static str,
     /// Cameras around each person.
     pub cameras: usize,
-    /// Whether they stood opposite each other in pairs.
+    /// Whether they stood evenly all round, an even number of them in opposite pairs.
     pub opposite: bool,
     /// People, and those whom no body fits.
     pub people: usize,

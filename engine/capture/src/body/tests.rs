@@ -113,7 +113,7 @@ fn a_body_of_the_own_family_comes_back_from_four_silhouettes() {
     let woman = SilhouetteOptions { sex: Some(Sex::Female), ..SilhouetteOptions::default() };
     let again = measure(&views(&rig, &masks), &woman).unwrap();
     assert_eq!(again.measures, found.measures);
-    // Two pairs of cameras see two outlines, and the user is told.
+    // Two pairs of cameras see two outlines: a note for the user.
     let told = "the same outline: cam0 and cam2, cam1 and cam3. Ways of looking 45 degrees apart";
     assert!(found.notes.iter().any(|n| n.contains(told)), "{:?}", found.notes);
 }

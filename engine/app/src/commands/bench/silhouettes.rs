@@ -39,7 +39,7 @@ pub struct SilhouettesArgs {
     /// Cameras around them, 2 to 8; repeat it for more than one number
     #[arg(long, value_name = "N", value_parser = count(2..=8), default_value = "4")]
     cameras: Vec<usize>,
-    /// Cameras stand opposite each other in pairs, evenly all round; else no two do, since these see the same outline
+    /// Cameras stand evenly all round, an even number of them in opposite pairs; else no two are opposite, since these see the same outline
     #[arg(long)]
     opposite: bool,
     /// Which people, and how they stand
@@ -200,7 +200,7 @@ fn follow(
 
 /// Cameras by name.
 fn named(cameras: usize, opposite: bool) -> String {
-    format!("{cameras} cameras{}", if opposite { " in opposite pairs" } else { "" })
+    format!("{cameras} cameras{}", if opposite { " evenly all round" } else { "" })
 }
 
 fn table(studies: &[SilhouetteStudy]) -> String {
