@@ -2,7 +2,7 @@
 
 use glam::{Affine3A, Mat3, Vec2, Vec3};
 
-use crate::frame::{Intrinsics, pose_fault};
+use toile_base::frame::{Intrinsics, pose_fault};
 use crate::lens::BrownConrady;
 
 /// Steps in which a bent ray is made straight: each is a tenth of the one before for lenses of phones and webcams.

@@ -1,6 +1,6 @@
 //! The page about scene files says what the program takes: every key, and scenes that can be run.
 
-use toile_assets::bake::bake;
+use toile_bake::bake;
 use toile_assets::scene_file::{SceneFile, SceneSource, schema};
 use toile_tests::tree;
 

@@ -4,7 +4,7 @@ use serde::Deserialize;
 
 use super::error::AdaptError;
 use super::unit::UNITS;
-use crate::body::{Measures, Sex};
+use toile_base::body::{Measures, Sex};
 use crate::sizes::{GarmentKind, Girth, Population, SizeBody, SizeTable};
 
 /// Lengths of a body outside of these (mm) are in another unit.

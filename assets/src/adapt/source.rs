@@ -7,7 +7,7 @@ use super::measures::GarmentMeasures;
 use super::mesh::ForeignMesh;
 use super::paint::MeshPaint;
 use crate::file::{self, FileKind};
-use crate::garment::check::{MAX_VERTICES, MeshError};
+use toile_bake::check::{MAX_VERTICES, MeshError};
 use crate::import::gltf::parse_gltf;
 use crate::import::makehuman::clothes::Clothes;
 use crate::import::obj::MAX_BYTES;

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::mesh::ForeignMesh;
-use crate::body::Body;
+use toile_base::body::Body;
 use crate::rig::skin::SkinByHeight;
 
 /// Units that meshes come in: metres a unit, and its name.
@@ -186,11 +186,11 @@ fn nobody(low: Vec3, high: Vec3) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::{Measures, Sex};
+    use toile_base::body::{Measures, Sex};
     use crate::wardrobe;
 
     fn body() -> Body {
-        Body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap()
+        crate::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap()
     }
 
     /// A garment of our own as a file in another unit and place would have it.

@@ -1,6 +1,6 @@
 //! What building a body comes to: one that has the measures wanted, or why there is none.
 
-use super::anatomy::Body;
+use toile_base::body::Body;
 use super::reading::{Readings, Vocabulary, Wanted};
 
 /// A body built to measure, and what the tape reads on it.

@@ -4,7 +4,7 @@
 //! The proportions here are linear rules of that kind, with their constants fitted to the bodies of the size tables, largest and
 //! smallest; the armhole's depth is an eighth of the chest and a constant, the crotch's width goes by the hip, and so on.
 
-use crate::body::Sex;
+use toile_base::body::Sex;
 use crate::sizes::SizeBody;
 
 /// The lengths that drafts are drawn by, all in metres.

@@ -27,7 +27,7 @@ pub use block::DraftBlock;
 pub use garment::DraftGarment;
 pub use styles::{DraftStyle, STYLES};
 
-use crate::body::Sex;
+use toile_base::body::Sex;
 use crate::draping::{PatternPackage, PatternSizes, SizeGirths, SizedDraft};
 use crate::sizes::{Population, SizeError, SizeTable};
 

@@ -15,7 +15,7 @@ use super::outlines::{coordinates, outline, width};
 use super::panels::{Around, ArrangedPanel, faces, panels};
 use super::sleeves;
 use crate::body::tape::girth;
-use crate::body::{Body, Region};
+use toile_base::body::{Body, Region};
 use crate::pattern::Pattern;
 use crate::tailor::SewnMesh;
 

@@ -3,8 +3,8 @@
 
 use glam::{DVec2, Vec3};
 
-use crate::body::Body;
-use crate::garment::check::corners;
+use toile_base::body::Body;
+use toile_bake::check::corners;
 use crate::tailor::{PanelMesh, SewnMesh};
 
 /// Places of the vertices of `fine`, from those of `coarse` (m) `[vertices]`.

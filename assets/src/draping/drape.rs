@@ -16,9 +16,9 @@ use super::quality::{self, DrapeQuality};
 use super::relax::{RelaxRun, Relaxation};
 use super::skin_field::SkinField;
 use super::springs::{Springs, panel_starts, shape, unsewn_shape};
-use crate::body::Body;
-use crate::fabric::Fabric;
-use crate::garment::Shape;
+use toile_base::body::Body;
+use toile_base::fabric::Fabric;
+use toile_bake::Shape;
 use crate::pattern::Pattern;
 use crate::tailor::{SewnMesh, sew};
 

@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use super::limits::MAX_OPEN_MM;
-use crate::garment::MeshError;
+use toile_bake::check::MeshError;
 use crate::tailor::TailorError;
 
 /// Why a pattern cannot be draped.

@@ -2,7 +2,7 @@
 
 use super::package::{PackageError, PatternPackage};
 use super::pattern_sizes::{SizedDraft, TO_MEASURE};
-use crate::body::Measures;
+use toile_base::body::Measures;
 use crate::import::pattern;
 use crate::pattern::Pattern;
 use crate::sizes::{GarmentKind, Girth, Size, SizeTable};

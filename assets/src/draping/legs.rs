@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::outlines::coordinates;
 use super::panels::{Around, ArrangedPanel};
-use crate::garment::check::corners;
+use toile_bake::check::corners;
 use crate::tailor::SewnMesh;
 
 /// Legs of a garment.

@@ -9,8 +9,8 @@ use super::limits::CLEARANCE_M;
 use super::outlines::breadth;
 use super::panels::{Around, faces};
 use super::rows::{BLEND_M, RowRing, Rows};
-use crate::body::{Body, Region};
-use crate::skeleton::Joint;
+use toile_base::body::{Body, Region};
+use toile_base::skeleton::Joint;
 use crate::tailor::SewnMesh;
 
 /// Height under the armpits in which cloth passes from around the trunk to flat before and behind it (m).

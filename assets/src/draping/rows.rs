@@ -8,7 +8,7 @@ use super::arrange::Arrangement;
 use super::limits::CLEARANCE_M;
 use super::outlines::{outline, width};
 use super::panels::Around;
-use crate::body::Body;
+use toile_base::body::Body;
 use crate::tailor::SewnMesh;
 use crate::wardrobe::section::{BodySection, RingFit, SectionPlane};
 

@@ -43,7 +43,7 @@ pub(super) fn mtl(part: &MovingPart, picture: Option<&str>) -> String {
 mod tests {
     use super::super::surface::SurfaceLook;
     use super::*;
-    use crate::garment::shape::NO_VERTEX;
+    use toile_bake::shape::NO_VERTEX;
     use glam::Vec2;
 
     #[test]

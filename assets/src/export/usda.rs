@@ -174,7 +174,7 @@ fn material(prim: &str, part: &MovingPart, picture: Option<&str>) -> String {
 mod tests {
     use super::super::surface::SurfaceLook;
     use super::*;
-    use crate::garment::shape::NO_VERTEX;
+    use toile_bake::shape::NO_VERTEX;
     use glam::Vec2;
 
     /// The numbers between a head and the end of its line.

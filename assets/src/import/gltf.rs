@@ -13,7 +13,7 @@ use serde_json::Value;
 
 use super::paint;
 use super::plain::PlainMesh;
-use crate::garment::shape::NO_VERTEX;
+use toile_bake::shape::NO_VERTEX;
 pub use file::ReadBeside;
 use file::{GltfFile, index, list, transform};
 

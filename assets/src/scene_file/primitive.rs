@@ -6,8 +6,8 @@ use glam::{DVec3, Vec3};
 
 use super::error::SceneError;
 use super::table::SceneTable;
-use crate::garment::Shape;
-use crate::garment::shape::Face;
+use toile_bake::Shape;
+use toile_bake::shape::Face;
 use crate::import::plain::PlainMesh;
 use crate::scene::skirt;
 

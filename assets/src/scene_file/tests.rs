@@ -3,8 +3,8 @@
 use glam::{Quat, Vec3};
 
 use super::*;
-use crate::garment::Solver;
-use crate::limits::MAX_SPHERES;
+use toile_base::garment::Solver;
+use toile_base::limits::MAX_SPHERES;
 use crate::scene::skirt::{self, Motion};
 
 /// A scene in which every key of the schema stands once.

@@ -9,7 +9,7 @@ use super::lattice::Lattice;
 use super::quads;
 use super::ring::{Filled, Points};
 use super::sampling::Boundary;
-use crate::garment::shape::{Face, NO_VERTEX};
+use toile_bake::shape::{Face, NO_VERTEX};
 use crate::pattern::{Panel, crossing};
 
 /// A panel as a flat mesh: quads along warp and weft inside, triangles towards the outline.

@@ -3,8 +3,8 @@
 use glam::{DVec2, Vec3};
 
 use super::{SewnMesh, TailorError, sew};
-use crate::garment::check::check;
-use crate::numeric::random::SplitMix64;
+use toile_bake::check::check;
+use toile_base::numeric::random::SplitMix64;
 use crate::pattern::{Curve, Panel, PanelEdge, Pattern, Seam, SeamSide};
 
 fn panel(name: &str, curves: Vec<Curve>) -> Panel {

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use crate::garment::Overrides;
+use toile_bake::overrides::Overrides;
 use crate::sizes::{GarmentKind, Girth};
 
 /// A garment file: what is cut, from which fabric, in which sizes, with how much ease.
@@ -148,8 +148,9 @@ pub enum Cut {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::garment::Direction;
-    use crate::garment::solver::{Solver, SolverRegion};
+    use toile_base::garment::Direction;
+    use toile_bake::overrides::SolverRegion;
+    use toile_base::garment::Solver;
     use crate::wardrobe;
 
     #[test]

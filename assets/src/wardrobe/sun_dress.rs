@@ -5,8 +5,9 @@ use glam::Vec3;
 use super::drape::{DrapeBody, join};
 use super::section::resample;
 use super::style::{Cut, Style};
-use crate::body::Body;
-use crate::garment::{Part, Shape};
+use toile_base::body::Body;
+use toile_bake::Shape;
+use toile_base::garment::Part;
 use crate::sizes::Girth;
 
 /// Where a strap begins, as a share of the ring from the front centre: over the middle of the breast.

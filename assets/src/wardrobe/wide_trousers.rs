@@ -6,8 +6,9 @@ use glam::{Vec2, Vec3};
 use super::drape::{DrapeBody, flip, join};
 use super::section::{BodySection, RingFit};
 use super::style::{Cut, Style};
-use crate::body::Body;
-use crate::garment::{Part, Shape};
+use toile_base::body::Body;
+use toile_bake::Shape;
+use toile_base::garment::Part;
 use crate::sizes::Girth;
 
 /// Height of the skinned waistband (m).

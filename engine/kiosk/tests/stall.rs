@@ -25,7 +25,7 @@ use toile_fitting::live::source::{Feed, Visits};
 use toile_kiosk::service::runner::{Service, ServiceEnvironment, ServiceOptions};
 use toile_kiosk::service::service_manager::{ServiceManager, ServiceStatus, StopSignal};
 use toile_kiosk::service::session::SessionTimes;
-use toile_sensors::frame::Joints;
+use toile_base::frame::Joints;
 
 /// Hangs whoever passes it while it is shut.
 type Gate = Arc<AtomicBool>;

@@ -13,7 +13,7 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use toile_assets::body::Sex;
+use toile_base::body::Sex;
 use toile_assets::body::shape::Shapes;
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::frame::Snapshot;

@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use toile_assets::body::Sex;
+use toile_base::body::Sex;
 use toile_assets::body::shape::Shapes;
 use toile_assets::sizes::Population;
 

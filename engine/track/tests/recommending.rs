@@ -1,6 +1,6 @@
 //! Recommending: laws that a size must obey.
 
-use toile_assets::numeric::random::SplitMix64;
+use toile_base::numeric::random::SplitMix64;
 use toile_assets::sizes::{GarmentKind, SizeTable};
 use toile_track::estimate::Estimate;
 use toile_track::measure::{Measurements, Source};

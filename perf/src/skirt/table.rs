@@ -4,7 +4,7 @@
 use std::fmt::Write;
 
 use serde::Serialize;
-use toile_assets::garment::Shape;
+use toile_bake::Shape;
 use toile_assets::scene::skirt::{Motion, Stretch};
 use toile_engine::lanes::Width;
 use toile_fitting::heap::HeapProbe;

@@ -9,7 +9,7 @@ use toile_engine::frame_loop::ThreadLoop;
 use toile_engine::frame_loop::queue::{Capacity, Receiver};
 use toile_engine::meter::PERIOD_NS;
 use toile_fitting::heap::HeapProbe;
-use toile_sensors::clock::SECOND_NS;
+use toile_base::clock::SECOND_NS;
 use toile_sensors::source::live::CameraState;
 use toile_sensors::source::live::fault_injection::CameraFault;
 

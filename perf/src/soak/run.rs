@@ -20,7 +20,7 @@ use toile_fitting::heap::HeapProbe;
 use toile_fitting::live::assembly::{Assembly, LoopOptions, LoopParts, LoopQueues, SensorLoop, assemble};
 use toile_fitting::live::running::{EndedLoops, Loops, RunningLoop};
 use toile_fitting::live::scene_changer::DressedScene;
-use toile_sensors::clock::SECOND_NS;
+use toile_base::clock::SECOND_NS;
 
 use super::camera::Camera;
 use super::depth_camera::{self, CameraLoop, SoakSource};

@@ -3,7 +3,7 @@
 use glam::{Affine3A, Vec3, Vec3A};
 
 use super::fill::Validity;
-use crate::frame::{DepthFrame, Intrinsics};
+use toile_base::frame::{DepthFrame, Intrinsics};
 use crate::segment::same_surface;
 
 /// What the camera sees of the shopper, clean.

@@ -10,7 +10,7 @@ pub mod gaussian;
 pub mod noise;
 pub mod smooth;
 
-use crate::frame::DepthFrame;
+use toile_base::frame::DepthFrame;
 use crate::segment::{Person, Segmenter, Zone};
 pub use cloud::Cloud;
 pub use fill::Validity;

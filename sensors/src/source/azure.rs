@@ -12,8 +12,9 @@ use super::joint_map::{Format, JointMap};
 use super::{align, tidy};
 use crate::error::{Fault, Place};
 use crate::filter::gate::derive_confidence;
-use crate::frame::TrackedJoint;
-use crate::limits::{MAX_COORDINATE, MAX_JOINT_FRAMES};
+use toile_base::frame::TrackedJoint;
+use crate::limits::MAX_JOINT_FRAMES;
+use toile_base::limits::MAX_COORDINATE;
 use crate::session::{Session, too_many};
 
 const POINTS: usize = Format::Azure32.points();

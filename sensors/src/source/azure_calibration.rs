@@ -5,7 +5,7 @@ use serde::Deserialize;
 
 use super::camera::Camera;
 use crate::colour_camera::ColourCamera;
-use crate::frame::Intrinsics;
+use toile_base::frame::Intrinsics;
 use crate::lens::BrownConrady;
 
 /// A mode of a camera: its images, the sensor as binned, the image's corner on that (px).

@@ -5,7 +5,7 @@ use glam::{Affine3A, Mat3A, Vec3, Vec3A};
 use serde::Deserialize;
 
 use crate::error::{Fault, Place};
-use crate::frame::{Intrinsics, pose_fault};
+use toile_base::frame::{Intrinsics, pose_fault};
 use crate::lens::BrownConrady;
 
 /// A depth camera as described beside its images.

@@ -11,9 +11,9 @@ use toile_assets::file;
 use super::camera::{self, Camera};
 use super::files::{OpenOptions, count_bytes, shown};
 use super::sequence::Sequence;
-use crate::clock::SECOND_NS;
+use toile_base::clock::SECOND_NS;
 use crate::error::{Fault, Place, SourceError};
-use crate::frame::Intrinsics;
+use toile_base::frame::Intrinsics;
 use crate::limits::{CAMERA, MAX_FOLDER_FILES, RECORDING};
 use crate::session::Session;
 

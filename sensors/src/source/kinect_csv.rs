@@ -11,8 +11,9 @@ use super::joint_map::{Format, JointMap};
 use super::kinect2::turned;
 use super::{align, tidy};
 use crate::error::{Fault, Place};
-use crate::frame::{Joints, TrackedJoint};
-use crate::limits::{MAX_COORDINATE, MAX_JOINT_FRAMES};
+use toile_base::frame::{Joints, TrackedJoint};
+use crate::limits::MAX_JOINT_FRAMES;
+use toile_base::limits::MAX_COORDINATE;
 use crate::session::{Session, too_many};
 
 /// Most joints of a line.
@@ -131,7 +132,7 @@ fn clip(field: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_assets::skeleton::Joint;
+    use toile_base::skeleton::Joint;
 
     fn line(ticks: &str, x: &str, state: &str, joints: usize) -> String {
         let mut line = format!("{ticks},");

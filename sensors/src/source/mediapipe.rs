@@ -14,8 +14,9 @@ use super::mediapipe_landmarks::{Image, Landmark, LandmarkPerson, POINTS};
 use super::mediapipe_place as place;
 use super::{align, tidy};
 use crate::error::{Fault, Place};
-use crate::frame::Joints;
-use crate::limits::{MAX_JOINT_FRAMES, MAX_SIDE};
+use toile_base::frame::Joints;
+use crate::limits::MAX_JOINT_FRAMES;
+use toile_base::limits::MAX_SIDE;
 use crate::session::{Session, too_many};
 
 /// Image size that is taken where none is given (px): that of most webcams.

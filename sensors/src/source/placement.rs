@@ -2,9 +2,9 @@
 //! frames in the same way.
 
 use glam::{Affine3A, Mat3, Vec3};
-use toile_assets::numeric::statistics::quantile_of;
+use toile_base::numeric::statistics::quantile_of;
 
-use crate::frame::DepthFrame;
+use toile_base::frame::DepthFrame;
 use crate::segment::floor::{Floor, FloorFinder};
 
 /// Height of a camera of unknown pose above the floor (m): the middle of the 0.6 .. 1.8 m that Kinect's makers advise.

@@ -6,7 +6,7 @@ use super::camera::Camera;
 use super::raw_depth::assumed_camera;
 use super::sequence::{Sequence, assumed_time};
 use crate::error::{Fault, Place};
-use crate::frame::Intrinsics;
+use toile_base::frame::Intrinsics;
 use crate::session::Session;
 
 /// First bytes of a PNG.

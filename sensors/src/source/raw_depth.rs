@@ -3,7 +3,7 @@
 use super::camera::Camera;
 use super::sequence::{Sequence, assumed_time, untimed};
 use crate::error::{Fault, Place};
-use crate::frame::Intrinsics;
+use toile_base::frame::Intrinsics;
 use crate::limits::MAX_DEPTH_FRAMES;
 use crate::session::{Session, too_many};
 

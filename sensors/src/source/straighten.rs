@@ -1,6 +1,6 @@
 //! The table by which images of a lens that bends straight lines become those of a pinhole.
 
-use crate::frame::Intrinsics;
+use toile_base::frame::Intrinsics;
 use crate::lens::BrownConrady;
 
 /// A straightened image is at most so much wider or higher than the bent one, or narrower or lower: more bends no lens.

@@ -1,10 +1,10 @@
 //! Times corrected: from 0, strictly increasing, bursts merged.
 
-use toile_assets::numeric::statistics::quantile_of;
+use toile_base::numeric::statistics::quantile_of;
 
-use crate::clock::SECOND_NS;
+use toile_base::clock::SECOND_NS;
 use crate::error::{Fault, Place};
-use crate::frame::Joints;
+use toile_base::frame::Joints;
 use crate::limits::{MAX_DURATION_NS, MAX_JOINT_FRAMES};
 use crate::session::too_many;
 

@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::Vec3;
 
-use crate::garment::shape::NO_VERTEX;
+use toile_bake::shape::NO_VERTEX;
 use crate::import::avatar::Flaw;
 
 /// Girths and height of a body (m).

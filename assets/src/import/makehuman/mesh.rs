@@ -6,7 +6,7 @@ use std::path::Path;
 use glam::Vec3;
 
 use super::files::text;
-use crate::garment::shape::NO_VERTEX;
+use toile_bake::shape::NO_VERTEX;
 use crate::import::avatar::{AvatarError, Flaw};
 use crate::import::plain::parse_obj;
 

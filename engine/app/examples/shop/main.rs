@@ -15,7 +15,7 @@ use garments::{GARMENTS, ShopGarment};
 use toile_assets::catalogue::package;
 use toile_fitting::dress::wish::Wish;
 use toile_fitting::dress::{dressed, session};
-use toile_sensors::frame::Joints;
+use toile_base::frame::Joints;
 use toile_view::drawn_frame::{self, DrawnFrame};
 use toile_view::figure::Appearance;
 use toile_view::image::{Size, linear};

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
-use toile_assets::body::{Body, Measures, Sex};
+use toile_base::body::{Body, Measures, Sex};
 use toile_assets::catalogue::{CollageGarment, CollagePictures, limits};
 use toile_assets::file::{self, FileKind};
 use toile_assets::sizes::SizeTable;
@@ -146,7 +146,7 @@ fn body(args: &CollageArgs) -> Result<(Body, String), AppError> {
             (Measures::from(table.size_body(size).map_err(AppError::input)?), format!("size {size}"))
         }
     };
-    Ok((Body::build(args.sex, &measures).map_err(AppError::input)?, called))
+    Ok((toile_assets::body::build(args.sex, &measures).map_err(AppError::input)?, called))
 }
 
 /// A garment's file, and the pictures beside it.

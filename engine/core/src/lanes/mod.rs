@@ -28,7 +28,7 @@ pub use records::{DOUBLE, RECORD, RecordList, RecordRun, Records, RecordsAt};
 pub use traits::{Kernel, Lanes, Mask, Numbers};
 pub use two::Two;
 
-toile_assets::named! {
+toile_base::named! {
     /// How many lanes kernels run on, narrowest first.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
     pub enum Width {

@@ -2,7 +2,7 @@
 
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::triple_buffer::Reader;
-use toile_sensors::frame::Joints;
+use toile_base::frame::Joints;
 use toile_sensors::source::Session;
 
 use super::attire::{self, Attire, FindChoice};

@@ -3,7 +3,7 @@
 use std::f32::consts::TAU;
 
 use toile_assets::adapt::OwnMesh;
-use toile_assets::body::{Body, Measures, Sex};
+use toile_base::body::{Body, Measures, Sex};
 use toile_assets::draping::{
     self, AS_DRAFTED, PatternEase, PatternPackage, PatternSizes, SizeGirths, TO_MEASURE, ZoneEase,
 };

@@ -12,7 +12,7 @@ use toile_engine::frame_loop::physics_thread::Scene;
 use toile_engine::frame_loop::queue::Sender;
 use toile_engine::frame_loop::render_thread::{RenderThread, Renderer, SceneView};
 use toile_engine::meter::PERIOD_NS;
-use toile_sensors::frame::Joints;
+use toile_base::frame::Joints;
 
 use super::running::Restart;
 use super::watchdog::Progress;

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicBool, AtomicU8};
 
 use toile_engine::triple_buffer::{Reader, TripleBuffer, Writer};
 use toile_sensors::colour_camera::ColourCamera;
-use toile_sensors::frame::{DepthFrame, Joints};
+use toile_base::frame::{DepthFrame, Joints};
 use toile_sensors::person_mask::PersonMask;
 use toile_sensors::source::live::ColourImage;
 

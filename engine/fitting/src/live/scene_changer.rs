@@ -10,7 +10,7 @@ use toile_engine::frame_loop::physics_thread::Scene;
 use toile_engine::frame_loop::recording::SceneNote;
 use toile_engine::frame_loop::render_thread::SceneView;
 use toile_engine::triple_buffer::Reader;
-use toile_sensors::frame::Joints;
+use toile_base::frame::Joints;
 
 use super::live_scene::{LiveScene, SceneHandover};
 use crate::dress::dressed::Dressed;
@@ -170,7 +170,7 @@ impl<S: Scene, O> SceneChanger<S, O> {
 mod tests {
     use super::*;
     use glam::{Quat, Vec3};
-    use toile_assets::skeleton::{JOINTS, Pose};
+    use toile_base::skeleton::{JOINTS, Pose};
     use toile_engine::clock::Clock;
     use toile_engine::frame::SnapshotTimes;
     use toile_engine::frame_loop::governor::Rung;

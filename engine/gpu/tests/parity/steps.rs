@@ -1,7 +1,7 @@
 //! Whole steps against the CPU's.
 
 use glam::Vec3A;
-use toile_assets::garment::Garment;
+use toile_base::garment::Garment;
 use toile_assets::scene::skirt::{self as scene, Motion, Stretch};
 use toile_engine::cloth::{Cloth, Quality, RootSettings, Settings, Wind, measure};
 

@@ -11,7 +11,7 @@ use toile_fitting::dress::dressed::Dressed;
 use toile_fitting::dress::session;
 use toile_fitting::live::dresser::{DressJob, DressOutcome, Dresser, ShopperSource};
 use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
-use toile_sensors::frame::Joints;
+use toile_base::frame::Joints;
 
 use super::session::{SessionInput, SessionMachine, SessionState, SessionTimes, StateChange};
 use super::stock_watch::{StockChange, StockFigures, StockWatch};

@@ -46,7 +46,7 @@ use toile_fitting::live::report::ThreadPlacement;
 use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
 use toile_fitting::live::source::{Feed, Visits};
 use toile_fitting::live::{crash, recording};
-use toile_sensors::frame::Joints;
+use toile_base::frame::Joints;
 use toile_sensors::source::Session;
 
 use crate::error::KioskError;

@@ -16,7 +16,7 @@ use toile_fitting::live::report::{Attributed, ThreadPlacement};
 use toile_fitting::live::scene_changer::SceneChanger;
 use toile_fitting::live::source::Feed;
 use toile_fitting::live::watchdog::Watchdog;
-use toile_sensors::frame::Joints;
+use toile_base::frame::Joints;
 
 use super::controller::{ControllerContext, HeadlessController, SessionController, ToScene};
 use super::health::{HealthCounter, HealthFigures};

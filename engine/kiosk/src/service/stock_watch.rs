@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use toile_assets::catalogue::Catalogue;
 use toile_fitting::dress::dressed::{self, Dressed};
-use toile_sensors::frame::Joints;
+use toile_base::frame::Joints;
 
 use super::config::Config;
 use super::stock::{self, FilesSeen, LeftOut, Stock};

@@ -12,7 +12,7 @@ use toile_fitting::dress::measured;
 use toile_fitting::dress::session;
 use toile_fitting::live::dresser::{DressOutcome, ShopperSource};
 use toile_fitting::live::own_picture::PictureSwitch;
-use toile_sensors::frame::Joints;
+use toile_base::frame::Joints;
 use toile_track::gesture::Gestures;
 
 use super::dressing_worker::{DressingContext, DressingJob, DressingWorker, JobResult, MeasuredVisitor, MeasuringJob};

@@ -5,7 +5,7 @@ use std::net::SocketAddr;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use toile_assets::body::Sex;
+use toile_base::body::Sex;
 use toile_assets::file;
 use toile_assets::sizes::Population;
 use toile_engine::cloth::Quality;
@@ -18,7 +18,7 @@ use toile_fitting::dress::measured::{self, ShopperFacts};
 use toile_fitting::dress::recipe::Recipe;
 use toile_fitting::live::background::{BackgroundJob, Finished};
 use toile_fitting::live::dresser::ShopperSource;
-use toile_sensors::frame::Joints;
+use toile_base::frame::Joints;
 use toile_track::tape_readings;
 use toile_view::drawn_frame::{self, DrawnFrame};
 use toile_view::figure::{Appearance, OwnHead};

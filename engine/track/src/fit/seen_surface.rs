@@ -136,7 +136,7 @@ fn conjugate_gradients(apply: impl Fn(&[f64], &mut Vec<f64>), b: Vec<f64>) -> Ve
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_assets::body::Sex;
+    use toile_base::body::Sex;
     use toile_assets::body::shape::Shapes;
 
     #[test]

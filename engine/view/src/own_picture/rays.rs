@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 use toile_sensors::colour_camera::ColourCamera;
-use toile_sensors::frame::Intrinsics;
+use toile_base::frame::Intrinsics;
 use toile_sensors::lens::BrownConrady;
 
 /// Pixels of the picture between two rays. Between them a wide lens (k1 = -0.3) is wrong by less than 0.3 mm at 2.4 m.

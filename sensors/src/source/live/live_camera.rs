@@ -7,7 +7,7 @@ use glam::Affine3A;
 
 use super::error::CameraError;
 use crate::colour_camera::ColourCamera;
-use crate::frame::{Intrinsics, Joints};
+use toile_base::frame::{Intrinsics, Joints};
 use crate::limits::MAX_VIEW_PEOPLE;
 use crate::source::camera::Camera;
 

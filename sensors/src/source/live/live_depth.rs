@@ -12,7 +12,7 @@ use super::frame_pool::FramePool;
 use super::live_camera::{Arrival, CameraFrame, CameraInfo, ColourImage, LiveCamera};
 use crate::colour_camera::ColourCamera;
 use crate::error::{Fault, Place};
-use crate::frame::{DepthFrame, Intrinsics, Joints};
+use toile_base::frame::{DepthFrame, Intrinsics, Joints};
 use crate::source::depth_converter::DepthConverter;
 use crate::source::placement::{PlacedCamera, Placement};
 

@@ -16,7 +16,7 @@ use super::error::CameraError;
 use super::library::{Library, LibraryName, functions};
 use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourPlace, LiveCamera, is_of_moment};
 use crate::colour_camera::ColourCamera;
-use crate::frame::Intrinsics;
+use toile_base::frame::Intrinsics;
 use crate::lens::BrownConrady;
 use crate::source::camera::Camera;
 

@@ -5,7 +5,7 @@ use std::ffi::c_int;
 use glam::{Mat3, Vec3};
 
 use crate::colour_camera::ColourCamera;
-use crate::frame::Intrinsics;
+use toile_base::frame::Intrinsics;
 use crate::lens::BrownConrady;
 
 const DISTORTION_NONE: c_int = 0;

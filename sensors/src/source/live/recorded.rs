@@ -7,8 +7,8 @@ use std::time::{Duration, Instant};
 
 use super::error::CameraError;
 use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourImage, ColourPlace, LiveCamera};
-use crate::clock::SECOND_NS;
-use crate::frame::DepthFrame;
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::DepthFrame;
 use crate::source::camera::Camera;
 use crate::source::{self, OpenOptions};
 

@@ -7,7 +7,7 @@ use super::colour_decode as decode;
 use super::error::CameraError;
 use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourPlace, LiveCamera};
 use super::v4l2::{FourCc, MJPG, VideoStream, YUYV};
-use crate::frame::Intrinsics;
+use toile_base::frame::Intrinsics;
 use crate::source::camera::Camera;
 
 const NAME: &str = "webcam";

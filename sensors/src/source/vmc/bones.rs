@@ -1,9 +1,9 @@
 //! Unity's humanoid bones, and where each stands in the world.
 
 use glam::{Affine3A, Quat, Vec3};
-use toile_assets::skeleton::{JOINTS, Joint};
+use toile_base::skeleton::{JOINTS, Joint};
 
-use crate::frame::{Joints, TrackedJoint};
+use toile_base::frame::{Joints, TrackedJoint};
 use crate::source::joint_map;
 
 /// The bones that a body is made of, each with its parent, parents first. Fingers, eyes and jaw move
