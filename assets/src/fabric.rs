@@ -125,8 +125,7 @@ fn whole(name: &str, base: &str, text: &str) -> Result<Table, FabricError> {
 /// # Errors
 /// A text that is no fabric, a figure that no cloth has.
 pub fn parse(name: &str, text: &str) -> Result<Fabric, FabricError> {
-    let wrong =
-        |e: toml::de::Error| FabricError::Syntax { name: name.into(), reason: e.message().replace('\n', " ") };
+    let wrong = |e: toml::de::Error| FabricError::Syntax { name: name.into(), reason: e.message().replace('\n', " ") };
     let mut fabric: Fabric = match toml::from_str::<Table>(text).map_err(wrong)?.get("base").and_then(Value::as_str) {
         Some(base) => whole(name, base, text)?.try_into().map_err(wrong)?,
         None => toml::from_str(text).map_err(wrong)?,
@@ -140,7 +139,10 @@ pub fn parse(name: &str, text: &str) -> Result<Fabric, FabricError> {
 ///
 /// # Errors
 /// A picture that is not there, or is none.
-pub fn read_picture(fabric: &mut Fabric, read: impl FnOnce(&str) -> Result<Vec<u8>, String>) -> Result<(), FabricError> {
+pub fn read_picture(
+    fabric: &mut Fabric,
+    read: impl FnOnce(&str) -> Result<Vec<u8>, String>,
+) -> Result<(), FabricError> {
     let Some(picture) = fabric.print.as_ref().and_then(|print| print.picture.as_deref()) else { return Ok(()) };
     let tile = read(picture).and_then(|bytes| texture::decode(&bytes));
     let wrong = |reason| FabricError::Print { name: fabric.name.clone(), reason: format!("{picture}: {reason}") };
@@ -282,13 +284,10 @@ mod tests {
         let heavy = text.replace("density_kg_m2 = 0.105", "density_kg_m2 = nan");
         assert_ne!(heavy, text);
         assert!(parse("heavy", &heavy).unwrap_err().to_string().contains("density_kg_m2"));
-        assert!(
-            parse("odd", &format!("{text}\nstiffness = 0.8\n")).unwrap_err().to_string().contains("stiffness")
-        );
+        assert!(parse("odd", &format!("{text}\nstiffness = 0.8\n")).unwrap_err().to_string().contains("stiffness"));
         assert!(matches!(parse("empty", ""), Err(FabricError::Syntax { .. })));
-        let bias = |value: f32| {
-            parse("bias", &text.replace("friction", &format!("bend_bias_un_m = {value:?}\nfriction")))
-        };
+        let bias =
+            |value: f32| parse("bias", &text.replace("friction", &format!("bend_bias_un_m = {value:?}\nfriction")));
         assert_eq!(bias(3.0).unwrap().bend_bias_un_m, Some(3.0));
         assert!(bias(-1.0).unwrap_err().to_string().contains("bend_bias_un_m"));
     }

@@ -52,7 +52,9 @@ fn fitting(picture: &RgbaImage, most: u32) -> Texture {
 }
 
 fn picture_of(texture: &Texture) -> RgbaImage {
-    RgbaImage::from_fn(texture.width, texture.height, |x, y| image::Rgba(texture.texels[(y * texture.width + x) as usize]))
+    RgbaImage::from_fn(texture.width, texture.height, |x, y| {
+        image::Rgba(texture.texels[(y * texture.width + x) as usize])
+    })
 }
 
 /// Several pictures in one, each in its cell.

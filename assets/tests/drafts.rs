@@ -1,9 +1,9 @@
 //! Garments that we draft ourselves, sewn up around the bodies of their sizes: that they hang as what they are.
 
 use glam::Vec3;
-use toile_base::body::Body;
 use toile_assets::drafting;
 use toile_assets::draping::{DrapedPattern, PatternPackage};
+use toile_base::body::Body;
 use toile_base::skeleton::Joint;
 
 /// Strain of all but one in a hundred edges (1): trousers reach it at the crotch.

@@ -6,15 +6,15 @@ mod recordings;
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
-use toile_bake::bake;
-use toile_base::body::{Body, Measures, Sex};
 use toile_assets::drafting;
 use toile_assets::draping::{self, DrapeError, DrapedPattern, SkinField, drape, ease, read_package};
-use toile_base::fabric::Fabric;
-use toile_base::garment::{Garment, Part};
 use toile_assets::import::pattern::{parse, read};
 use toile_assets::pattern::{Panel, Pattern};
 use toile_assets::sizes::{Girth, SizeTable};
+use toile_bake::bake;
+use toile_base::body::{Body, Measures, Sex};
+use toile_base::fabric::Fabric;
+use toile_base::garment::{Garment, Part};
 use toile_base::skeleton::Joint;
 
 /// Spacing at which the laws are looked at (m): coarse, so that a test takes seconds.

@@ -10,12 +10,12 @@ use std::time::{Duration, Instant};
 use proptest::prelude::*;
 use toile_assets::adapt::report::Behaviour;
 use toile_assets::adapt::{AdaptError, OwnMesh};
-use toile_base::body::{Body, Measures, Sex};
 use toile_assets::draping;
-use toile_bake::check::check;
 use toile_assets::import;
 use toile_assets::sizes::SizeTable;
 use toile_assets::wardrobe::own;
+use toile_bake::check::check;
+use toile_base::body::{Body, Measures, Sex};
 
 const OUTFITS: [&str; 3] = ["female_elegantsuit01", "female_sportsuit01", "male_casualsuit04"];
 
@@ -363,7 +363,8 @@ fn draped_patterns_are_read_in_the_unit_and_height_that_they_are_written_in() {
         let pattern = import::pattern::read(&pattern, None).unwrap();
         let size = draping::fitting_size(&pattern, &table, Sex::Female).unwrap();
         let body = toile_assets::body::build(Sex::Female, &Measures::from(table.size_body(&size).unwrap())).unwrap();
-        let draped = draping::drape(&pattern, &body, &toile_assets::fabric::built_in("cotton-lawn").unwrap(), 0.03).unwrap();
+        let draped =
+            draping::drape(&pattern, &body, &toile_assets::fabric::built_in("cotton-lawn").unwrap(), 0.03).unwrap();
         for (unit, unit_name) in
             [(10.0, "decimetres"), (100.0, "centimetres"), (1000.0, "millimetres"), (39.37, "inches")]
         {

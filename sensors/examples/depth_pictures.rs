@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 
 use glam::{Vec3, Vec3A};
 use toile_base::body::{Measures, Sex};
-use toile_sensors::depth::{Clean, Cloud, DepthSmoothing, Validity};
 use toile_base::frame::{DepthFrame, Intrinsics};
+use toile_sensors::depth::{Clean, Cloud, DepthSmoothing, Validity};
 use toile_sensors::segment::Zone;
 use toile_sensors::source::synthetic::room;
 use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera};

@@ -2,8 +2,8 @@
 //! world.
 
 use glam::{Affine3A, DVec3, Vec3, Vec3A};
-use toile_base::fabric::Fabric;
 use toile_bake::Shape;
+use toile_base::fabric::Fabric;
 use toile_base::garment::{Garment, Part};
 use toile_base::mesh::SkinWeights;
 use toile_base::skeleton::BONES;

@@ -1,18 +1,18 @@
 //! The scene on which the frame is tested: the shopper of the embedded session, her joints as a perfect sensor sees
 //! them, and the wardrobe in the size nearest to her.
 
-use toile_base::body::Body;
-use toile_base::garment::Garment;
 use toile_assets::scene;
 use toile_assets::sizes::SizeBody;
 use toile_assets::wardrobe::{self, style::Style};
+use toile_base::body::Body;
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::Joints;
+use toile_base::garment::Garment;
 use toile_engine::body::JointFrames;
 use toile_engine::cloth::Settings;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::triple_buffer::Reader;
-use toile_base::clock::SECOND_NS;
 use toile_sensors::filter::JointFilter;
-use toile_base::frame::Joints;
 
 /// Frames a second of the sensor.
 pub const SENSOR_HZ: u64 = 30;

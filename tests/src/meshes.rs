@@ -2,8 +2,8 @@
 //! any plane.
 
 use glam::{Quat, Vec2, Vec3};
-use toile_bake::shape::NO_VERTEX;
 use toile_bake::Shape;
+use toile_bake::shape::NO_VERTEX;
 use toile_base::garment::Part;
 use toile_base::mesh::SkinWeights;
 

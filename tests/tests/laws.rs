@@ -2,7 +2,9 @@
 
 use glam::{Affine3A, Vec3, Vec3A};
 use toile_bake::bake;
+use toile_base::clock::ticks_to_ns;
 use toile_base::fabric::Fabric;
+use toile_base::frame::Joints;
 use toile_base::garment::Garment;
 use toile_base::limits::{STEP_HZ, STEP_SECONDS};
 use toile_base::skeleton::BONES;
@@ -10,8 +12,6 @@ use toile_engine::body::{Poser, palette};
 use toile_engine::cloth::{Cloth, Settings, Step, measure};
 use toile_engine::colliders::Colliders;
 use toile_engine::frame::Frame;
-use toile_base::clock::ticks_to_ns;
-use toile_base::frame::Joints;
 use toile_sensors::sample::sample;
 use toile_tests::cloth::{plain_fabric, sheet};
 use toile_tests::dressed;

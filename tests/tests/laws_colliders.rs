@@ -1,9 +1,9 @@
 //! Laws of the collision body as it moves: capsules follow their bones, and the skin stays near them where joints bend.
 
 use glam::{Affine3A, Quat, Vec3};
+use toile_assets::rig::Zone;
 use toile_base::body::{Body, Measures, Sex};
 use toile_base::limits::MAX_CAPSULES;
-use toile_assets::rig::Zone;
 use toile_base::skeleton::{BONES, Joint, Pose};
 use toile_engine::body::palette;
 use toile_engine::colliders::{Colliders, RestSphere};

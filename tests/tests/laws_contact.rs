@@ -13,7 +13,8 @@ use toile_tests::tolerance;
 
 /// A small cloth, not held anywhere, in the middle of the world.
 fn garment(friction: f32) -> Garment {
-    let fabric = Fabric { friction, ..toile_assets::fabric::built_in("cotton-lawn").expect("a fabric that is built in") };
+    let fabric =
+        Fabric { friction, ..toile_assets::fabric::built_in("cotton-lawn").expect("a fabric that is built in") };
     bake("cloth", "one", &sheet(5, 5, 0.03, Vec3::new(-0.075, 0.075, 0.0), false), &fabric).expect("it can be baked")
 }
 

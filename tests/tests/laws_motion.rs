@@ -1,9 +1,9 @@
 //! Laws of motion that every cloth obeys, whatever it is made of.
 
 use glam::{Vec3, Vec3A};
+use toile_bake::Shape;
 use toile_bake::bake;
 use toile_base::fabric::Fabric;
-use toile_bake::Shape;
 use toile_base::garment::{Garment, Solver};
 use toile_base::limits::{STEP_HZ, STEP_SECONDS};
 use toile_engine::cloth::{Quality, Settings};

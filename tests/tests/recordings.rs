@@ -7,14 +7,14 @@ use std::sync::Mutex;
 use std::thread;
 
 use toile_base::body::{Measures, Sex};
+use toile_base::clock::{SECOND_NS, ns_to_ticks, ticks_to_ns};
+use toile_base::frame::Joints;
 use toile_base::limits::STEP_SECONDS;
 use toile_base::skeleton::Pose;
 use toile_engine::body::ROOT_SPEED;
 use toile_engine::body::smooth::LIMB_SPEED;
 use toile_engine::frame::Frame;
-use toile_base::clock::{SECOND_NS, ns_to_ticks, ticks_to_ns};
 use toile_sensors::filter::JointFilter;
-use toile_base::frame::Joints;
 use toile_sensors::sample::sample;
 use toile_sensors::source::{OpenOptions, open};
 use toile_tests::{dressed, recordings};

@@ -10,8 +10,8 @@
 use super::bending::{self, Stencil};
 use super::fibers::{Direction, Edge};
 use super::order::ParticleOrder;
-use toile_base::fabric::Fabric;
 use crate::shape::Shape;
+use toile_base::fabric::Fabric;
 use toile_base::garment::bend_friction::{BendFriction, FrictionSlot};
 
 /// The friction of a garment's stencils.

@@ -30,8 +30,8 @@ mod ring;
 mod stencil;
 mod whole;
 
-use toile_base::fabric::Fabric;
 use crate::shape::Shape;
+use toile_base::fabric::Fabric;
 
 use super::fibers::{Direction, Edge};
 use fit::{Patches, QuadraticForm};

@@ -15,11 +15,11 @@ use std::collections::BTreeMap;
 
 use glam::{Vec2, Vec3};
 
-pub use toile_base::garment::Direction;
 use crate::check::{corners, is_quad};
 use crate::shape::{Face, NO_VERTEX, Shape, area as area_of};
 pub use coverage::Coverage;
 pub use fiber::{Edge, Fiber};
+pub use toile_base::garment::Direction;
 pub use trace::trace;
 use warp::normal;
 

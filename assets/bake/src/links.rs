@@ -10,14 +10,14 @@ use super::link_laws::LawMaker;
 use super::order::ParticleOrder;
 use super::solver::SolverChoice;
 use super::{hubs, runs, stiffness, tethers};
+use crate::shape::Shape;
 use toile_base::fabric::Fabric;
+use toile_base::garment::Solver;
 use toile_base::garment::layout::{
     Bends, BundleRow, Diagonals, ENDED, FiberBundle, FiberList, FiberLists, Fibers, Layout, Links, MAX_LISTED, OWNERS,
     Tethers,
 };
 use toile_base::garment::link_laws::{LawTable, LinkLaws, ONE_SLOPE};
-use crate::shape::Shape;
-use toile_base::garment::Solver;
 
 /// What baking has found out about a shape so far.
 pub struct BakeInput<'a> {

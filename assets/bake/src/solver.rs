@@ -10,8 +10,8 @@ use std::collections::BTreeMap;
 
 use super::fibers::{Direction, Fiber};
 use crate::check::corners;
-use crate::shape::Shape;
 use crate::overrides::{Overrides, SolverRegion};
+use crate::shape::Shape;
 use toile_base::garment::Solver;
 
 /// Chooses solvers for the fibers of one shape.

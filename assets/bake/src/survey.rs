@@ -5,8 +5,8 @@ use glam::Vec3;
 use super::fibers::{self, Coverage, Direction};
 use super::solver::SolverChoice;
 use super::{bending, tethers};
-use toile_base::fabric::Fabric;
 use crate::shape::Shape;
+use toile_base::fabric::Fabric;
 use toile_base::garment::Solver;
 
 /// A triangle whose height is a smaller part of its longest side than this is a needle.

@@ -9,9 +9,9 @@ use super::mesh::ForeignMesh;
 use super::own_mesh::OwnMesh;
 use super::place::{Below, BodyWay};
 use crate::body::tape;
+use crate::sizes::{Girth, SizeBody};
 use toile_base::body::{Body, Measures};
 use toile_base::mesh::Mesh;
-use crate::sizes::{Girth, SizeBody};
 
 /// A section of a garment that is shorter than this share of the body's girth does not go around it.
 const AROUND: f32 = 0.9;

@@ -6,11 +6,11 @@ use super::layers::PieceOrder;
 use super::made_for::arm_share;
 use super::mesh::{ForeignMesh, sides};
 use super::place::{Below, BodyWay, leg_share};
+use crate::rig::skin::SkinByHeight;
+use toile_bake::shape::NO_VERTEX;
 use toile_base::body::{Body, Region};
 use toile_base::garment::Part;
-use toile_bake::shape::NO_VERTEX;
 use toile_base::mesh::SkinWeights;
-use crate::rig::skin::SkinByHeight;
 use toile_base::skeleton::{BONES, Joint};
 
 /// Cloth starts at least this far from the skin (m): a little more than the contact offset of the thickest fabric.

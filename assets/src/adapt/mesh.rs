@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
-use toile_bake::check::corners;
-use toile_bake::shape::{Face, NO_VERTEX};
 use crate::import::obj::FREE;
 use crate::import::plain::PlainMesh;
+use toile_bake::check::corners;
+use toile_bake::shape::{Face, NO_VERTEX};
 use toile_base::texture::Texture;
 
 /// What the material of a face says.

@@ -14,11 +14,11 @@ use super::report::Repair;
 use super::source::{self, MeshFiles};
 use super::unit::{self, FileAxes};
 use super::{hems, repair, shells, surface};
-use toile_base::body::{Measures, Sex};
-use toile_bake::check::check;
 use crate::import::avatar::ImportOptions;
 use crate::import::makehuman::clothes::{Clothes, base_folder};
 use crate::import::makehuman::{self, MakehumanOptions};
+use toile_bake::check::check;
+use toile_base::body::{Measures, Sex};
 use toile_base::mesh::SkinWeights;
 
 /// Height of the origin over the soles of MakeHuman's base mesh (dm): -8.190 to the sole of its young women, -8.181 of its men.

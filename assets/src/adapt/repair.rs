@@ -114,8 +114,8 @@ fn drop_doubles(mesh: &mut ForeignMesh) -> Repair {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_bake::check::check;
     use crate::import::plain::parse_obj;
+    use toile_bake::check::check;
 
     const SOUND: &str = "v 0 0 0\nv .2 0 0\nv .2 1 0\nv 0 1 0\nf 1 2 3 4\n";
 

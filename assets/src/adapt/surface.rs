@@ -201,8 +201,8 @@ pub fn loops(mesh: &ForeignMesh) -> Vec<Vec<u32>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_bake::check::check;
     use crate::import::plain::parse_obj;
+    use toile_bake::check::check;
 
     fn settled(text: &str) -> (ForeignMesh, Vec<(&'static str, usize)>) {
         let mut mesh = ForeignMesh::of(&parse_obj(text).unwrap());

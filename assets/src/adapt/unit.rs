@@ -3,8 +3,8 @@
 use glam::Vec3;
 
 use super::mesh::ForeignMesh;
-use toile_base::body::Body;
 use crate::rig::skin::SkinByHeight;
+use toile_base::body::Body;
 
 /// Units that meshes come in: metres a unit, and its name.
 pub const UNITS: [(f32, &str); 6] = [
@@ -186,8 +186,8 @@ fn nobody(low: Vec3, high: Vec3) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_base::body::{Measures, Sex};
     use crate::wardrobe;
+    use toile_base::body::{Measures, Sex};
 
     fn body() -> Body {
         crate::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap()

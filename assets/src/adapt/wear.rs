@@ -14,11 +14,11 @@ use super::own_mesh::OwnMesh;
 use super::place::Below;
 use super::report::{Behaviour, MeshReport, PieceReport};
 use super::surface::{loops, pieces};
-use toile_base::body::Body;
-use toile_bake::Shape;
-use toile_bake::shape::NO_VERTEX;
 use crate::import::obj::warp_upright;
 use crate::texture::Atlas;
+use toile_bake::Shape;
+use toile_bake::shape::NO_VERTEX;
+use toile_base::body::Body;
 
 /// Borders below the crotch that lie this far beside the middle (m) are those of trouser legs.
 const LEG_BESIDE_M: f32 = 0.04;

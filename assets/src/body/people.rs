@@ -9,8 +9,8 @@ use std::sync::LazyLock;
 
 use serde::Deserialize;
 
-use toile_base::body::Sex;
 use super::reading::{READINGS, Reading};
+use toile_base::body::Sex;
 use toile_base::numeric::linear;
 use toile_base::numeric::linear::Pivot;
 

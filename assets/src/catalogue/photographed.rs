@@ -7,11 +7,11 @@ use glam::{Vec2, Vec3};
 use serde::Deserialize;
 
 use super::fitting::{FittingLevel, StretchLimits, check_registration};
+use crate::texture::Atlas;
 use toile_base::body::{Body, Measures};
 use toile_base::garment::Garment;
 use toile_base::garment::look::MeshPicture;
 use toile_base::numeric::statistics;
-use crate::texture::Atlas;
 use toile_base::texture::Texture;
 
 /// What a manifest says of a garment's photographs.
@@ -279,8 +279,8 @@ mod tests {
     use image::{ImageFormat, Rgba, RgbaImage};
 
     use super::*;
-    use toile_base::body::Sex;
     use crate::drafting;
+    use toile_base::body::Sex;
 
     /// A tee from the front: red where the wearer's right is, green at the left, its lower third blue, nothing beside it.
     fn photograph() -> Vec<u8> {

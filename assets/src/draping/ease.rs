@@ -5,10 +5,10 @@ use super::error::DrapeError;
 use super::outlines::{outline, width};
 use super::panels::Around;
 use crate::body::tape;
-use toile_base::body::{Body, Measures, Sex};
 use crate::pattern::Pattern;
 use crate::sizes::{GarmentKind, Girth, SizeTable};
 use crate::tailor::{SewnMesh, sew};
+use toile_base::body::{Body, Measures, Sex};
 
 use super::limits::LEVELS_M;
 
@@ -112,7 +112,8 @@ pub fn fitting_size(pattern: &Pattern, table: &SizeTable, sex: Sex) -> Result<St
     let codes = table.codes();
     let mut best = codes.first().copied().unwrap_or_default();
     for code in codes {
-        let Some(body) = table.size_body(code).ok().and_then(|b| crate::body::build(sex, &Measures::from(b)).ok()) else {
+        let Some(body) = table.size_body(code).ok().and_then(|b| crate::body::build(sex, &Measures::from(b)).ok())
+        else {
             continue;
         };
         let eases = of_arranged(&sewn, &arrange(pattern, &sewn, &body)?, &body);

@@ -9,19 +9,19 @@ use super::drape::{DrapedPattern, drape, drape_around, drape_on};
 use super::error::DrapeError;
 use super::pattern_sizes::{AS_DRAFTED, PatternSizes, TO_MEASURE};
 use super::skin_field::SkinField;
-use toile_bake::bake;
-use toile_base::body::{Body, Measures, Sex};
 use crate::fabric::FabricError;
-use toile_base::fabric::Fabric;
 use crate::file::{self, FileError, FileKind};
-use toile_bake::Shape;
-use toile_base::garment::Garment;
 use crate::import::pattern::{self, PatternError};
 use crate::pattern::Pattern;
 use crate::pattern::limits::MAX_PATTERN_BYTES;
 use crate::sizes::{Population, SizeError, SizeTable};
 use crate::tailor::TailorError;
 use crate::tailor::limits::SPACING_M;
+use toile_bake::Shape;
+use toile_bake::bake;
+use toile_base::body::{Body, Measures, Sex};
+use toile_base::fabric::Fabric;
+use toile_base::garment::Garment;
 
 /// The format of a package.
 const SCHEMA: &str = "toile.garment-package/1";

@@ -2,17 +2,17 @@
 
 use glam::Vec3;
 
+use crate::tailor::SewnMesh;
+use toile_bake::Shape;
 use toile_bake::bending;
 use toile_bake::bending::Stencil;
+use toile_bake::check::corners;
 use toile_bake::fibers;
 use toile_bake::fibers::Edge;
+use toile_bake::shape::{Face, NO_VERTEX};
 use toile_bake::stiffness;
 use toile_base::fabric::Fabric;
-use toile_bake::check::corners;
-use toile_bake::shape::{Face, NO_VERTEX};
-use toile_bake::Shape;
 use toile_base::garment::Direction;
-use crate::tailor::SewnMesh;
 
 /// One edge as a distance constraint.
 #[derive(Debug, Clone, Copy)]

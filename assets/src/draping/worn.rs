@@ -7,11 +7,11 @@ use super::outlines::coordinates;
 use super::panels::Around;
 use super::skin_field::SkinField;
 use super::springs::shape;
+use crate::rig::skin::SkinByHeight;
+use toile_bake::Shape;
 use toile_bake::weights;
 use toile_base::body::Body;
-use toile_bake::Shape;
 use toile_base::garment::Part;
-use crate::rig::skin::SkinByHeight;
 use toile_base::skeleton::Joint;
 
 /// What lies nearer to the skin than this (m) on a shoulder rests there.

@@ -111,7 +111,8 @@ mod tests {
         assert_eq!(laid.texels[..2], [[0, 0, 255, 255], [255, 0, 0, 255]]);
         // Half of the light is 188 of 255 in sRGB.
         assert_eq!(laid.texels[2], [188, 0, 187, 255]);
-        let read = crate::texture::decode(&png(&Texture { width: 2, height: 1, texels: laid.texels[..2].to_vec() })).unwrap();
+        let read =
+            crate::texture::decode(&png(&Texture { width: 2, height: 1, texels: laid.texels[..2].to_vec() })).unwrap();
         assert_eq!(read.texels, laid.texels[..2]);
     }
 }

@@ -7,8 +7,8 @@ use gltf::animation::util::ReadOutputs;
 use gltf::mesh::util::ReadIndices;
 
 use super::*;
-use toile_base::body::{Body, Measures, Sex};
 use toile_bake::shape::NO_VERTEX;
+use toile_base::body::{Body, Measures, Sex};
 use toile_base::skeleton::{BONES, Joint, bone_name};
 use toile_base::texture::Texture;
 

@@ -290,7 +290,6 @@ fn line(figure: &FileFigure, key: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    
 
     const KES_SHEET: &str = "# cotton broad\nLT, 0.712\nWT, 9.0, 10.0\nRT, 54\nB, 0.118, 0.102\n2HB 0.124 0.11\nG; 0.8\n2HG\t1.5\n\
         2HG5 2.5\nLC .3\nWC .2\nRC 30\nT .6\nW 12.0\nMIU .18\nMMD .02\nSMD 4\nDC 62\n";
@@ -308,7 +307,8 @@ mod tests {
         // e = 2 WT / (LT F).
         assert!((figure(&sheet, "stretch_warp_n_m") - 490.3325 / (18.0 / (0.712 * 500.0))).abs() < 1e-6);
         let fabric =
-            crate::fabric::parse("sheet", &sheet.file("broad", "Broad \"cloth\"", "cotton-lawn", "own laboratory")).unwrap();
+            crate::fabric::parse("sheet", &sheet.file("broad", "Broad \"cloth\"", "cotton-lawn", "own laboratory"))
+                .unwrap();
         assert!((fabric.hysteresis.bend_warp_mn - 1.21602).abs() < 1e-4 && fabric.drape_percent == Some(62.0));
         assert!((fabric.density_kg_m2 - 0.12).abs() < 1e-6 && (fabric.bend_weft_un_m - 10.0028).abs() < 1e-3);
         let [warp, _] = fabric.hysteresis.residual_curvatures([fabric.bend_warp_un_m, 1.0]);

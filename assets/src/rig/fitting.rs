@@ -3,12 +3,12 @@
 use glam::Vec3;
 
 use super::plan::{CAPSULES, MIDDLE, PAIRS, PLAN, SpherePlace};
-use toile_base::rig::SPHERES;
 use super::skin::{SkinByHeight, vertex_areas};
 use super::system::{NormalEquations, SphereGradient, SphereVector, UNKNOWNS};
 use super::union::{RestSpheres, nearest};
 use super::zones::{self, Zone};
 use toile_base::body::Body;
+use toile_base::rig::SPHERES;
 
 /// Steps of the fit; it settles within these.
 const STEPS: usize = 40;

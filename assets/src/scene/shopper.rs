@@ -141,7 +141,6 @@ pub const CAMERA: [Vec3; 2] = [Vec3::new(0.0, 1.05, 2.6), Vec3::new(0.0, 0.95, 0
 #[cfg(test)]
 mod tests {
     use super::*;
-    
 
     #[test]
     fn the_performance_is_smooth_and_stays_on_the_floor() {

@@ -7,15 +7,15 @@ use super::pins::{PinSource, SceneLoader};
 use super::source::SceneSource;
 use super::table::SceneTable;
 use super::{primitive, weld};
-use toile_base::fabric::Fabric;
-use toile_bake::check::check;
-use toile_bake::shape::{Face, NO_VERTEX};
-use toile_bake::Shape;
-use toile_bake::overrides::Overrides;
-use toile_base::garment::Solver;
 use crate::import::gltf::parse_gltf;
 use crate::import::obj::FREE;
 use crate::import::plain::{PlainMesh, parse_obj};
+use toile_bake::Shape;
+use toile_bake::check::check;
+use toile_bake::overrides::Overrides;
+use toile_bake::shape::{Face, NO_VERTEX};
+use toile_base::fabric::Fabric;
+use toile_base::garment::Solver;
 use toile_base::mesh::SkinWeights;
 
 /// A garment's extent may lie between these (m): what is smaller or larger was given in another unit.

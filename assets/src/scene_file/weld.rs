@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use glam::{Vec2, Vec3};
 
+use crate::import::obj::warp_upright;
+use crate::import::plain::PlainMesh;
 use toile_bake::Shape;
 use toile_bake::check::corners;
 use toile_bake::shape::{Face, NO_VERTEX};
 use toile_base::garment::Part;
-use crate::import::obj::warp_upright;
-use crate::import::plain::PlainMesh;
 
 /// The shape of a mesh, and which of its vertices each of the mesh is. Vertices at the very same place become one,
 /// because exporters split them along seams of texture and material; those that no face uses are left out.

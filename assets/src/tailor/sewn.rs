@@ -8,9 +8,9 @@ use super::error::TailorError;
 use super::limits::{MAX_IMPROVEMENT, MAX_OUTLINE_POINTS, MAX_PARTICLES, SPACING_M};
 use super::panel_mesh::{MeshBudget, PanelMesh, mesh};
 use super::sampling::sample;
+use crate::pattern::{Pattern, Seam};
 use toile_bake::check::corners;
 use toile_bake::shape::{Face, NO_VERTEX};
-use crate::pattern::{Pattern, Seam};
 use toile_base::garment::trim::ClothTrim;
 
 /// How often panels are meshed again because their seams would fold a face.

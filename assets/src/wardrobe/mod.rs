@@ -17,16 +17,16 @@ pub mod wide_trousers;
 use thiserror::Error;
 
 use crate::adapt::AdaptError;
-use toile_bake::{bake, weights};
 use crate::body::BodyError;
-use toile_base::body::{Body, Measures, Sex};
 use crate::fabric::FabricError;
-use toile_base::fabric::Fabric;
-use toile_bake::Shape;
-use toile_bake::check::MeshError;
-use toile_base::garment::Garment;
 use crate::sizes::{Girth, Population, SizeBody, SizeError, SizeTable};
 use style::{Cut, Style};
+use toile_bake::Shape;
+use toile_bake::check::MeshError;
+use toile_bake::{bake, weights};
+use toile_base::body::{Body, Measures, Sex};
+use toile_base::fabric::Fabric;
+use toile_base::garment::Garment;
 
 /// The garments that are built in, first the one that is shown when none is asked for.
 const BUILT_IN: [(&str, &str); 4] = [
@@ -157,7 +157,8 @@ impl Style {
     /// The body that a size is cut for; `wearer` chooses the block of a garment in unisex sizes.
     pub fn body(&self, size: &str, wearer: Sex) -> Result<Body, WardrobeError> {
         let measures = Measures::from(self.sizes()?.size_body(size)?);
-        crate::body::build(self.block(wearer)?, &measures).map_err(|source| WardrobeError::Body { size: size.into(), source })
+        crate::body::build(self.block(wearer)?, &measures)
+            .map_err(|source| WardrobeError::Body { size: size.into(), source })
     }
 
     /// Cuts the garment in a size and lays it on a shopper.
@@ -202,9 +203,9 @@ impl Style {
 #[cfg(test)]
 mod gather_tests {
     use toile_base::body::{Measures, Sex};
-    use toile_base::garment::{Garment, Tuck};
     use toile_base::garment::gather::WIDENS_M;
     use toile_base::garment::tuck::SLIPS_M;
+    use toile_base::garment::{Garment, Tuck};
 
     use super::style;
 

@@ -5,11 +5,11 @@ use std::path::Path;
 use super::WardrobeError;
 use crate::adapt::wear::WornMesh;
 use crate::adapt::{MeshReport, OwnMesh};
+use crate::sizes::{GarmentKind, Girth};
 use toile_bake::bake;
 use toile_base::body::Body;
 use toile_base::fabric::Fabric;
 use toile_base::garment::Garment;
-use crate::sizes::{GarmentKind, Girth};
 
 /// Fabric of a mesh that does not say what it is made of.
 const FABRIC: &str = "cotton-lawn";

@@ -6,10 +6,10 @@ use glam::{Vec2, Vec3};
 use super::drape::{DrapeBody, below, flip, join, rows_after, split_at_top};
 use super::section::{BodySection, SectionPlane};
 use super::style::Style;
-use toile_base::body::{Body, Region};
-use toile_bake::Shape;
-use toile_base::garment::Part;
 use crate::sizes::Girth;
+use toile_bake::Shape;
+use toile_base::body::{Body, Region};
+use toile_base::garment::Part;
 use toile_base::skeleton::Joint;
 
 /// Least ease of any row (m).

@@ -4,14 +4,14 @@
 
 use std::error::Error;
 
-use toile_base::body::Body;
-use toile_base::limits::STEP_HZ;
 use toile_assets::{scene, wardrobe};
+use toile_base::body::Body;
+use toile_base::clock::ticks_to_ns;
+use toile_base::frame::Joints;
+use toile_base::limits::STEP_HZ;
 use toile_engine::body::JointFrames;
 use toile_engine::cloth::Settings;
 use toile_engine::frame::Frame;
-use toile_base::clock::ticks_to_ns;
-use toile_base::frame::Joints;
 
 /// Length of the run (s).
 const SECONDS: u32 = 3;

@@ -8,8 +8,9 @@
 
 use std::error::Error;
 
-use toile_sensors::filter::JointFilter;
 use toile_assets::{scene, wardrobe};
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::Joints;
 use toile_engine::body::JointFrames;
 use toile_engine::clock::{Clock, SimClock};
 use toile_engine::cloth::{Settings, Wind};
@@ -21,8 +22,7 @@ use toile_engine::frame_loop::queue::bounded;
 use toile_engine::frame_loop::sensor_thread::{Playback, SensorFrame, SensorThread};
 use toile_engine::frame_loop::simulate::simulate;
 use toile_engine::triple_buffer::TripleBuffer;
-use toile_base::clock::SECOND_NS;
-use toile_base::frame::Joints;
+use toile_sensors::filter::JointFilter;
 
 /// What a step costs at whole quality (ns), and while the load lasts.
 const COST_NS: [u64; 2] = [3_000_000, 10_500_000];

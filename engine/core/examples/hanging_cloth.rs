@@ -5,8 +5,8 @@
 use std::error::Error;
 
 use glam::{Affine3A, Vec3, Vec3A};
-use toile_bake::bake;
 use toile_bake::Shape;
+use toile_bake::bake;
 use toile_base::limits::STEP_HZ;
 use toile_base::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Settings, Step, measure};

@@ -8,16 +8,16 @@ use std::alloc::System;
 use std::error::Error;
 
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
+use toile_assets::{scene, wardrobe};
+use toile_base::clock::ticks_to_ns;
+use toile_base::frame::Joints;
 use toile_base::garment::Garment;
 use toile_base::limits::{MAX_CAPSULES, MAX_SPHERES, STEP_HZ};
-use toile_assets::{scene, wardrobe};
 use toile_engine::body::JointFrames;
 use toile_engine::cloth::settings::MAX_SUBSTEPS;
 use toile_engine::cloth::{Cloth, Settings};
 use toile_engine::frame::Frame;
 use toile_engine::meter::{PERIOD_NS, STAGES, STEP_BUDGET_US};
-use toile_base::clock::ticks_to_ns;
-use toile_base::frame::Joints;
 
 /// Counts what every thread of the program asks for.
 #[global_allocator]

@@ -8,9 +8,9 @@
 use std::error::Error;
 
 use glam::{Affine3A, Vec3};
+use toile_bake::Shape;
 use toile_bake::bake;
 use toile_base::fabric::Fabric;
-use toile_bake::Shape;
 use toile_base::limits::STEP_HZ;
 use toile_base::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Quality, Settings, Step};
@@ -77,7 +77,9 @@ fn stretched(fabric: &Fabric) -> Result<[f32; 2], Box<dyn Error>> {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    for fabric in [toile_assets::fabric::parse("ribbed-knit.toml", STRETCHY)?, toile_assets::fabric::built_in("cotton-jersey")?] {
+    for fabric in
+        [toile_assets::fabric::parse("ribbed-knit.toml", STRETCHY)?, toile_assets::fabric::built_in("cotton-jersey")?]
+    {
         let [found, sheet] = stretched(&fabric)?;
         println!("{:<14} longer by {:.2} %, by its data sheet {:.2} %", fabric.title, found * 100.0, sheet * 100.0);
         if (found / sheet - 1.0).abs() > 0.02 {

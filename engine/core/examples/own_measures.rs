@@ -4,15 +4,15 @@
 
 use std::error::Error;
 
+use toile_assets::wardrobe;
 use toile_base::body::{Body, Measures, Sex};
+use toile_base::frame::Joints;
 use toile_base::garment::Garment;
 use toile_base::limits::STEP_HZ;
 use toile_base::rig::Rig;
-use toile_assets::wardrobe;
 use toile_engine::body::JointFrames;
 use toile_engine::cloth::{Settings, measure};
 use toile_engine::frame::Frame;
-use toile_base::frame::Joints;
 
 /// By the definitions of EN 13402-1 (m).
 const MEASURES: Measures =
@@ -64,7 +64,10 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // Capsules that the cloth meets are fitted to this body, and the dress is cut for the size and laid on it.
     let rig = toile_assets::rig::fit(&body);
-    println!("collision body off the skin by {:.1} mm on average", toile_assets::rig::report(&rig, &body).whole.mean_mm);
+    println!(
+        "collision body off the skin by {:.1} mm on average",
+        toile_assets::rig::report(&rig, &body).whole.mean_mm
+    );
     let style = wardrobe::style("sun-dress")?;
     let mut tight = [0.0; SIZES.len()];
     for (tight, size) in tight.iter_mut().zip(SIZES) {

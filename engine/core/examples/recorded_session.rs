@@ -7,14 +7,14 @@
 use std::error::Error;
 use std::path::PathBuf;
 
-use toile_base::skeleton::Joint;
 use toile_assets::{scene, wardrobe};
+use toile_base::clock::{SECOND_NS, ns_to_ticks, ticks_to_ns};
+use toile_base::frame::Joints;
+use toile_base::skeleton::Joint;
 use toile_engine::body::JointFrames;
 use toile_engine::cloth::Settings;
 use toile_engine::frame::Frame;
-use toile_base::clock::{SECOND_NS, ns_to_ticks, ticks_to_ns};
 use toile_sensors::filter::JointFilter;
-use toile_base::frame::Joints;
 use toile_sensors::sample::sample;
 use toile_sensors::source::{self, OpenOptions};
 

@@ -4,9 +4,10 @@
 
 use std::error::Error;
 
-use toile_sensors::filter::JointFilter;
-use toile_base::skeleton::Joint;
 use toile_assets::{scene, wardrobe};
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::Joints;
+use toile_base::skeleton::Joint;
 use toile_engine::body::JointFrames;
 use toile_engine::clock::SimClock;
 use toile_engine::cloth::Settings;
@@ -19,8 +20,7 @@ use toile_engine::frame_loop::replay::{Replayed, replay};
 use toile_engine::frame_loop::sensor_thread::{Playback, SensorFrame, SensorThread};
 use toile_engine::frame_loop::simulate::simulate;
 use toile_engine::triple_buffer::TripleBuffer;
-use toile_base::clock::SECOND_NS;
-use toile_base::frame::Joints;
+use toile_sensors::filter::JointFilter;
 
 /// Length of the run (ns).
 const LENGTH_NS: u64 = 2 * SECOND_NS;

@@ -7,10 +7,11 @@
 use std::error::Error;
 use std::time::Duration;
 
-use toile_sensors::filter::JointFilter;
+use toile_assets::{scene, wardrobe};
+use toile_base::clock::{SECOND_NS, ticks_to_ns};
+use toile_base::frame::Joints;
 use toile_base::limits::STEP_HZ;
 use toile_base::skeleton::Skeleton;
-use toile_assets::{scene, wardrobe};
 use toile_engine::body::JointFrames;
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::cloth::Settings;
@@ -23,8 +24,7 @@ use toile_engine::frame_loop::sensor_thread::{FrameSource, SensorFrame, SensorTh
 use toile_engine::frame_loop::thread_roles::ThreadRole;
 use toile_engine::frame_loop::threads::{self, Stop};
 use toile_engine::triple_buffer::TripleBuffer;
-use toile_base::clock::{SECOND_NS, ticks_to_ns};
-use toile_base::frame::Joints;
+use toile_sensors::filter::JointFilter;
 
 /// Length of the run (s).
 const SECONDS: u64 = 2;

@@ -4,10 +4,10 @@
 mod recordings;
 
 use glam::{Affine3A, Mat3, Vec3};
-use toile_base::body::{Body, Measures as BodyMeasures, Sex};
 use toile_assets::sizes::Population;
-use toile_base::skeleton::Joint;
+use toile_base::body::{Body, Measures as BodyMeasures, Sex};
 use toile_base::frame::{DepthFrame, Intrinsics, Joints, TrackedJoint};
+use toile_base::skeleton::Joint;
 use toile_sensors::source::synthetic::SyntheticCamera;
 use toile_sensors::source::{OpenOptions, open};
 use toile_track::fit::measuring::FRAMES;

@@ -11,9 +11,9 @@ use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 use glam::{Vec2, Vec3};
-use toile_base::body::{Body, Region};
 use toile_assets::catalogue::FittingLevel;
 use toile_assets::drafting;
+use toile_base::body::{Body, Region};
 use toile_base::garment::Garment;
 use toile_base::mesh::vertex_normals;
 use toile_view::cloth_look::GarmentLook;

@@ -15,12 +15,12 @@ pub mod smoothing;
 use glam::Vec3;
 use toile_base::skeleton::{JOINTS, Joint, Skeleton};
 
-use toile_base::clock::seconds_between;
-use toile_base::filter::Filter;
-use toile_base::frame::{Joints, TrackedJoint};
 use bones::BoneLength;
 use hold::Hold;
 use smoothing::{Smoother, Smoothing};
+use toile_base::clock::seconds_between;
+use toile_base::filter::Filter;
+use toile_base::frame::{Joints, TrackedJoint};
 
 pub use hold::HELD_CONFIDENCE;
 

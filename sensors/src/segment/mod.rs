@@ -17,10 +17,10 @@ mod pieces;
 
 use glam::{Vec2, Vec3};
 
-use toile_base::frame::DepthFrame;
 use floor::{Floor, FloorFinder};
 use grid::Grid;
 use people::PeopleFinder;
+use toile_base::frame::DepthFrame;
 
 pub use grid::same_surface;
 pub use people::Person;

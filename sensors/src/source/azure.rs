@@ -12,10 +12,10 @@ use super::joint_map::{Format, JointMap};
 use super::{align, tidy};
 use crate::error::{Fault, Place};
 use crate::filter::gate::derive_confidence;
-use toile_base::frame::TrackedJoint;
 use crate::limits::MAX_JOINT_FRAMES;
-use toile_base::limits::MAX_COORDINATE;
 use crate::session::{Session, too_many};
+use toile_base::frame::TrackedJoint;
+use toile_base::limits::MAX_COORDINATE;
 
 const POINTS: usize = Format::Azure32.points();
 

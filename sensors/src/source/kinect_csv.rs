@@ -11,10 +11,10 @@ use super::joint_map::{Format, JointMap};
 use super::kinect2::turned;
 use super::{align, tidy};
 use crate::error::{Fault, Place};
-use toile_base::frame::{Joints, TrackedJoint};
 use crate::limits::MAX_JOINT_FRAMES;
-use toile_base::limits::MAX_COORDINATE;
 use crate::session::{Session, too_many};
+use toile_base::frame::{Joints, TrackedJoint};
+use toile_base::limits::MAX_COORDINATE;
 
 /// Most joints of a line.
 const MOST_JOINTS: usize = Format::Kinect25.points();

@@ -6,8 +6,8 @@ use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2, TAU};
 use glam::{DMat2, DVec2, Vec3};
 
 use super::stencil::Stencil;
-use crate::fibers::{Direction, Edge};
 use crate::check::corners;
+use crate::fibers::{Direction, Edge};
 use crate::shape::{NO_VERTEX, Shape};
 
 /// A measure that differs from its direction by more than this (of 1, Frobenius norm) is discarded. A poor one is better

@@ -12,8 +12,8 @@ use thiserror::Error;
 
 use super::bend_friction::{BendFriction, FrictionSlot};
 use super::layout::{
-    Bends, BundleRow, ConstraintRun, ConstraintSet, DiagonalShare, Diagonals, FiberBundle, FiberList, FiberLists, Fibers,
-    HubGroup, Hubs, Layout, Links, OwnerShare, Tethers, Tuples, Zigzag,
+    Bends, BundleRow, ConstraintRun, ConstraintSet, DiagonalShare, Diagonals, FiberBundle, FiberList, FiberLists,
+    Fibers, HubGroup, Hubs, Layout, Links, OwnerShare, Tethers, Tuples, Zigzag,
 };
 use super::link_laws::{LawTable, LinkLaws};
 use super::look::{Look, MeshPicture};
@@ -43,7 +43,9 @@ pub enum BytesError {
     #[error("these bytes are not a baked garment; give a file that `toile bake --out` wrote")]
     NotAGarment,
     /// A byte form of another version.
-    #[error("the garment was baked in version {found} of the byte form and this program reads version {VERSION}; bake it again")]
+    #[error(
+        "the garment was baked in version {found} of the byte form and this program reads version {VERSION}; bake it again"
+    )]
     Version {
         /// The version found.
         found: u32,

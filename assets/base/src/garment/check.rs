@@ -156,7 +156,8 @@ fn share_groups<const K: usize>(
         for zigzag in &tuples.zigzags[range(what, &share.zigzags, tuples.zigzags.len())?] {
             let pair = |pair: [u32; 2]| std::array::from_fn(|k| pair[k % 2]);
             constraints.clear();
-            constraints.extend((0..zigzag.straights.len).map(|t| pair(zigzag.straights.first.map(|f| f.saturating_add(t)))));
+            constraints
+                .extend((0..zigzag.straights.len).map(|t| pair(zigzag.straights.first.map(|f| f.saturating_add(t)))));
             constraints.extend((0..zigzag.slants.len).map(|t| pair(zigzag.slant(t))));
             group(&constraints)?;
         }
@@ -276,7 +277,8 @@ fn lists(lists: &FiberLists, marks: &mut Marks) -> Result<(), LayoutError> {
                 for lane in 0..lanes {
                     // A fiber may come back to its own first particle; lanes are apart.
                     marks.set();
-                    for particle in (0..rows).map(|row| lists.index[list.first as usize + row * lanes + lane] as usize) {
+                    for particle in (0..rows).map(|row| lists.index[list.first as usize + row * lanes + lane] as usize)
+                    {
                         bound(WHAT, particle + 1, n)?;
                         if !marks.take(first, particle) {
                             return Err(LayoutError::Shared { what: WHAT, set: number, particle });

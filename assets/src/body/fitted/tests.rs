@@ -2,8 +2,8 @@
 
 use super::super::sound;
 use super::*;
-use toile_base::body::Region;
 use crate::body::reading::{Ansur, READINGS};
+use toile_base::body::Region;
 use toile_base::numeric::random::SplitMix64;
 
 const SEXES: [Sex; 2] = [Sex::Female, Sex::Male];
@@ -75,9 +75,8 @@ fn what_is_not_given_follows_as_in_people() {
         };
         let [slight, stout] = [0.85, 1.15].map(|by| hips(m.chest_girth * by));
         assert!(stout - slight > 0.1, "{sex:?}: broad chests go with broad hips: {slight} {stout}");
-        let arm = |stature: f32| {
-            fitted(sex, &Wanted::new().with(En::Stature, stature)).unwrap().readings.of(En::ArmLength)
-        };
+        let arm =
+            |stature: f32| fitted(sex, &Wanted::new().with(En::Stature, stature)).unwrap().readings.of(En::ArmLength);
         assert!(arm(m.stature * 1.08) - arm(m.stature * 0.92) > 0.05, "{sex:?}: tall people have long arms");
     }
 }
@@ -194,8 +193,7 @@ fn roughness_knows_a_dent() {
 fn what_nobody_has_together_gives_the_nearest_body() {
     for sex in SEXES {
         let wanted = Wanted::new().with(En::Stature, 1.5).with(En::InsideLegHeight, 1.1);
-        let Err(BodyError::Unreachable { measure, value, reached, against, nearest }) = fitted(sex, &wanted)
-        else {
+        let Err(BodyError::Unreachable { measure, value, reached, against, nearest }) = fitted(sex, &wanted) else {
             panic!("legs of 1.1 m on a person of 1.5 m");
         };
         let pair = [measure, against.expect("each of the two can be had alone").0];

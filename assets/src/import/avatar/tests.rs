@@ -6,8 +6,8 @@ use glam::{Mat4, Vec3};
 use serde_json::{Value, json};
 
 use super::*;
-use toile_base::body::Measures;
 use crate::export::{DressedBody, glb};
+use toile_base::body::Measures;
 use toile_base::limits::MAX_BODY_VERTICES;
 
 mod animation;

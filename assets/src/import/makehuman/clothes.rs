@@ -11,9 +11,9 @@ use glam::Vec3;
 use super::MakehumanOptions;
 use super::files::targets;
 use super::mesh::MakehumanMesh;
-use toile_base::body::Sex;
 use crate::file::{self, FileKind};
 use crate::import::avatar::{AvatarError, Flaw};
+use toile_base::body::Sex;
 use toile_base::numeric::statistics::median;
 
 /// Vertices of the base mesh `hm08`, helpers and cubes included.

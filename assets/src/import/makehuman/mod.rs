@@ -17,12 +17,12 @@ use glam::{Vec2, Vec3};
 
 use super::avatar::raw::{RawBody, RawInfluences, RawJoint};
 use super::avatar::{AvatarError, Flaw, ImportOptions, ImportedBody, names, settle};
-use toile_bake::shape::NO_VERTEX;
-use toile_base::limits::IMPORT_INFLUENCES;
 use files::{json_gz, targets};
 use girths::MakehumanGirths;
 pub use mesh::BODY_VERTICES;
 use mesh::MakehumanMesh;
+use toile_bake::shape::NO_VERTEX;
+use toile_base::limits::IMPORT_INFLUENCES;
 
 /// What a body is made of.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,8 +5,8 @@ use serde_json::Value;
 
 use super::error::{Fault, meant};
 use super::json::{list, name, pair};
-use crate::pattern::limits::MAX_REACH_M;
 use crate::pattern::Trim;
+use crate::pattern::limits::MAX_REACH_M;
 use toile_base::garment::trim::TrimKind;
 
 /// Widest trim (m): half of a coat's facing.

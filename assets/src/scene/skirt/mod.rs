@@ -15,10 +15,10 @@ use std::f64::consts::TAU;
 
 use glam::Vec3;
 
+use toile_bake::Shape;
 use toile_base::fabric::loop_widths::LoopWidths;
 use toile_base::fabric::stretch_curve::{ShearLock, StretchCurve, StretchCurves};
 use toile_base::fabric::{Fabric, USUAL_SHEEN, USUAL_THREADS, Weave};
-use toile_bake::Shape;
 
 pub use body::{CAPSULES, JOINTS, Motion, SPHERES, root, spheres};
 pub use irregular::irregular;

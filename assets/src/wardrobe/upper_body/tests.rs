@@ -1,9 +1,9 @@
 use std::collections::BTreeMap;
 
 use super::*;
-use toile_base::body::{Measures, Sex};
-use toile_bake::shape::NO_VERTEX;
 use crate::wardrobe;
+use toile_bake::shape::NO_VERTEX;
+use toile_base::body::{Measures, Sex};
 
 const GARMENTS: [&str; 2] = ["t-shirt", "jacket"];
 

@@ -5,15 +5,15 @@ use std::path::{Path, PathBuf};
 
 use clap::ArgAction;
 use glam::Affine3A;
-use toile_base::body::{Body, Measures, Sex};
 use toile_assets::export::{DressedBody, glb};
 use toile_assets::import::{avatar, makehuman};
 use toile_assets::scene;
+use toile_base::body::{Body, Measures, Sex};
+use toile_base::frame::Joints;
 use toile_base::skeleton::BONES;
 use toile_engine::body::{JointFrames, Poser, palette};
 use toile_engine::frame::BLEND;
 use toile_engine::skin::SkinningJob;
-use toile_base::frame::Joints;
 use toile_view::contact_sheet;
 use toile_view::figure::SkinTone;
 use toile_view::image::Size;

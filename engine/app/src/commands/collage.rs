@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
-use toile_base::body::{Body, Measures, Sex};
 use toile_assets::catalogue::{CollageGarment, CollagePictures, limits};
 use toile_assets::file::{self, FileKind};
 use toile_assets::sizes::SizeTable;
+use toile_base::body::{Body, Measures, Sex};
 use toile_view::collage::{BodyLayers, CollageError, CollageSide, WornPhotographs, collage};
 use toile_view::contact_sheet::contact_sheet;
 use toile_view::image::Image;

@@ -7,9 +7,9 @@ use std::time::Instant;
 
 use glam::Vec3;
 use serde::Serialize;
+use toile_assets::rig::{MEAN_GOAL_MM, P95_GOAL_MM};
 use toile_base::body::Body;
 use toile_base::numeric::statistics::quantile;
-use toile_assets::rig::{MEAN_GOAL_MM, P95_GOAL_MM};
 use toile_perf::people;
 use toile_view::contact_sheet;
 use toile_view::image::Size;

@@ -4,14 +4,14 @@ use std::path::PathBuf;
 
 use clap::value_parser;
 use glam::{Affine3A, Vec3};
-use toile_base::body::Body;
 use toile_assets::scene;
+use toile_base::body::Body;
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::{Intrinsics, Joints};
 use toile_base::skeleton::{BONES, JOINTS, Pose};
 use toile_engine::body::{JointFrames, palette};
 use toile_engine::frame::BLEND;
 use toile_engine::skin::SkinningJob;
-use toile_base::clock::SECOND_NS;
-use toile_base::frame::{Intrinsics, Joints};
 use toile_sensors::session::Session;
 use toile_sensors::source::live::CameraName;
 use toile_sensors::source::synthetic::{JointNoise, KinectNoise, SyntheticCamera};

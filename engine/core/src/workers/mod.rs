@@ -29,7 +29,9 @@ use std::time::Duration;
 
 use thiserror::Error;
 
-use crate::sync::{AtomicBool, AtomicU64, AtomicUsize, HAS_THREADS, Idle, JoinHandle, LOOKS_BEFORE_TAKING, Slot, pause, thread};
+use crate::sync::{
+    AtomicBool, AtomicU64, AtomicUsize, HAS_THREADS, Idle, JoinHandle, LOOKS_BEFORE_TAKING, Slot, pause, thread,
+};
 
 pub use per_share::PerShare;
 
@@ -47,7 +49,9 @@ pub enum WorkerPoolError {
     #[error("a pool of {0} workers cannot be made, because a step has {SHARES} shares; ask for 1 or 2 workers")]
     Workers(usize),
     /// Built without the feature `threads`.
-    #[error("this program was built without the feature `threads` of toile-engine; build it with that or ask for 1 worker")]
+    #[error(
+        "this program was built without the feature `threads` of toile-engine; build it with that or ask for 1 worker"
+    )]
     NoThreads,
     /// The system gave no thread.
     #[error(

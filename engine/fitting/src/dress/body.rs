@@ -1,8 +1,8 @@
 //! A body of the measured size.
 
 use toile_assets::body::BodyError;
-use toile_base::body::{Body, Measures, Sex};
 use toile_assets::sizes::Population;
+use toile_base::body::{Body, Measures, Sex};
 use toile_track::estimate::Estimate;
 use toile_track::measure::Measurements;
 

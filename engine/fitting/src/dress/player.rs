@@ -3,9 +3,9 @@
 
 use std::borrow::Cow;
 
-use toile_engine::frame_loop::motion_input::MotionInput;
 use toile_base::clock::{ns_to_ticks, ticks_to_ns};
 use toile_base::frame::Joints;
+use toile_engine::frame_loop::motion_input::MotionInput;
 
 /// Filtered joints on their way to the steps.
 #[derive(Debug, Clone)]

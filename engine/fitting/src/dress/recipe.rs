@@ -3,15 +3,15 @@
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
-use toile_base::body::{Body, Measures, Sex};
-use toile_base::garment::Garment;
-use toile_base::rig::Rig;
 use toile_assets::sizes::Population;
 use toile_assets::wardrobe::own;
+use toile_base::body::{Body, Measures, Sex};
+use toile_base::frame::Joints;
+use toile_base::garment::Garment;
+use toile_base::rig::Rig;
 use toile_engine::cloth::{Quality, Settings};
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::triple_buffer::Reader;
-use toile_base::frame::Joints;
 use toile_track::measure::Measurements;
 
 use super::attire::{self, Attire, FindChoice};

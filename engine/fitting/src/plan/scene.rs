@@ -1,11 +1,13 @@
 //! A scene as the plan sees it: baked garments, colliders, and where the bones are at every step.
 
 use glam::Affine3A;
+use toile_assets::scene_file::SceneFile;
 use toile_base::body::Body;
+use toile_base::clock::ticks_to_ns;
+use toile_base::frame::Joints;
 use toile_base::garment::{Garment, Part};
 use toile_base::limits::STEP_SECONDS;
 use toile_base::rig::Rig;
-use toile_assets::scene_file::SceneFile;
 use toile_base::skeleton::{BONES, Pose, Skeleton};
 use toile_engine::body::{Poser, palette};
 use toile_engine::body_surface::BodySurface;
@@ -15,8 +17,6 @@ use toile_engine::colliders::{Colliders, RestSphere};
 use toile_engine::frame::{DRESS_STEPS, SETTLE_STEPS};
 use toile_engine::skin::{Blend, Posed, SkinningJob};
 use toile_engine::workers::WorkerPool;
-use toile_base::clock::ticks_to_ns;
-use toile_base::frame::Joints;
 use toile_sensors::sample::sample;
 
 use super::PlanError;

@@ -2,9 +2,9 @@
 
 use glam::{Affine3A, Vec3};
 use toile_assets::body::BodyError;
-use toile_base::mesh::SkinWeights;
 use toile_assets::scene;
-use toile_base::skeleton::{BONES, BONE_CHAIN};
+use toile_base::mesh::SkinWeights;
+use toile_base::skeleton::{BONE_CHAIN, BONES};
 use toile_engine::body::palette;
 
 /// A moment of the scene in which arms, legs and trunk are all bent (s).

@@ -1,9 +1,9 @@
 //! The poses in which it is seen how clothes hold.
 
 use glam::{Affine3A, Quat, Vec3};
+use toile_base::frame::{Joints, TrackedJoint};
 use toile_base::skeleton::{BONES, Joint, Pose, Skeleton};
 use toile_engine::body::palette;
-use toile_base::frame::{Joints, TrackedJoint};
 
 /// How far from the vertical arms are that hang down (degrees): beside the hips.
 const ARMS_DEGREES: f32 = 10.0;

@@ -221,8 +221,8 @@ fn compare(garment: &Garment, levels: &Levels, before: &Seen, now: &Seen) -> Gar
 
 #[cfg(test)]
 mod tests {
-    use toile_base::body::{Measures, Sex};
     use toile_assets::drafting;
+    use toile_base::body::{Measures, Sex};
 
     use super::*;
 
@@ -260,7 +260,9 @@ mod tests {
     #[test]
     fn a_body_that_wears_nothing_feels_nothing() {
         let body = toile_assets::body::build(Sex::Male, &Measures::average(Sex::Male)).unwrap();
-        let pulls = in_poses(&body, &toile_assets::rig::fit(&body), &[], &Settings { workers: 1, ..Settings::default() }).unwrap();
+        let pulls =
+            in_poses(&body, &toile_assets::rig::fit(&body), &[], &Settings { workers: 1, ..Settings::default() })
+                .unwrap();
         assert!(pulls.len() == 2 && pulls.iter().all(|p| p.garments.is_empty()));
     }
 }

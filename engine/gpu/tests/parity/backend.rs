@@ -3,8 +3,8 @@
 use std::time::{Duration, Instant};
 
 use glam::{Affine3A, Vec3, Vec3A};
-use toile_base::garment::Garment;
 use toile_assets::scene::skirt::Stretch;
+use toile_base::garment::Garment;
 use toile_base::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Settings, Step, Wind};
 use toile_gpu::backend::{Backend, Backends, ClothStepper};

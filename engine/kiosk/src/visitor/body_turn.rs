@@ -3,9 +3,9 @@
 
 use std::f32::consts::{PI, TAU};
 
+use toile_base::frame::Joints;
 use toile_base::skeleton::Joint;
 use toile_fitting::dress::depth::TURN_NS;
-use toile_base::frame::Joints;
 use toile_track::fit;
 
 /// Sides that are distinguished: of ten degrees each, so that the count of them says the gap to within a side.

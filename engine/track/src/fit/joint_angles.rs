@@ -117,8 +117,8 @@ pub fn angle(local: &[Quat; JOINTS], turn: &JointAngle) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_base::body::Sex;
     use toile_assets::body::shape::Shapes;
+    use toile_base::body::Sex;
 
     #[test]
     fn both_sides_turn_alike_and_a_standing_arm_hangs() {

@@ -2,11 +2,11 @@
 
 use toile_assets::body::shape::{BodyShape, SHAPES, Shapes};
 use toile_assets::body::{En, Fitted, Readings};
-use toile_base::body::{Measures, Sex};
-use toile_base::mesh::vertex_normals;
 use toile_assets::sizes::Population;
-use toile_base::skeleton::Pose;
+use toile_base::body::{Measures, Sex};
 use toile_base::frame::DepthFrame;
+use toile_base::mesh::vertex_normals;
+use toile_base::skeleton::Pose;
 
 use super::body_fit::BodyFit;
 use super::options::FitOptions;

@@ -6,8 +6,8 @@
 //! `sum_j w_j (R_j dX/ds + dp_j/ds - R_j dJ_j/ds)`.
 
 use glam::{Mat3, Quat, Vec3};
-use toile_base::body::Region;
 use toile_assets::body::shape::{BodyShape, SCALE, SHAPES, Shapes};
+use toile_base::body::Region;
 use toile_base::mesh::SkinWeights;
 use toile_base::skeleton::{JOINTS, Joint, Skeleton, bone_joint};
 

@@ -1,9 +1,9 @@
 //! The trunk's own axes, and the arm's length as the unit of everything.
 
 use glam::Vec3;
-use toile_base::skeleton::Joint;
 use toile_base::clock::seconds_between;
 use toile_base::frame::Joints;
+use toile_base::skeleton::Joint;
 
 /// One of the shopper's own sides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -1,5 +1,5 @@
-use toile_base::body::{Body, Measures, Sex};
 use toile_assets::catalogue::{CollageGarment, CollagePictures, Picture};
+use toile_base::body::{Body, Measures, Sex};
 
 use super::*;
 use crate::figure::Appearance;

@@ -3,8 +3,8 @@
 use std::str::FromStr;
 
 use glam::Vec3;
-use toile_base::body::Sex;
 use toile_assets::toml_keys;
+use toile_base::body::Sex;
 
 use super::moulded::Cut;
 use crate::image::linear;

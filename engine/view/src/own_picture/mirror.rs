@@ -1,12 +1,12 @@
 //! The mirror: from a picture and a snapshot to what the shopper sees.
 
 use glam::{Vec2, Vec3};
+use toile_base::frame::{DepthFrame, Joints};
+use toile_base::limits::MAX_SIDE;
 use toile_base::mesh::vertex_normals;
 use toile_engine::body::JointFrames;
 use toile_engine::frame::Snapshot;
 use toile_sensors::colour_camera::ColourCamera;
-use toile_base::frame::{DepthFrame, Joints};
-use toile_base::limits::MAX_SIDE;
 use toile_sensors::limits::MAX_COLOUR_PIXELS;
 use toile_sensors::person_mask::PersonMask;
 use toile_sensors::source::live::ColourImage;

@@ -2,13 +2,13 @@
 
 use glam::{Affine3A, Mat3, Quat, Vec3};
 use toile_assets::scene::{SHOPPER, shopper};
-use toile_base::skeleton::{BONES, JOINTS, Joint};
 use toile_assets::wardrobe;
+use toile_base::frame::{DepthFrame, Intrinsics, Joints};
+use toile_base::skeleton::{BONES, JOINTS, Joint};
 use toile_engine::body::{JointFrames, palette};
 use toile_engine::cloth::Settings;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_sensors::colour_camera::ColourCamera;
-use toile_base::frame::{DepthFrame, Intrinsics, Joints};
 use toile_sensors::lens::BrownConrady;
 use toile_sensors::person_mask::PersonMask;
 use toile_sensors::source::live::ColourImage;
@@ -31,7 +31,8 @@ const SIZE: Size = Size::new(320, 240);
 fn scene() -> DressedPicture {
     let body = toile_assets::body::build(SHOPPER.0, &SHOPPER.1).unwrap();
     let dress = wardrobe::style("sun-dress").unwrap().dress("38", &body).unwrap();
-    let (mut frame, mut reader) = Frame::new(body.clone(), &toile_assets::rig::fit(&body), vec![dress], Settings::default()).unwrap();
+    let (mut frame, mut reader) =
+        Frame::new(body.clone(), &toile_assets::rig::fit(&body), vec![dress], Settings::default()).unwrap();
     let pose = shopper(&body.skeleton, 0.5);
     let first = Joints::seen(0, JointFrames::new(&body.skeleton, &pose).position);
     frame.dress(&first);
@@ -257,7 +258,8 @@ fn a_snapshot_of_another_moment_is_brought_to_the_picture() {
 fn no_limb_is_drawn_longer_or_shorter_than_a_body_could_be() {
     let scene = scene();
     let from: [Vec3; JOINTS] =
-        JointFrames::new(&toile_assets::body::build(SHOPPER.0, &SHOPPER.1).unwrap().skeleton, &scene.snapshot.pose).position;
+        JointFrames::new(&toile_assets::body::build(SHOPPER.0, &SHOPPER.1).unwrap().skeleton, &scene.snapshot.pose)
+            .position;
     for (k, scale) in [0.6_f32, 0.8, 1.0, 1.25, 1.6].into_iter().enumerate() {
         let seen = scene.with(|j| {
             let (elbow, wrist) = (j.at(Joint::LeftElbow).position, j.at(Joint::LeftWrist).position);

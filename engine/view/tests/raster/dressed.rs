@@ -1,10 +1,10 @@
 //! A dressed mannequin, for both ways of drawing: shared by the tests of the rasteriser and its example.
 
 use glam::Vec3;
+use toile_assets::wardrobe;
 use toile_base::body::{Body, Measures, Sex};
 use toile_base::garment::Garment;
 use toile_base::mesh::vertex_normals;
-use toile_assets::wardrobe;
 use toile_view::hidden_skin::CoveringCloth;
 use toile_view::image::linear;
 use toile_view::raster::{self, Model, RenderSurface, Renderer};

@@ -1,12 +1,12 @@
 //! Printed, sewn and sheer cloth by both ways of drawing.
 
 use glam::{Vec2, Vec3};
+use toile_bake::Shape;
 use toile_bake::bake;
 use toile_base::fabric::Fabric;
-use toile_bake::Shape;
 use toile_base::garment::Garment;
-use toile_base::mesh::vertex_normals;
 use toile_base::garment::trim::{ClothTrim, TrimKind};
+use toile_base::mesh::vertex_normals;
 use toile_view::cloth_look::GarmentLook;
 use toile_view::image::{Image, linear};
 use toile_view::raster::{Model, RenderSurface, Renderer};

@@ -8,9 +8,9 @@ use toile_base::numeric::random::SplitMix64;
 
 use super::error::CameraError;
 use super::live_camera::{Arrival, CameraFrame, CameraInfo, ColourPlace, LiveCamera};
+use crate::source::camera::Camera;
 use toile_base::clock::SECOND_NS;
 use toile_base::frame::{Intrinsics, Joints};
-use crate::source::camera::Camera;
 
 toile_base::named! {
     /// What may be wrong with a camera.

@@ -7,8 +7,8 @@ use super::colour_decode as decode;
 use super::error::CameraError;
 use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourPlace, LiveCamera};
 use super::v4l2::{FourCc, MJPG, VideoStream, YUYV};
-use toile_base::frame::Intrinsics;
 use crate::source::camera::Camera;
+use toile_base::frame::Intrinsics;
 
 const NAME: &str = "webcam";
 

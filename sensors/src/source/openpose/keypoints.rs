@@ -6,9 +6,9 @@ use toile_base::skeleton::Joint;
 
 use super::triangulate::Point;
 use crate::error::{Fault, Place};
-use toile_base::frame::{Joints, TrackedJoint};
 use crate::limits::MAX_VIEW_PEOPLE;
 use crate::source::joint_map::{Format, JointMap, middle};
+use toile_base::frame::{Joints, TrackedJoint};
 
 /// Keypoints of either model.
 pub const POINTS: usize = Format::OpenPose25.points();

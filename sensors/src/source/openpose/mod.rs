@@ -25,12 +25,12 @@ use super::files::{count_bytes, shown};
 use super::joint_map::JointMap;
 use super::tidy;
 use crate::calibration::Rig;
-use toile_base::clock::SECOND_NS;
 use crate::error::{Fault, Place, SourceError};
-use toile_base::frame::Joints;
 use crate::limits::{CAMERA, KEYPOINTS, MAX_CAMERAS, MAX_JOINT_FRAMES};
 use crate::session::{Session, too_many};
 use keypoints::{ViewFrames, ViewPeople};
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::Joints;
 
 /// Frames a second where the calibration's metadata has no `frame_rate`: OpenPose writes no time.
 const ASSUMED_RATE: f64 = 30.0;

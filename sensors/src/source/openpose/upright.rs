@@ -4,8 +4,8 @@ use glam::{Quat, Vec3};
 use toile_base::skeleton::Joint;
 
 use crate::error::{Fault, Place};
-use toile_base::frame::Joints;
 use crate::source::align;
+use toile_base::frame::Joints;
 
 /// The axis of the cameras' world that is up: the one along which the head is above the feet.
 pub fn to_world(frames: &mut [Joints], notes: &mut Vec<String>) -> Result<(), Fault> {

@@ -3,8 +3,8 @@
 use glam::{Affine3A, Quat, Vec3};
 use toile_base::skeleton::{JOINTS, Joint};
 
-use toile_base::frame::{Joints, TrackedJoint};
 use crate::source::joint_map;
+use toile_base::frame::{Joints, TrackedJoint};
 
 /// The bones that a body is made of, each with its parent, parents first. Fingers, eyes and jaw move
 /// nothing of ours, but for the knuckle of the middle finger, which is the end of the hand.

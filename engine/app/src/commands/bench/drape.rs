@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use serde::Serialize;
-use toile_base::fabric::Fabric;
 use toile_assets::put_line;
+use toile_base::fabric::Fabric;
 use toile_engine::cloth::Quality;
 use toile_perf::drape::{CusickRow, SPACINGS_MM, cusick};
 use toile_view::contact_sheet::contact_sheet;

@@ -9,8 +9,8 @@ use std::fmt::Write as _;
 use glam::Vec3;
 use toile_assets::export::session::ExportFrame;
 use toile_assets::export::{ExportFormat, ExportPlan, FrameRate, MovingPart, SessionExport, SurfaceLook};
-use toile_bake::check::corners;
 use toile_assets::scene_file::{SceneGarment, UserMesh};
+use toile_bake::check::corners;
 use toile_fitting::scene::Runner;
 
 use crate::exit::AppError;

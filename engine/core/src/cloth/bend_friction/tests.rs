@@ -1,16 +1,16 @@
 //! Friction in bending against its law in f64, against itself at every width, and against what must stay.
 
 use glam::{DVec3, Quat, Vec3};
+use toile_assets::scene::skirt::{self, Stretch};
+use toile_bake::Shape;
 use toile_bake::bake;
 use toile_base::fabric::Fabric;
 use toile_base::fabric::friction_element::{FrictionElement, read_loop};
 use toile_base::fabric::loop_widths::LoopWidths;
 use toile_base::garment::bend_friction::FrictionSlot;
 use toile_base::garment::layout::OWNERS;
-use toile_bake::Shape;
 use toile_base::garment::{Garment, Part};
 use toile_base::mesh::SkinWeights;
-use toile_assets::scene::skirt::{self, Stretch};
 
 use super::*;
 use crate::cloth::state::State;

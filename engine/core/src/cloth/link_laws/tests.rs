@@ -1,11 +1,11 @@
 use glam::Vec3;
+use toile_bake::Shape;
 use toile_bake::bake;
+use toile_bake::shape::NO_VERTEX;
 use toile_base::fabric::Fabric;
 use toile_base::fabric::friction_element::read_loop;
 use toile_base::fabric::link_law::LinkLaw;
 use toile_base::fabric::stretch_curve::ShearLock;
-use toile_bake::shape::NO_VERTEX;
-use toile_bake::Shape;
 use toile_base::garment::Part;
 use toile_base::mesh::SkinWeights;
 

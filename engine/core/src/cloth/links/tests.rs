@@ -203,8 +203,8 @@ fn by_records_links_have_the_bits_that_they_have_in_columns() {
     use crate::cloth::record_links::{RecordLinks, SolveRecordLinks};
     use crate::cloth::records::{FillRecords, ReadRecords};
     use crate::lanes::{RECORD, Store};
-    use toile_bake::bake;
     use toile_assets::scene::skirt::{self, Stretch};
+    use toile_bake::bake;
 
     for (shape, stretch) in [
         (skirt::shape(24), Stretch::Inextensible),

@@ -4,9 +4,9 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use glam::Vec3;
-use toile_sensors::filter::JointFilter;
 use toile_base::clock::SECOND_NS;
 use toile_base::frame::TrackedJoint;
+use toile_sensors::filter::JointFilter;
 
 use super::*;
 use crate::clock::SimClock;

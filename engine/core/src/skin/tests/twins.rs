@@ -2,7 +2,7 @@
 
 use glam::{Affine3A, DAffine3, DMat3, DQuat, DVec3, DVec4, Mat3, Vec3, Vec3A};
 use toile_base::mesh::Influences;
-use toile_base::skeleton::{BONES, BONE_CHAIN};
+use toile_base::skeleton::{BONE_CHAIN, BONES};
 
 use super::*;
 use crate::lanes::reciprocal_root;

@@ -126,8 +126,8 @@ impl Flat {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_bake::bake;
     use toile_assets::scene::skirt::{self, Stretch};
+    use toile_bake::bake;
 
     /// Two skirts, laid flat.
     fn skirts() -> (Garment, Flat) {
