@@ -1,8 +1,5 @@
 //! Patterns by others, sewn up around a body: what is promised of every one, and what is refused.
 
-#[path = "../../tests/src/recordings.rs"]
-mod recordings;
-
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
@@ -16,6 +13,8 @@ use toile_assets::import::pattern::{parse, read};
 use toile_assets::pattern::{Panel, Pattern};
 use toile_assets::sizes::{Girth, SizeTable};
 use toile_assets::skeleton::Joint;
+
+use crate::recordings;
 
 /// Spacing at which the laws are looked at (m): coarse, so that a test takes seconds.
 const SPACING: f64 = 0.03;
