@@ -1,6 +1,6 @@
 //! The examples run and hold, and the integrator's guide names each of them and shows what they print.
 //!
-//! `cargo test` builds the examples of a package with its tests; with `--test examples` alone, add `--examples`.
+//! `cargo test` builds the examples of a package with its tests; with `--test main` alone, add `--examples`.
 
 use std::collections::BTreeSet;
 use std::fs;
