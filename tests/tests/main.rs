@@ -15,3 +15,4 @@ mod names;
 mod recordings;
 mod scenes;
 mod skirt;
+mod test_binaries;
