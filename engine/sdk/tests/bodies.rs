@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use toile_assets::body::En;
+use toile_assets::body::{En, Vocabulary};
 use toile_sdk::{Body, Recording, Sex, Shopper, measure_names};
 
 #[test]
