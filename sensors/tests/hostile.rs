@@ -1,6 +1,6 @@
 //! No bytes whatever make a reader panic, hang or hand out a number that is not finite.
 
-use toile_assets::numeric::random::SplitMix64;
+use toile_base::numeric::random::SplitMix64;
 use toile_sensors::session::{self, Session};
 use toile_sensors::source::{SourceError, read_bytes};
 

@@ -1,6 +1,7 @@
 //! Session files as other programs write them, and what a session file keeps.
 
-use toile_sensors::frame::HandState::{self, Closed, Open, Unknown};
+use toile_base::frame::HandState;
+use toile_base::frame::HandState::{Closed, Open, Unknown};
 use toile_sensors::session;
 
 use crate::common::samples;

@@ -30,7 +30,7 @@ const SIDE: f32 = FRAC_PI_2;
 /// Writes the picture of all mannequins.
 pub fn write_all(folder: &str) -> Result<(), Box<dyn Error>> {
     let path = Path::new(folder).join("mannequins.png");
-    let [woman, man] = Sex::ALL.map(|sex| Body::build(sex, &Measures::average(sex)));
+    let [woman, man] = Sex::ALL.map(|sex| toile_assets::body::build(sex, &Measures::average(sex)));
     let (woman, man) = (woman?, man?);
     let plain = Appearance::default();
     let tone = |skin| Appearance { skin, ..plain };
