@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
-use sha2::{Digest, Sha256};
+use hmac_sha256::Hash;
 
 /// Folder of the files, where it is not [`OWN_FOLDER`].
 pub const FOLDER_VARIABLE: &str = "TOILE_POSE_NETWORK";
@@ -144,7 +144,7 @@ impl PoseFile {
             return Err(other(format!("it has {found} bytes instead of {}", self.size())));
         }
         let bytes = fs::read(&path).map_err(refused)?;
-        let hash = Sha256::digest(&bytes).iter().fold(String::new(), |mut hex, byte| {
+        let hash = Hash::hash(&bytes).iter().fold(String::new(), |mut hex, byte| {
             let _ = write!(hex, "{byte:02x}");
             hex
         });

@@ -1,7 +1,5 @@
 //! A file's tensors and operators, its constants unpacked.
 
-use half::f16;
-
 use super::operators::{self, RawOp};
 use super::reader::{Bytes, Table};
 use super::{NetworkFault, sparse};
@@ -186,7 +184,7 @@ impl<'a> RawTensor<'a> {
         spend(left, numbers)?;
         let mut stored: Vec<f32> = match self.kind {
             0 => self.data.as_chunks().0.iter().map(|b| f32::from_le_bytes(*b)).collect(),
-            1 => self.data.as_chunks().0.iter().map(|b| f16::from_le_bytes(*b).to_f32()).collect(),
+            1 => self.data.as_chunks().0.iter().map(|b| of_half(u16::from_le_bytes(*b))).collect(),
             2 if self.data.len() == 4 * numbers => {
                 let ints = self.data.as_chunks().0.iter().map(|b| i32::from_le_bytes(*b)).collect();
                 tensor.constant = Some(Constant::Ints(ints));
@@ -211,5 +209,33 @@ impl<'a> RawTensor<'a> {
         }
         tensor.constant = Some(Constant::Floats(stored.into()));
         Ok(tensor)
+    }
+}
+
+/// The value of a half-precision number (IEEE 754 binary16).
+fn of_half(bits: u16) -> f32 {
+    let sign = u32::from(bits & 0x8000) << 16;
+    let magnitude = u32::from(bits & 0x7fff);
+    let positive = match magnitude >> 10 {
+        // Zero and what is below the least normal number: units of 2^-24.
+        0 => (magnitude as f32 * (0.5f32).powi(24)).to_bits(),
+        // Infinite or not a number.
+        31 => 0x7f80_0000 | (magnitude & 0x3ff) << 13,
+        _ => (magnitude << 13) + ((127 - 15) << 23),
+    };
+    f32::from_bits(sign | positive)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_precision_numbers_are_widened_exactly() {
+        for bits in 0..=u16::MAX {
+            let wanted = half::f16::from_bits(bits).to_f32();
+            let found = of_half(bits);
+            assert!(found.to_bits() == wanted.to_bits() || found.is_nan() && wanted.is_nan(), "{bits:#x}");
+        }
     }
 }
