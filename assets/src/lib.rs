@@ -27,6 +27,7 @@ pub mod garment;
 pub mod bake;
 pub mod export;
 pub mod import;
+pub mod people;
 pub mod rig;
 pub mod scene;
 pub mod sizes;

@@ -1,7 +1,7 @@
 //! Bodies on which fits are judged: sizes of EN 13402-3, and strangers drawn at random.
 
-use toile_assets::body::{Body, BodyError, En, Sex, Wanted};
-use toile_assets::numeric::random::SplitMix64;
+use crate::body::{Body, BodyError, En, Sex, Wanted};
+use crate::numeric::random::SplitMix64;
 
 /// One of them: what it is called, its sex, and stature, bust or chest, waist and hip girth (m).
 #[derive(Debug, Clone, PartialEq)]

@@ -1,17 +1,15 @@
 //! `--backend` as a user and a script meet it, on a machine without a graphics driver: the processor steps, and says why.
 
-mod common;
-
 use std::process::{Command, Stdio};
 
-use common::Scratch;
+use crate::common::Scratch;
 use serde_json::Value;
 
 /// Runs it where no Vulkan driver can be found; gives the object on stdout, and stderr.
 fn toile(line: &str) -> (Value, String) {
     let scratch = Scratch::new(&format!("backend-{}", line.len()));
     let args: Vec<&str> = line.split_whitespace().collect();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_toile"));
+    let mut command = Command::new(crate::PROGRAM);
     command.current_dir(scratch.path()).env("XDG_RUNTIME_DIR", scratch.path()).stdin(Stdio::null());
     command.env("VK_DRIVER_FILES", "/nowhere").env("VK_ICD_FILENAMES", "/nowhere");
     let output = command.args(&args).output().expect("the built program starts");

@@ -1,10 +1,8 @@
 //! `toile latency` and `toile replay` as a user and a script meet them: short runs on whatever machine this is.
 
-mod common;
-
 use std::fs;
 
-use common::Scratch;
+use crate::common::Scratch;
 use serde_json::Value;
 
 fn object(scratch: &Scratch, args: &[&str]) -> (Option<i32>, Value) {

@@ -1,10 +1,8 @@
 //! A small study of measuring: the whole way from the survey to the table.
 
-#[path = "../../tests/src/recordings.rs"]
-mod recordings;
-
 use std::path::{Path, PathBuf};
 
+use crate::recordings;
 use toile_assets::numeric::random::SplitMix64;
 use toile_perf::ansur::Survey;
 use toile_perf::measuring::{

@@ -1,11 +1,9 @@
 //! `toile soak`: hours in seconds, everything that can go wrong, a crash and what it leaves.
 
-mod common;
-
 use std::collections::BTreeSet;
 use std::fs;
 
-use common::Scratch;
+use crate::common::Scratch;
 use serde_json::Value;
 
 fn object(scratch: &Scratch, args: &[&str]) -> (Option<i32>, Value) {

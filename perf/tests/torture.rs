@@ -1,8 +1,6 @@
 //! `toile torture` as a user and a script meet it: few seeds of every case.
 
-mod common;
-
-use common::Scratch;
+use crate::common::Scratch;
 use serde_json::Value;
 
 /// Cases that do not pass with every seed: docs/torture.md says why. One that does pass is to be taken out here.

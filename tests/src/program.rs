@@ -1,6 +1,6 @@
-//! The built program, as a script meets it.
+//! The built program, as a script meets it. Tests of the programs include this file; each names its program as `crate::PROGRAM`.
 
-#![allow(dead_code, reason = "each test file uses its part")]
+#![allow(dead_code, reason = "each program uses its part")]
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -25,7 +25,7 @@ impl Scratch {
 
     /// Runs the program in this folder.
     pub fn toile(&self, args: &[&str]) -> Output {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_toile"));
+        let mut command = Command::new(crate::PROGRAM);
         command.stdin(Stdio::null()).env_remove("RUST_BACKTRACE").current_dir(&self.0);
         // Graphics drivers complain on stderr where there is none.
         command.env("XDG_RUNTIME_DIR", &self.0);

@@ -5,13 +5,12 @@
 //! Thread: the main thread; rays use every core.
 
 use toile_assets::garment::Garment;
+use toile_cli::exit::AppError;
 use toile_engine::lines::Line;
 use toile_view::figure::Figure;
 use toile_view::image::{Image, Size};
 use toile_view::scene::{Bounds, Camera, Scene, Surface};
 use toile_view::trace::{TraceQuality, TracedScene};
-
-use crate::exit::AppError;
 
 #[cfg(feature = "view")]
 mod gpu;

@@ -1,15 +1,16 @@
-//! `toile capture body` and `toile capture face` as a script meets them: sequences, and input that cannot be used.
-
-mod common;
+//! `toile-capture body` and `toile-capture face` as a script meets them: sequences, and input that cannot be used.
 
 use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
 
-use common::{Scratch, sentence};
+use crate::common::{Scratch, sentence};
 use glam::DVec3;
 use toile_assets::body::Sex;
 use toile_assets::body::shape::Shapes;
-use toile_capture::depth_buffer::DepthBuffer;
-use toile_capture::face::FaceLandmarks;
+use toile_pose::depth_buffer::DepthBuffer;
+use toile_pose::face::FaceLandmarks;
+use toile_pose::files::{self, NetworkPackage};
 
 /// Two cameras at a right angle, 3 m from the middle, in the format of Pose2Sim.
 const CAMERAS: &str = "[cam1]\nname = \"cam1\"\nsize = [60.0, 80.0]\nmatrix = [[80.0, 0.0, 29.5], [0.0, 80.0, 39.5], [0.0, 0.0, 1.0]]\n\
@@ -59,11 +60,11 @@ fn silhouettes_of_nobody_are_one_sentence() {
         ("small", "which no standing person is"),
         ("box", "share only"),
     ] {
-        let output = scratch.toile(&["capture", "body", folder, "--calibration", "cams.toml"]);
+        let output = scratch.toile(&["body", folder, "--calibration", "cams.toml"]);
         let said = sentence(&output);
         assert!(output.status.code() == Some(4) && said.contains(wanted), "{folder}: {said}");
     }
-    let output = scratch.toile(&["capture", "body", "box", "--calibration", "cams.toml", "--up", "w"]);
+    let output = scratch.toile(&["body", "box", "--calibration", "cams.toml", "--up", "w"]);
     assert!(output.status.code() == Some(2) && sentence(&output).contains("x, y or z"));
 }
 
@@ -86,7 +87,6 @@ fn a_sequence_of_silhouettes_is_followed_and_written() {
         png(&scratch, &format!("masks/cam{}/{frame:03}.png", camera + 1), [240, 320], white);
     }
     let said = scratch.toile(&[
-        "capture",
         "body",
         "masks",
         "--calibration",
@@ -114,7 +114,7 @@ fn a_sequence_of_silhouettes_is_followed_and_written() {
     }
     // A frame that one camera has not.
     fs::remove_file(scratch.path().join("masks/cam2/001.png")).unwrap();
-    let output = scratch.toile(&["capture", "body", "masks", "--calibration", "cams.toml"]);
+    let output = scratch.toile(&["body", "masks", "--calibration", "cams.toml"]);
     assert!(output.status.code() == Some(4) && sentence(&output).contains("camera cam2 has no frame 1"));
 }
 
@@ -158,11 +158,11 @@ fn faces_that_nobody_has_are_one_sentence() {
         ("outlined.json", 4, "an outline in a sequence"),
         ("frames.json", 4, "any head that stands before these cameras"),
     ] {
-        let output = scratch.toile(&["capture", "face", name]);
+        let output = scratch.toile(&["face", name]);
         let said = sentence(&output);
         assert!(output.status.code() == Some(code) && said.contains(wanted), "{name}: {said}");
     }
-    let output = scratch.toile(&["capture", "face", "wild.json", "--picture"]);
+    let output = scratch.toile(&["face", "wild.json", "--picture"]);
     assert!(output.status.code() == Some(2) && sentence(&output).contains("--out"));
 }
 
@@ -189,7 +189,7 @@ fn a_sequence_is_reported_frame_by_frame_and_its_head_has_hair() {
         [mannequin(0.0), "{\"picture\": \"a.png\", \"focal_px\": 900, \"points\": []}".to_owned(), mannequin(0.02)];
     let text = format!("{{\"sequence\": true, \"photographs\": [{}]}}", frames.join(","));
     fs::write(scratch.path().join("frames.json"), text).unwrap();
-    let output = scratch.toile(&["capture", "face", "frames.json", "--hair", "bun", "--out", "head", "--json"]);
+    let output = scratch.toile(&["face", "frames.json", "--hair", "bun", "--out", "head", "--json"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     let frames = report["sequence"]["frames"].as_array().unwrap();
@@ -202,4 +202,27 @@ fn a_sequence_is_reported_frame_by_frame_and_its_head_has_hair() {
     assert!(obj.contains("o hair\nusemtl hair\n"));
     assert!(fs::read_to_string(scratch.path().join("head/head.mtl")).unwrap().contains("newmtl hair"));
     assert_eq!(fs::read(scratch.path().join("head/report.json")).unwrap().first(), Some(&b'{'));
+}
+
+/// Looks for a face in `a.png` with the networks of a folder.
+fn seen_with(scratch: &Scratch, networks: &Path) -> Output {
+    let mut command = Command::new(crate::PROGRAM);
+    command.stdin(Stdio::null()).current_dir(scratch.path()).env("XDG_RUNTIME_DIR", scratch.path());
+    command.env(files::FOLDER_VARIABLE, networks).args(["face", "a.png"]).output().unwrap()
+}
+
+#[test]
+fn without_its_network_a_face_is_refused_with_the_command_that_fetches_it() {
+    let scratch = Scratch::new("face-refused");
+    image::RgbImage::new(64, 64).save(scratch.path().join("a.png")).unwrap();
+    let refused = seen_with(&scratch, scratch.path());
+    let words = String::from_utf8_lossy(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(5), "{words}");
+    assert!(words.contains(files::FETCH_FACE) && words.lines().count() == 1, "{words}");
+    if NetworkPackage::Face.check(&files::folder()).is_ok() {
+        let refused = seen_with(&scratch, &files::folder());
+        let words = String::from_utf8_lossy(&refused.stderr);
+        assert_eq!(refused.status.code(), Some(4), "{words}");
+        assert!(words.contains("a.png: no face is seen; give one of a face from before"), "{words}");
+    }
 }

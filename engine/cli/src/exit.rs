@@ -15,7 +15,7 @@ use crate::output::OutputError;
 pub enum Code {
     /// The work was done.
     Ok = 0,
-    /// The command line was not understood.
+    /// The command line was not understood, or names a program that is not installed.
     Usage = 2,
     /// The work was done, but a figure missed its threshold.
     Threshold = 3,
@@ -38,7 +38,7 @@ impl From<Code> for ExitCode {
 /// Every way in which a command can fail. The text is one sentence: what, where, and the cure.
 #[derive(Debug, thiserror::Error)]
 pub enum AppError {
-    /// The command line was not understood.
+    /// The command line was not understood, or names a program that is not installed.
     #[error("{0}")]
     Usage(String),
     /// A figure missed its threshold.

@@ -2,14 +2,15 @@
 
 use std::borrow::Cow;
 use std::io::{self, IsTerminal, Write};
+use std::sync::atomic::AtomicU64;
+use std::sync::atomic::Ordering::Relaxed;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 
+use crate::document::Document;
 use crate::exit::AppError;
-use crate::report::Document;
 
 /// Writes data to stdout.
 ///
@@ -54,20 +55,18 @@ impl Words {
 
     /// How far long work of `length` units is, under this label.
     pub fn bar(&self, length: u64, label: &'static str) -> Progress {
-        let terminal = io::stderr().is_terminal();
-        let target = if terminal && !self.quiet { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
-        let style = ProgressStyle::with_template("{msg:12} {bar:32} {percent:>3} % {eta:>4}")
-            .unwrap_or_else(|_| ProgressStyle::default_bar());
-        let bar = ProgressBar::with_draw_target(Some(length), target).with_style(style);
-        let lines = !terminal && !self.quiet;
-        if lines {
+        let shown = match (self.quiet, io::stderr().is_terminal()) {
+            (true, _) => Shown::Nothing,
+            (false, true) => Shown::Bar,
+            (false, false) => Shown::Lines,
+        };
+        if shown == Shown::Lines {
             // The first line is due after a while: short work says nothing.
-            NEXT_LINE
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner)
-                .get_or_insert_with(|| Instant::now() + BETWEEN_LINES);
+            let mut next = NEXT_LINE.lock().unwrap_or_else(PoisonError::into_inner);
+            next.get_or_insert_with(|| Instant::now() + BETWEEN_LINES);
         }
-        Progress { bar: bar.with_message(label), lines: lines.then_some(label) }
+        let drawn = Mutex::new(None);
+        Progress { label, shown, done: AtomicU64::new(0), length: AtomicU64::new(length), begun: Instant::now(), drawn }
     }
 }
 
@@ -77,50 +76,99 @@ const BETWEEN_LINES: Duration = Duration::from_secs(5);
 /// When the next line of progress is due, of whatever work; `None` before the first work.
 static NEXT_LINE: Mutex<Option<Instant>> = Mutex::new(None);
 
+/// Time between two drawings of a bar.
+const BETWEEN_DRAWINGS: Duration = Duration::from_millis(100);
+
+/// Characters of a whole bar.
+const BAR: u64 = 32;
+
+/// What is shown of progress.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Shown {
+    Nothing,
+    /// A bar that is drawn over itself, on a terminal.
+    Bar,
+    /// A line every few seconds.
+    Lines,
+}
+
 /// How far long work is: a bar where stderr is a terminal, and a line every few seconds where it is not.
 #[derive(Debug)]
 pub struct Progress {
-    bar: ProgressBar,
-    /// The label of the lines; `None` where there are none.
-    lines: Option<&'static str>,
+    label: &'static str,
+    shown: Shown,
+    done: AtomicU64,
+    length: AtomicU64,
+    begun: Instant,
+    /// When the bar was drawn last; none where none stands on the terminal.
+    drawn: Mutex<Option<Instant>>,
 }
 
 impl Progress {
     /// So many units more are done.
     pub fn inc(&self, units: u64) {
-        self.bar.inc(units);
-        self.line();
+        // Relaxed, here and below: counts for people to look at.
+        self.done.fetch_add(units, Relaxed);
+        self.show();
     }
 
     /// So many units are done.
     pub fn set_position(&self, units: u64) {
-        self.bar.set_position(units);
-        self.line();
+        self.done.store(units, Relaxed);
+        self.show();
     }
 
     /// There are so many units.
     pub fn set_length(&self, units: u64) {
-        self.bar.set_length(units);
+        self.length.store(units, Relaxed);
     }
 
     /// The work is done; the bar goes.
     pub fn finish_and_clear(&self) {
-        self.bar.finish_and_clear();
+        if self.drawn.lock().unwrap_or_else(PoisonError::into_inner).take().is_some() {
+            // A closed stderr is no reason to stop working, here and below.
+            let _ = write!(io::stderr(), "\r\x1b[2K");
+        }
     }
 
-    /// Prints a line if one is due.
-    fn line(&self) {
-        let Some(label) = self.lines else { return };
-        // Another thread that holds the lock prints the line.
-        let Ok(mut next) = NEXT_LINE.try_lock() else { return };
+    /// Shows the state if it is due. Another thread that holds the lock does it.
+    fn show(&self) {
         let now = Instant::now();
-        if next.is_none_or(|next| now < next) {
-            return;
+        match self.shown {
+            Shown::Nothing => {}
+            Shown::Bar => {
+                let Ok(mut drawn) = self.drawn.try_lock() else { return };
+                if drawn.is_none_or(|last| now >= last + BETWEEN_DRAWINGS) {
+                    *drawn = Some(now);
+                    let _ = write!(io::stderr(), "\r\x1b[2K{}", self.bar());
+                }
+            }
+            Shown::Lines => {
+                let Ok(mut next) = NEXT_LINE.try_lock() else { return };
+                if next.is_some_and(|next| now >= next) {
+                    *next = Some(now + BETWEEN_LINES);
+                    let _ = writeln!(io::stderr(), "{}: {} %", self.label, self.percent());
+                }
+            }
         }
-        *next = Some(now + BETWEEN_LINES);
-        let (done, all) = (self.bar.position(), self.bar.length().unwrap_or(0).max(1));
-        // A closed stderr is no reason to stop working.
-        let _ = writeln!(io::stderr(), "{label}: {} %", (100 * done / all).min(100));
+    }
+
+    fn percent(&self) -> u64 {
+        (100 * self.done.load(Relaxed) / self.length.load(Relaxed).max(1)).min(100)
+    }
+
+    /// The bar as text, with the time that is left by the speed so far.
+    fn bar(&self) -> String {
+        let percent = self.percent();
+        let full = (BAR * percent / 100) as usize;
+        let left = self.begun.elapsed().as_secs() * (100 - percent) / percent.max(1);
+        format!("{:12} {:-<32} {percent:>3} % {left:>4} s", self.label, "#".repeat(full))
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.finish_and_clear();
     }
 }
 
@@ -177,7 +225,8 @@ mod tests {
     #[test]
     fn progress_without_a_terminal_prints_a_line_when_one_is_due() {
         let words = Words::new(false);
-        let progress = Progress { lines: Some("working"), ..words.bar(10, "working") };
+        let mut progress = words.bar(10, "working");
+        progress.shown = Shown::Lines;
         let due = |at: Instant| *NEXT_LINE.lock().unwrap() = Some(at);
         let soon = Instant::now() + BETWEEN_LINES;
         due(soon);
@@ -186,7 +235,9 @@ mod tests {
         due(Instant::now());
         progress.inc(1);
         assert!(NEXT_LINE.lock().unwrap().is_some_and(|next| next >= soon), "printed");
-        assert!(Words::new(true).bar(10, "quiet").lines.is_none());
+        assert_eq!(Words::new(true).bar(10, "quiet").shown, Shown::Nothing);
+        progress.set_position(5);
+        assert!(progress.bar().contains("################---"), "{}", progress.bar());
     }
 
     #[test]

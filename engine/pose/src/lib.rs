@@ -6,6 +6,7 @@
 //! Thread: the camera's thread.
 
 // Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
+pub mod depth_buffer;
 pub mod files;
 pub mod region;
 pub mod tflite;
@@ -27,6 +28,7 @@ pub mod sides;
 
 pub mod tracker;
 
+pub mod face;
 pub mod face_finder;
 pub mod joints;
 pub mod picture_fit;

@@ -1,16 +1,18 @@
-//! `toile study`: which sizes of garments fit how many people.
+//! The program `toile-study`: which sizes of garments fit how many people.
 
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use clap::ArgAction;
+use clap::{ArgAction, Parser};
 use serde::Serialize;
+use toile_cli::arguments::{Printing, cores, count};
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::output::OutputFolder;
+use toile_cli::program;
+use toile_cli::terminal::{self, Words};
 use toile_study::{Folder, Merged, RunReport, Shard, Study, StudyError, Summary, TypicalPicture};
-
-use crate::arguments::{Printing, cores, count};
-use crate::exit::AppError;
-use crate::report::Document;
-use crate::terminal::{self, Words};
 
 /// Most threads: more than any machine has.
 const MOST_WORKERS: u64 = 1024;
@@ -19,41 +21,43 @@ const MOST_WORKERS: u64 = 1024;
 ///
 /// A study file names garments, a population, a sensor and how much is simulated (docs/study.md). Every try-on is a row of DIR/rows.parquet, the
 /// same bytes however many workers or machines there are; a run that was stopped goes on where it was. DIR/report.html is the page.
-#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[derive(Debug, Clone, PartialEq, Parser)]
 #[command(
+    name = "toile-study",
+    version,
     args_conflicts_with_subcommands = true,
     subcommand_negates_reqs = true,
     after_help = "Example: a study, then the second of eight parts of it on another machine\n  toile study study.toml --out tee\n  toile study \
                   study.toml --out tee --shard 2/8"
 )]
-pub struct StudyArgs {
+struct StudyArgs {
     /// What is done with a folder that a study has been computed in; none computes.
     #[command(subcommand)]
-    pub(crate) command: Option<StudyCommand>,
+    command: Option<StudyCommand>,
     /// Study file
     #[arg(value_name = "STUDY.toml", required = true)]
-    pub file: Option<PathBuf>,
+    file: Option<PathBuf>,
     /// Folder for the rows; it is made if missing
     #[arg(long, value_name = "DIR", default_value = "out")]
-    pub out: PathBuf,
+    out: PathBuf,
     /// Part of the study to compute, such as 2/8; then merge
     #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
-    pub shard: Option<Shard>,
+    shard: Option<Shard>,
     /// Threads, each with people of its own (default: as many as there are cores)
     #[arg(long, value_name = "N", value_parser = count(1..=MOST_WORKERS))]
-    pub workers: Option<usize>,
+    workers: Option<usize>,
     /// Draw no typical people: they are simulated
     #[arg(long = "no-pictures", action = ArgAction::SetFalse)]
-    pub pictures: bool,
+    pictures: bool,
     /// What is printed.
     #[command(flatten)]
-    pub printing: Printing,
+    printing: Printing,
 }
 
 // The help of a command is the doc of its arguments, which a doc of the variant would replace.
 /// What is done with a study's folder.
 #[derive(Debug, Clone, PartialEq, clap::Subcommand)]
-pub(crate) enum StudyCommand {
+enum StudyCommand {
     Merge(MergeArgs),
     Report(ReportArgs),
 }
@@ -61,28 +65,28 @@ pub(crate) enum StudyCommand {
 /// Merge the parts of a study to one file of rows.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(after_help = "Example: once all parts are done\n  toile study merge tee && toile study report tee")]
-pub struct MergeArgs {
+struct MergeArgs {
     /// The study's folder
     #[arg(value_name = "DIR")]
-    pub folder: PathBuf,
+    folder: PathBuf,
     /// What is printed.
     #[command(flatten)]
-    pub printing: Printing,
+    printing: Printing,
 }
 
 /// Make the page of a study's rows again.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(after_help = "Example: without pictures, which are simulated\n  toile study report tee --no-pictures")]
-pub struct ReportArgs {
+struct ReportArgs {
     /// The study's folder
     #[arg(value_name = "DIR")]
-    pub folder: PathBuf,
+    folder: PathBuf,
     /// Draw no typical people: they are simulated
     #[arg(long = "no-pictures", action = ArgAction::SetFalse)]
-    pub pictures: bool,
+    pictures: bool,
     /// What is printed.
     #[command(flatten)]
-    pub printing: Printing,
+    printing: Printing,
 }
 
 /// What `--json` prints.
@@ -102,21 +106,24 @@ struct StudyReport {
     page: Option<PathBuf>,
 }
 
-impl From<StudyError> for AppError {
-    fn from(error: StudyError) -> Self {
-        match error {
-            // A folder that is full or in use is one that cannot be used.
-            StudyError::Input(text) | StudyError::Device(text) => Self::Input(text),
-            StudyError::Internal(text) => Self::Internal(text),
-        }
+/// A study's error with its exit code.
+fn refused(error: StudyError) -> AppError {
+    match error {
+        // A folder that is full or in use is one that cannot be used.
+        StudyError::Input(text) | StudyError::Device(text) => AppError::Input(text),
+        StudyError::Internal(text) => AppError::Internal(text),
     }
+}
+
+fn main() -> ExitCode {
+    program::run::<StudyArgs>(std::env::args_os(), run)
 }
 
 /// Runs `toile study`.
 ///
 /// # Errors
 /// A study that cannot be used, a folder that is in use or full, a part that is missing.
-pub fn run(args: &StudyArgs) -> Result<(), AppError> {
+fn run(args: &StudyArgs) -> Result<(), AppError> {
     match &args.command {
         Some(StudyCommand::Merge(args)) => merge(args),
         Some(StudyCommand::Report(args)) => report(args),
@@ -130,33 +137,33 @@ fn compute(args: &StudyArgs) -> Result<(), AppError> {
         .file
         .as_deref()
         .ok_or_else(|| AppError::Usage("no study file is given; see `toile study --help`".to_owned()))?;
-    let study = Study::open(file)?;
+    let study = Study::open(file).map_err(refused)?;
     let shard = args.shard.unwrap_or(Shard::WHOLE);
-    let folder = Folder::take(&args.out, &study, shard)?;
+    let folder = Folder::take(&args.out, &study, shard).map_err(refused)?;
     let bar = words.bar(study.rows() / shard.of, "trying on");
     let rows = AtomicU64::new(0);
     // Relaxed: a count for people to look at.
     let progress = |more: u64| bar.set_position(rows.fetch_add(more, Ordering::Relaxed) + more);
     let run = folder.run(&study, shard, args.workers.unwrap_or_else(cores), &progress);
     bar.finish_and_clear();
-    let run = run?;
+    let run = run.map_err(refused)?;
     let mut found = StudyReport { run: Some(run), merged: None, summary: None, page: None };
     if args.shard.is_none() {
-        found.merged = Some(folder.merge()?);
+        found.merged = Some(folder.merge().map_err(refused)?);
         made(&mut found, &folder, &args.out, Some(study).filter(|_| args.pictures).as_ref(), words)?;
     }
     printed(&found, args.printing, &args.out)
 }
 
 fn merge(args: &MergeArgs) -> Result<(), AppError> {
-    let merged = Folder::open(&args.folder)?.merge()?;
+    let merged = Folder::open(&args.folder).map_err(refused)?.merge().map_err(refused)?;
     let found = StudyReport { run: None, merged: Some(merged), summary: None, page: None };
     printed(&found, args.printing, &args.folder)
 }
 
 fn report(args: &ReportArgs) -> Result<(), AppError> {
     let words = args.printing.words();
-    let folder = Folder::open(&args.folder)?;
+    let folder = Folder::open(&args.folder).map_err(refused)?;
     if !folder.rows_file().exists() {
         let shown = args.folder.display();
         return Err(AppError::Input(format!(
@@ -187,7 +194,7 @@ fn made(
     study: Option<&Study>,
     words: Words,
 ) -> Result<(), AppError> {
-    let summary = Summary::read(&folder.rows_file())?;
+    let summary = Summary::read(&folder.rows_file()).map_err(refused)?;
     let mut pictures = Vec::new();
     if let Some(study) = study {
         let people = summary.garments.iter().map(|g| g.typical.len()).sum::<usize>() as u64;
@@ -202,8 +209,8 @@ fn made(
         }
         bar.finish_and_clear();
     }
-    let page = toile_study::page(&summary, &folder.runs()?, &pictures);
-    let mut out = crate::output::OutputFolder::prepare(place)?;
+    let page = toile_study::page(&summary, &folder.runs().map_err(refused)?, &pictures);
+    let mut out = OutputFolder::prepare(place)?;
     out.write("report.html", page.as_bytes())?;
     found.page = out.commit()?.pop();
     found.summary = Some(summary);

@@ -1,13 +1,11 @@
 //! `toile study` as a user and a script meet it.
 
-mod common;
-
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use common::{Scratch, object, refusal, sentence, stdout};
+use crate::common::{Scratch, object, refusal, sentence, stdout};
 
 const STUDY: &str = "name = \"Tee and skirt\"\nseed = 28\n[[garment]]\nname = \"tee\"\nsizes = [\"36\", \"38\", \"40\", \"42\"]\n\
     [[garment]]\nname = \"pencil-skirt\"\n[population]\nfrom = \"ansur\"\npeople = 1200\nwomen = 1.0\n";
@@ -25,17 +23,16 @@ fn rows(scratch: &Scratch, out: &str) -> Vec<u8> {
 #[test]
 fn the_rows_are_the_same_bytes_however_they_come_by() {
     let scratch = folder("study-bytes", STUDY);
-    let report =
-        object(&scratch.toile(&["study", "study.toml", "--out", "one", "--workers", "1", "--no-pictures", "--json"]));
+    let report = object(&scratch.toile(&["study.toml", "--out", "one", "--workers", "1", "--no-pictures", "--json"]));
     assert_eq!((report["schema"].as_str(), report["run"]["kept"].as_u64()), (Some("toile.study/1"), Some(0)));
     let one = rows(&scratch, "one");
-    object(&scratch.toile(&["study", "study.toml", "--out", "two", "--workers", "2", "--no-pictures", "--json"]));
+    object(&scratch.toile(&["study.toml", "--out", "two", "--workers", "2", "--no-pictures", "--json"]));
     assert!(rows(&scratch, "two") == one, "with two workers");
     for part in ["3/3", "1/3", "2/3"] {
-        let said = stdout(&scratch.toile(&["study", "study.toml", "--out", "three", "--shard", part]));
+        let said = stdout(&scratch.toile(&["study.toml", "--out", "three", "--shard", part]));
         assert!(said.contains("toile study merge three"), "{said}");
     }
-    let merged = object(&scratch.toile(&["study", "merge", "three", "--json"]));
+    let merged = object(&scratch.toile(&["merge", "three", "--json"]));
     assert!(rows(&scratch, "three") == one, "in three parts, out of order");
     assert_eq!(merged["merged"]["rows"], report["merged"]["rows"]);
 
@@ -46,7 +43,7 @@ fn the_rows_are_the_same_bytes_however_they_come_by() {
     let bytes = fs::read(&chunks[0]).unwrap();
     fs::write(&chunks[0], &bytes[..bytes.len() / 2]).unwrap();
     fs::remove_file(&chunks[1]).unwrap();
-    let again = object(&scratch.toile(&["study", "study.toml", "--out", "one", "--no-pictures", "--json"]));
+    let again = object(&scratch.toile(&["study.toml", "--out", "one", "--no-pictures", "--json"]));
     let [all, kept] = ["rows", "kept"].map(|key| again["run"][key].as_u64().unwrap());
     assert!(chunks.len() == 3 && kept > 0 && kept < all, "{kept} of {all}");
     assert!(rows(&scratch, "one") == one, "after two of three chunks were lost");
@@ -61,8 +58,8 @@ fn the_rows_are_the_same_bytes_however_they_come_by() {
 #[test]
 fn a_run_that_is_killed_goes_on_and_loses_nothing() {
     let scratch = folder("study-killed", &STUDY.replace("1200", "2500"));
-    let mut command = Command::new(env!("CARGO_BIN_EXE_toile"));
-    command.args(["study", "study.toml", "--out", "killed", "--workers", "1", "--no-pictures", "--quiet"]);
+    let mut command = Command::new(crate::PROGRAM);
+    command.args(["study.toml", "--out", "killed", "--workers", "1", "--no-pictures", "--quiet"]);
     let mut run = command.current_dir(scratch.path()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
     let chunks = scratch.path().join("killed/chunks");
     let there = |folder: &Path| {
@@ -80,9 +77,9 @@ fn a_run_that_is_killed_goes_on_and_loses_nothing() {
     run.kill().unwrap();
     run.wait().unwrap();
     assert!(!scratch.path().join("killed/rows.parquet").exists(), "it was killed half-way");
-    let report = object(&scratch.toile(&["study", "study.toml", "--out", "killed", "--no-pictures", "--json"]));
+    let report = object(&scratch.toile(&["study.toml", "--out", "killed", "--no-pictures", "--json"]));
     assert!(report["run"]["kept"].as_u64().unwrap() > 0, "{}", report["run"]);
-    object(&scratch.toile(&["study", "study.toml", "--out", "whole", "--no-pictures", "--json"]));
+    object(&scratch.toile(&["study.toml", "--out", "whole", "--no-pictures", "--json"]));
     assert!(rows(&scratch, "killed") == rows(&scratch, "whole"));
 }
 
@@ -109,7 +106,6 @@ fn weights_count_as_people() {
         .map(|file| {
             fs::write(scratch.path().join("study.toml"), text(file)).unwrap();
             let found = object(&scratch.toile(&[
-                "study",
                 "study.toml",
                 "--out",
                 file.trim_end_matches(".csv"),
@@ -166,41 +162,41 @@ fn bad_studies_are_refused_in_a_sentence() {
             text
         });
         fs::write(scratch.path().join("study.toml"), text).unwrap();
-        let said = refusal(&scratch.toile(&["study", "study.toml", "--out", "refused"]), 4);
+        let said = refusal(&scratch.toile(&["study.toml", "--out", "refused"]), 4);
         assert!(
             said.contains(says) && said.contains("study.toml") || said.contains(says) && said.contains("people.csv"),
             "{says}: {said}"
         );
         assert!(!scratch.path().join("refused").exists(), "{says}");
     }
-    assert!(refusal(&scratch.toile(&["study", "none.toml"]), 4).contains("none.toml"));
-    assert!(refusal(&scratch.toile(&["study", "study.toml", "--shard", "3/2"]), 2).contains("2/8"));
-    assert!(refusal(&scratch.toile(&["study", "merge", "."]), 4).contains("holds no study"));
-    assert!(refusal(&scratch.toile(&["study"]), 2).contains("--help"));
+    assert!(refusal(&scratch.toile(&["none.toml"]), 4).contains("none.toml"));
+    assert!(refusal(&scratch.toile(&["study.toml", "--shard", "3/2"]), 2).contains("2/8"));
+    assert!(refusal(&scratch.toile(&["merge", "."]), 4).contains("holds no study"));
+    assert!(refusal(&scratch.toile(&[]), 2).contains("--help"));
 }
 
 #[test]
 fn a_missing_part_another_study_and_a_folder_in_use_are_named() {
     let scratch = folder("study-folder", STUDY);
-    let part = |part: &str| scratch.toile(&["study", "study.toml", "--out", "out", "--shard", part, "--quiet"]);
+    let part = |part: &str| scratch.toile(&["study.toml", "--out", "out", "--shard", part, "--quiet"]);
     assert_eq!(part("1/3").status.code(), Some(0));
     assert_eq!(part("3/3").status.code(), Some(0));
-    let said = refusal(&scratch.toile(&["study", "merge", "out"]), 4);
+    let said = refusal(&scratch.toile(&["merge", "out"]), 4);
     assert!(said.contains("shard 2/3 is missing") && said.contains("--shard 2/3"), "{said}");
-    assert!(refusal(&scratch.toile(&["study", "report", "out"]), 4).contains("toile study merge out"));
+    assert!(refusal(&scratch.toile(&["report", "out"]), 4).contains("toile study merge out"));
 
     fs::write(scratch.path().join("study.toml"), STUDY.replace("seed = 28", "seed = 29")).unwrap();
-    let said = refusal(&scratch.toile(&["study", "study.toml", "--out", "out"]), 4);
+    let said = refusal(&scratch.toile(&["study.toml", "--out", "out"]), 4);
     assert!(said.contains("another study") && said.contains("--out"), "{said}");
 
     fs::write(scratch.path().join("study.toml"), STUDY).unwrap();
     let lock = fs::File::open(scratch.path().join("out/lock")).unwrap();
     lock.lock().unwrap();
-    let said = sentence(&scratch.toile(&["study", "study.toml", "--out", "out"]));
+    let said = sentence(&scratch.toile(&["study.toml", "--out", "out"]));
     assert!(said.contains("in use by another run"), "{said}");
     drop(lock);
     assert_eq!(part("2/3").status.code(), Some(0));
-    assert_eq!(scratch.toile(&["study", "merge", "out"]).status.code(), Some(0));
+    assert_eq!(scratch.toile(&["merge", "out"]).status.code(), Some(0));
 }
 
 #[test]
@@ -208,10 +204,8 @@ fn a_missing_part_another_study_and_a_folder_in_use_are_named() {
 fn a_full_disk_is_a_sentence_and_what_was_done_is_kept() {
     let scratch = folder("study-full", STUDY);
     // Files may not grow beyond some kilobytes, which is refused where a full disk would be.
-    let line = format!(
-        "trap '' XFSZ; ulimit -f 64; exec {} study study.toml --out out --no-pictures --quiet",
-        env!("CARGO_BIN_EXE_toile")
-    );
+    let line =
+        format!("trap '' XFSZ; ulimit -f 64; exec {} study study.toml --out out --no-pictures --quiet", crate::PROGRAM);
     let output = Command::new("sh").args(["-c", &line]).current_dir(scratch.path()).output().unwrap();
     let said = refusal(&output, 4);
     assert!(
@@ -225,7 +219,7 @@ fn a_full_disk_is_a_sentence_and_what_was_done_is_kept() {
             .any(|e| e.unwrap().file_name().to_string_lossy().starts_with(".part"))
     };
     assert!(!left("out") && !left("out/chunks"), "nothing half-written stays");
-    object(&scratch.toile(&["study", "study.toml", "--out", "out", "--no-pictures", "--json"]));
+    object(&scratch.toile(&["study.toml", "--out", "out", "--no-pictures", "--json"]));
 }
 
 #[test]
@@ -233,17 +227,14 @@ fn try_ons_are_simulated_the_same_in_parts() {
     let physics = "[physics]\nmode = \"drape\"\npeople = 2\nsizes = \"recommended\"\nquality = \"shop\"\n";
     let text = STUDY.replace("1200", "9").replace("[[garment]]\nname = \"pencil-skirt\"\n", "");
     let scratch = folder("study-physics", &format!("{text}{physics}"));
-    let found = object(&scratch.toile(&["study", "study.toml", "--out", "one", "--no-pictures", "--json"]));
+    let found = object(&scratch.toile(&["study.toml", "--out", "one", "--no-pictures", "--json"]));
     let draped = &found["summary"]["garments"][0]["draped"];
     assert!(found["run"]["draped"].as_u64() <= Some(2) && found["run"]["draped"].as_u64() > Some(0), "{found}");
     // The goal is 0.06 (docs/study.md); beyond this bound the cloth would be torn.
     assert!(draped["worst_strain_p99"].as_f64().unwrap() < 0.2, "{draped}");
     for part in ["1/2", "2/2"] {
-        assert_eq!(
-            scratch.toile(&["study", "study.toml", "--out", "two", "--shard", part, "--quiet"]).status.code(),
-            Some(0)
-        );
+        assert_eq!(scratch.toile(&["study.toml", "--out", "two", "--shard", part, "--quiet"]).status.code(), Some(0));
     }
-    object(&scratch.toile(&["study", "merge", "two", "--json"]));
+    object(&scratch.toile(&["merge", "two", "--json"]));
     assert!(rows(&scratch, "one") == rows(&scratch, "two"));
 }

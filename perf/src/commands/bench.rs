@@ -5,8 +5,7 @@
 //! Thread: the main thread, and those that a benchmark measures.
 
 use clap::Subcommand;
-
-use crate::exit::AppError;
+use toile_cli::exit::AppError;
 
 pub(super) mod backend;
 mod body;
@@ -31,7 +30,7 @@ mod worn_summary;
 /// Time one part of the frame, with the error at that speed.
 #[derive(Debug, Clone, PartialEq, Subcommand)]
 #[command(after_help = "Example: the cost of a step of cloth, with its strain\n  toile bench skirt --motion walk")]
-pub(crate) enum BenchCommand {
+pub enum BenchCommand {
     Skinning(skinning::SkinningArgs),
     Skirt(skirt::SkirtArgs),
     Body(body::BodyBenchArgs),
@@ -52,7 +51,7 @@ pub(crate) enum BenchCommand {
 ///
 /// # Errors
 /// As each benchmark says.
-pub(crate) fn run(command: &BenchCommand) -> Result<(), AppError> {
+pub fn run(command: &BenchCommand) -> Result<(), AppError> {
     match command {
         BenchCommand::Skinning(args) => skinning::run(args),
         BenchCommand::Skirt(args) => skirt::run(args),

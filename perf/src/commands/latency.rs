@@ -19,13 +19,14 @@ use toile_perf::latency::{self, Goal, Latency, LatencyInputs, LatencyOptions, La
 use toile_sensors::source::live::CameraName;
 use toile_view::own_picture::OwnPictureModel;
 
-use crate::arguments::{CrashArg, Printing, WorkersArg, WornArgs, cores};
-use crate::camera::{self, CameraUse, MountArgs};
-use crate::exit::AppError;
-use crate::machine::Machine;
-use crate::output::{Inputs, OutputFolder};
-use crate::report::Document;
-use crate::terminal::{self, Paint, Tone};
+use crate::commands::arguments::CrashArg;
+use toile_cli::arguments::{Printing, WorkersArg, WornArgs, cores};
+use toile_cli::camera::{self, CameraUse, MountArgs};
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::machine::Machine;
+use toile_cli::output::{Inputs, OutputFolder};
+use toile_cli::terminal::{self, Paint, Tone};
 use toile_fitting::live::crash;
 
 /// Longest run (s): a day.

@@ -4,13 +4,12 @@ use std::path::PathBuf;
 use toile_assets::put_line;
 
 use clap::builder::PossibleValuesParser;
+use toile_cli::arguments::Printing;
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::output::OutputFolder;
+use toile_cli::terminal::{self, Paint, Tone};
 use toile_perf::pareto::{self, Drape, ModelPoint, ParetoOptions, ParetoReport, Point, SCENES, SceneReport};
-
-use crate::arguments::Printing;
-use crate::exit::AppError;
-use crate::output::OutputFolder;
-use crate::report::Document;
-use crate::terminal::{self, Paint, Tone};
 
 /// Plot speed against error over the cloth's settings, and report which are best.
 ///

@@ -6,6 +6,13 @@ use std::sync::Arc;
 
 use clap::value_parser;
 use serde::{Deserialize, Serialize};
+use toile_cli::arguments::{Printing, WorkersArg, one_of};
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::heap;
+use toile_cli::machine::Machine;
+use toile_cli::output::{Inputs, OutputFolder};
+use toile_cli::terminal::{self, Paint, Tone, Words};
 use toile_engine::clock::SimClock;
 use toile_engine::frame::Frame;
 use toile_engine::frame_loop::physics_thread::{FrameScene, SceneStepper};
@@ -20,13 +27,7 @@ use toile_perf::soak::{
     SoakTools,
 };
 
-use crate::arguments::{CrashArg, Printing, WorkersArg, one_of};
-use crate::exit::AppError;
-use crate::heap;
-use crate::machine::Machine;
-use crate::output::{Inputs, OutputFolder};
-use crate::report::Document;
-use crate::terminal::{self, Paint, Tone, Words};
+use crate::commands::arguments::CrashArg;
 
 /// Longest run (h): five weeks.
 const MOST_HOURS: f64 = 840.0;
@@ -330,7 +331,7 @@ fn table(report: &SoakDocument, paint: Paint) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arguments::parsed;
+    use crate::commands::arguments::parsed;
 
     fn options(line: &str) -> Result<SoakOptions, AppError> {
         parsed::<SoakArgs>(line).map_err(AppError::input)?.options()

@@ -6,14 +6,15 @@ use std::time::Instant;
 use clap::builder::PossibleValuesParser;
 use clap::value_parser;
 use serde::Serialize;
+use toile_cli::arguments::{Printing, quality};
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::terminal::{self, Paint, Tone};
 use toile_engine::cloth::Quality;
 use toile_perf::torture::{self, CASES, CaseSummary, SEEDS, TortureError, TortureOptions, TortureReport};
 
 use super::bench::backend;
-use crate::arguments::{BackendArg, Printing, quality};
-use crate::exit::AppError;
-use crate::report::Document;
-use crate::terminal::{self, Paint, Tone};
+use crate::commands::arguments::BackendArg;
 
 /// Most seeds of a case: a day's work.
 const MAX_SEEDS: u64 = 100_000;
@@ -146,7 +147,7 @@ mod tests {
     use toile_gpu::backend::Backend;
 
     use super::*;
-    use crate::arguments::parsed;
+    use crate::commands::arguments::parsed;
 
     fn options(line: &str) -> Result<TortureOptions, clap::Error> {
         Ok(parsed::<TortureArgs>(line)?.options())

@@ -2,15 +2,16 @@
 
 use clap::builder::PossibleValuesParser;
 use toile_assets::put_line;
+use toile_cli::arguments::{Printing, count};
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::terminal::{self, Paint, Tone};
 use toile_perf::validate::Level;
 use toile_perf::validate::case::ValidationRow;
 use toile_perf::validate::run::{self, NAMES, ValidationOptions, ValidationReport};
 
 use super::bench::backend;
-use crate::arguments::{BackendArg, Printing, count};
-use crate::exit::AppError;
-use crate::report::Document;
-use crate::terminal::{self, Paint, Tone};
+use crate::commands::arguments::BackendArg;
 
 /// Compare the cloth with exact solutions: each with its error and the time of a step.
 ///
@@ -167,7 +168,7 @@ fn percent(x: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arguments::parsed;
+    use crate::commands::arguments::parsed;
 
     #[test]
     fn a_case_and_a_quality_are_picked_and_unknown_ones_refused() {

@@ -16,10 +16,9 @@ use toile_assets::file::{self, FileKind};
 use toile_assets::garment::{Garment, Shape};
 use toile_assets::sizes::Population;
 use toile_assets::wardrobe::{self, WardrobeError, own};
-
-use crate::exit::AppError;
-use crate::report::Document;
-use crate::terminal::{self, Paint, Tone};
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::terminal::{self, Paint, Tone};
 
 /// Bake a garment, and report what its mesh becomes: fibers, solvers, bending, memory.
 ///

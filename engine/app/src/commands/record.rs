@@ -7,6 +7,12 @@ use glam::{Affine3A, Vec3};
 use toile_assets::body::Body;
 use toile_assets::scene;
 use toile_assets::skeleton::{BONES, JOINTS, Pose};
+use toile_cli::arguments::Printing;
+use toile_cli::camera::{self, MountArgs};
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::output::{Inputs, OutputFile};
+use toile_cli::terminal;
 use toile_engine::body::{JointFrames, palette};
 use toile_engine::frame::BLEND;
 use toile_engine::skin::SkinningJob;
@@ -17,12 +23,7 @@ use toile_sensors::source::live::CameraName;
 use toile_sensors::source::synthetic::{JointNoise, KinectNoise, SyntheticCamera};
 
 use super::record_camera::{self, CameraRequest};
-use crate::arguments::Printing;
-use crate::camera::{self, MountArgs};
-use crate::exit::AppError;
-use crate::output::{Inputs, OutputFile};
-use crate::report::{self, Document, RecordReport};
-use crate::terminal;
+use crate::report::{self, RecordReport};
 
 /// Longest session that `record` makes (s); at 30 frames a second this is some hundred megabytes.
 const MAX_SECONDS: i64 = 600;

@@ -9,6 +9,12 @@ use toile_assets::export::ply;
 use toile_capture::body::{
     JointPoint, SilhouetteBody, SilhouetteOptions, SilhouetteView, joint_points, measure, overlay_png,
 };
+use toile_cli::arguments::{Printing, one_of};
+use toile_cli::document::in_mm;
+use toile_cli::document::{DefinedMeasure, Document, MeasuredLength};
+use toile_cli::exit::AppError;
+use toile_cli::output::{Inputs, OutputFolder};
+use toile_cli::terminal;
 use toile_sensors::calibration;
 use toile_sensors::masks::{MaskSequence, read_masks};
 use toile_sensors::source::openpose::keypoints_of;
@@ -16,12 +22,6 @@ use toile_track::fit::measuring::MEASURES;
 use toile_track::measures::definition;
 
 use super::body_frames::{self, MotionReport};
-use crate::arguments::{Printing, one_of};
-use crate::exit::AppError;
-use crate::output::{Inputs, OutputFolder};
-use crate::report::measures::in_mm;
-use crate::report::{DefinedMeasure, Document, MeasuredLength};
-use crate::terminal;
 
 /// Measure a person by their silhouettes in several calibrated cameras.
 ///

@@ -10,13 +10,12 @@ use toile_capture::body::{
     BodyFollower, FollowedFrame, JointPoint, SilhouetteBody, SilhouetteView, joint_points, overlay_png,
 };
 use toile_capture::pose::trc_text;
+use toile_cli::exit::AppError;
+use toile_cli::output::OutputFolder;
+use toile_cli::terminal::Words;
 use toile_sensors::calibration::CalibratedCamera;
 use toile_sensors::masks::MaskSequence;
 use toile_sensors::source::openpose::KeypointFrame;
-
-use crate::exit::AppError;
-use crate::output::OutputFolder;
-use crate::terminal::Words;
 
 /// Frames without a body that a line of words names.
 const NAMED: usize = 12;

@@ -7,12 +7,12 @@ use glam::Vec3;
 use serde::Serialize;
 use toile_capture::compare::{Comparison, compare, read_motion};
 use toile_capture::recover::{Recovered, recover};
+use toile_cli::arguments::Printing;
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::terminal;
 
 use super::fabric_scene::FabricScene;
-use crate::arguments::Printing;
-use crate::exit::AppError;
-use crate::report::Document;
-use crate::terminal;
 
 /// Lay a captured motion beside another of the same mesh, or find the fabric that moves as it does.
 ///

@@ -6,9 +6,8 @@ use glam::Vec3;
 use toile_assets::file::{self, FileKind};
 use toile_assets::scene_file::{SceneFile, SceneSource};
 use toile_capture::recover::VALUES;
+use toile_cli::exit::AppError;
 use toile_fitting::scene::Runner;
-
-use crate::exit::AppError;
 
 /// Largest scene file.
 const SCENE: FileKind = FileKind { name: "a scene file", max_bytes: 1 << 20, cure: "give the scene of one garment" };

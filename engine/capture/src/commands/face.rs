@@ -5,7 +5,13 @@ use std::slice::from_ref;
 
 use serde::Serialize;
 use toile_assets::body::Sex;
-use toile_capture::face::{AdaptedHead, FaceView, HeadTexture, adapt, assumed_camera, follow, mtl, obj, png, texture};
+use toile_cli::arguments::{Printing, one_of};
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::output::{Inputs, OutputFolder};
+use toile_cli::picture::write_png;
+use toile_cli::terminal;
+use toile_pose::face::{AdaptedHead, FaceView, HeadTexture, adapt, assumed_camera, follow, mtl, obj, png, texture};
 use toile_sensors::calibration::{self, CalibratedCamera, Rig};
 use toile_sensors::face_points::{MarkedPhotograph, read_marked};
 use toile_sensors::pictures::read_picture;
@@ -15,12 +21,6 @@ use toile_view::image::linear;
 use super::face_frames::{self, SequenceReport};
 use super::face_picture::{HAIR, before_and_after, hair_on};
 use super::found_face;
-use crate::arguments::{Printing, one_of};
-use crate::exit::AppError;
-use crate::output::{Inputs, OutputFolder};
-use crate::pictures::write_png;
-use crate::report::Document;
-use crate::terminal;
 
 /// Adapt the mannequin's head to a face on one or more photographs, or follow it through a sequence.
 ///

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use serde::Serialize;
-use toile_capture::face::{FaceView, TrackedFrame, TrackedHead, TrackedSequence};
+use toile_pose::face::{FaceView, TrackedFrame, TrackedHead, TrackedSequence};
 use toile_sensors::face_points::MarkedPhotograph;
 
 /// Frames without a head that a line of words names.

@@ -9,7 +9,7 @@ use toile_assets::body::{Region, Sex};
 use toile_assets::mesh::vertex_normals;
 use toile_assets::skeleton::Joint;
 use toile_assets::texture::Texture;
-use toile_capture::face::{AdaptedHead, HeadTexture};
+use toile_pose::face::{AdaptedHead, HeadTexture};
 use toile_view::cloth_look::{GarmentLook, TileLevels};
 use toile_view::contact_sheet;
 use toile_view::figure::{Hair, HairMesh};

@@ -6,13 +6,12 @@ use clap::value_parser;
 use serde::Serialize;
 use toile_capture::flow::{FlowSettings, Reference, Springs};
 use toile_capture::recording::{FlowJob, FlowSummary, read_mesh};
+use toile_cli::arguments::{Printing, count, one_of};
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::terminal;
 use toile_sensors::calibration;
 use toile_sensors::pictures::PictureSequence;
-
-use crate::arguments::{Printing, count, one_of};
-use crate::exit::AppError;
-use crate::report::Document;
-use crate::terminal;
 
 /// Follow a mesh through the pictures of several cameras.
 ///

@@ -2,13 +2,12 @@
 
 use std::path::Path;
 
+use toile_cli::exit::AppError;
 use toile_pose::face_finder::{FaceFault, FaceFinder};
 use toile_pose::files;
 use toile_sensors::face_points::{MarkedPhotograph, MarkedPhotographs};
 use toile_sensors::pictures::read_picture;
 use toile_sensors::source::live::ColourImage;
-
-use crate::exit::AppError;
 
 /// Whether a file is a photograph by its name, and no file of points.
 pub(super) fn is_picture(path: &Path) -> bool {

@@ -5,13 +5,12 @@ use std::path::PathBuf;
 use serde::Serialize;
 use toile_assets::file::{self, FileKind};
 use toile_capture::pose::{PoseMotion, distances, fit, marker_name, read_trc, write_trc};
+use toile_cli::arguments::Printing;
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::output::{Inputs, OutputFile};
+use toile_cli::terminal;
 use toile_sensors::source::openpose::keypoints_of;
-
-use crate::arguments::Printing;
-use crate::exit::AppError;
-use crate::output::{Inputs, OutputFile};
-use crate::report::Document;
-use crate::terminal;
 
 /// Largest file of markers.
 const MARKERS: FileKind = FileKind { name: "a TRC file", max_bytes: 256 << 20, cure: "give fewer frames" };

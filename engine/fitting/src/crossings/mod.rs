@@ -9,7 +9,7 @@
 //!
 //! ```
 //! use glam::DVec3;
-//! use toile_perf::crossings::CrossingTest;
+//! use toile_fitting::crossings::CrossingTest;
 //! let level = [DVec3::ZERO, DVec3::X, DVec3::Z];
 //! let upright = [DVec3::new(0.2, -1.0, 0.2), DVec3::new(0.2, 1.0, 0.2), DVec3::new(5.0, 0.0, 0.2)];
 //! let test = CrossingTest::new(&[&[[0, 1, 2]], &[[0, 1, 2]]]);

@@ -1,11 +1,11 @@
 //! The crossing test against shapes whose crossings are known, and against all pairs one by one in whole numbers.
 
 use glam::{DVec3, I64Vec3};
+use toile_assets::numeric::random::SplitMix64;
 
 use super::mesh::unique_edges;
 use super::predicate::passes_through;
 use super::*;
-use crate::random::CaseRandom;
 
 /// A triangle on its own.
 const ONE: &[[u32; 3]] = &[[0, 1, 2]];
@@ -130,7 +130,7 @@ const PER_M: f64 = 128.0;
 
 /// Triangles at random with corners on the whole numbers: many pairs touch, lie in one plane or have no area. Centres in
 /// a box of `size`, corners in one of `extent` about them; one corner of four is another triangle's.
-fn soup(random: &mut CaseRandom, triangles: u32, size: usize, extent: usize) -> WholeMesh {
+fn soup(random: &mut SplitMix64, triangles: u32, size: usize, extent: usize) -> WholeMesh {
     let mut point = |size: usize| I64Vec3::from([(); 3].map(|()| random.below(size) as i64 - size as i64 / 2));
     let corners = (0..triangles).map(|_| point(size)).collect::<Vec<_>>();
     let positions = corners.iter().flat_map(|&centre| [centre; 3]).map(|centre| centre + point(extent)).collect();
@@ -178,7 +178,7 @@ fn all_pairs(meshes: &[WholeMesh], edge_mesh: usize, triangle_mesh: usize) -> Ve
 fn the_grid_finds_what_all_pairs_have_in_the_same_order() {
     for (size, extent, seeds) in [(6, 6, 4), (40, 6, 4), (2_000, 60, 2), (1_000, 1_000, 2)] {
         for seed in 0..seeds {
-            let mut random = CaseRandom::new("crossings", seed);
+            let mut random = SplitMix64::new(seed);
             let meshes = [(); 3].map(|()| soup(&mut random, 160, size, extent));
             let positions = meshes.each_ref().map(|mesh| metres(&mesh.1));
             let test = CrossingTest::new(&meshes.each_ref().map(|mesh| mesh.0.as_slice()));
@@ -195,7 +195,7 @@ fn the_grid_finds_what_all_pairs_have_in_the_same_order() {
 
 #[test]
 fn signs_are_exact_where_rounding_loses_them() {
-    let mut random = CaseRandom::new("thin triangles", 1);
+    let mut random = SplitMix64::new(1);
     let (mut crossings, mut lost) = (0, 0);
     for _ in 0..20_000 {
         let mut point = |size: usize| I64Vec3::from([(); 3].map(|()| random.below(2 * size + 1) as i64 - size as i64));
@@ -219,7 +219,7 @@ fn signs_are_exact_where_rounding_loses_them() {
 
 #[test]
 fn the_same_is_found_again_in_the_order_of_meshes_edges_and_triangles() {
-    let mut random = CaseRandom::new("order", 1);
+    let mut random = SplitMix64::new(1);
     let meshes = [(); 2].map(|()| soup(&mut random, 300, 40, 12));
     let positions = meshes.each_ref().map(|mesh| metres(&mesh.1));
     let positions = positions.each_ref().map(Vec::as_slice);
@@ -234,7 +234,7 @@ fn the_same_is_found_again_in_the_order_of_meshes_edges_and_triangles() {
 
 #[test]
 fn vertices_that_cannot_be_tested_take_nothing_but_their_own_crossings() {
-    let mut random = CaseRandom::new("not finite", 1);
+    let mut random = SplitMix64::new(1);
     let meshes = [(); 2].map(|()| soup(&mut random, 200, 30, 12));
     let test = CrossingTest::new(&meshes.each_ref().map(|mesh| mesh.0.as_slice()));
     let [first, second] = meshes.each_ref().map(|mesh| metres(&mesh.1));
@@ -261,7 +261,7 @@ fn vertices_that_cannot_be_tested_take_nothing_but_their_own_crossings() {
 
 #[test]
 fn vertices_that_are_torn_far_away_hide_no_other_crossing() {
-    let mut random = CaseRandom::new("torn", 1);
+    let mut random = SplitMix64::new(1);
     let mut meshes = [(); 2].map(|()| soup(&mut random, 200, 60, 12));
     // Up to 2^31 m away, by 3 vertices of 20.
     for v in (0..meshes[0].1.len()).filter(|v| v % 20 < 3) {

@@ -9,7 +9,7 @@ use toile_assets::mesh::vertex_normals;
 use toile_assets::numeric::random::SplitMix64;
 use toile_assets::skeleton::Joint;
 use toile_assets::texture::Texture;
-use toile_capture::face::FaceLandmarks;
+use toile_pose::face::FaceLandmarks;
 use toile_sensors::frame::Intrinsics;
 use toile_sensors::source::live::ColourImage;
 use toile_view::cloth_look::{GarmentLook, TileLevels};

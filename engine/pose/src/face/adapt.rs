@@ -9,8 +9,8 @@ use super::landmarks::FaceLandmarks;
 use super::outline::{OutlineStretch, seen_outlines, stretches};
 use super::prior::Field;
 use super::sighting::{HeadPose, Sighting, across, marked_points, observations, residual};
+use super::unfit::UnfitFace;
 use super::view::FaceView;
-use crate::error::CaptureError;
 
 /// Rounds of pose and field in turn, by the points and then with the outlines.
 const ROUNDS: usize = 8;
@@ -63,7 +63,7 @@ struct HeadSearch<'a> {
 ///
 /// # Errors
 /// One sentence where the points are those of no head before these cameras, or the outlines those of another.
-pub fn adapt(views: &[FaceView], sex: Sex) -> Result<AdaptedHead, CaptureError> {
+pub fn adapt(views: &[FaceView], sex: Sex) -> Result<AdaptedHead, UnfitFace> {
     let mesh = HeadMesh::of(sex);
     let drawn = FaceLandmarks::new().on(&mesh.positions);
     let pose = first_pose(views, &drawn)?;
@@ -76,7 +76,7 @@ pub fn adapt(views: &[FaceView], sex: Sex) -> Result<AdaptedHead, CaptureError> 
     if relative.is_nan() || relative >= LARGEST_RESIDUAL {
         let problem = format!("they lie {off:.1} px from those of any head that stands before these cameras");
         let cure = "check their order, left and right (the wearer's right is point 0), and the cameras' names";
-        return Err(CaptureError::unfit("the points", problem, cure));
+        return Err(UnfitFace::new("the points", problem, cure));
     }
     let stretches: Vec<Vec<OutlineStretch>> = views.iter().map(stretches).collect();
     let count = stretches.iter().map(Vec::len).sum::<usize>();
@@ -86,7 +86,7 @@ pub fn adapt(views: &[FaceView], sex: Sex) -> Result<AdaptedHead, CaptureError> 
             let problem = format!("{} of {count} stretches lie near the rim of the head", search.outlines.len());
             let cure =
                 "mark where the head itself ends, without hair and shoulders, in the pixels of the same photograph";
-            return Err(CaptureError::unfit("the outline", problem, cure));
+            return Err(UnfitFace::new("the outline", problem, cure));
         }
         search.round();
     }

@@ -4,8 +4,8 @@ use glam::{DMat3, DQuat, DVec2, DVec3};
 use toile_assets::numeric::linear::{self, Pivot};
 
 use super::sighting::{HeadPose, Sighting, equations, marked_points, residual};
+use super::unfit::UnfitFace;
 use super::view::FaceView;
-use crate::error::CaptureError;
 
 /// Steps of a pose.
 pub(super) const POSE_ROUNDS: usize = 10;
@@ -62,7 +62,7 @@ pub(super) fn moved(pose: HeadPose, by: [f64; 6]) -> HeadPose {
 ///
 /// # Errors
 /// Points that give the head no place.
-pub(super) fn first_pose(views: &[FaceView], marks: &[DVec3]) -> Result<HeadPose, CaptureError> {
+pub(super) fn first_pose(views: &[FaceView], marks: &[DVec3]) -> Result<HeadPose, UnfitFace> {
     let mut places = Vec::new();
     let mut towards = DVec3::ZERO;
     for view in views {
@@ -83,7 +83,7 @@ pub(super) fn first_pose(views: &[FaceView], marks: &[DVec3]) -> Result<HeadPose
     let x = up.cross(z).normalize_or(DVec3::X);
     if !place.is_finite() {
         let cure = "mark them again, in the picture's pixels";
-        return Err(CaptureError::unfit("the points", "they give the head no place", cure));
+        return Err(UnfitFace::new("the points", "they give the head no place", cure));
     }
     Ok(best_turn(
         views,

@@ -13,6 +13,8 @@
 
 mod landmarks;
 mod prior;
+mod unfit;
+
 mod view;
 
 mod head_mesh;
@@ -38,6 +40,7 @@ pub use obj::{mtl, obj};
 pub use sequence::{TrackedSequence, follow};
 pub use texture::{HeadTexture, png, texture};
 pub use track::{TrackedFrame, TrackedHead, track};
+pub use unfit::UnfitFace;
 pub use view::{FaceView, assumed_camera};
 
 #[cfg(test)]

@@ -13,8 +13,8 @@ use super::head_mesh::HeadMesh;
 use super::prior::{Field, Observation};
 use super::sighting::observations;
 use super::track::{FEWEST, HeadTracker, TrackedFrame, TrackedState};
+use super::unfit::UnfitFace;
 use super::view::FaceView;
-use crate::error::CaptureError;
 
 /// Frames of which one has to show the head well enough to begin with.
 const FIRST: usize = 30;
@@ -43,7 +43,7 @@ pub struct TrackedSequence {
 ///
 /// # Errors
 /// One sentence where none of the first frames shows a head.
-pub fn follow(frames: &[FaceView], sex: Sex) -> Result<TrackedSequence, CaptureError> {
+pub fn follow(frames: &[FaceView], sex: Sex) -> Result<TrackedSequence, UnfitFace> {
     let (first, head) = first_head(frames, sex)?;
     let mut tracker = HeadTracker::new(sex, head.marks.clone());
     let before = tracker.run(head.pose, &frames[first..]);
@@ -58,7 +58,7 @@ pub fn follow(frames: &[FaceView], sex: Sex) -> Result<TrackedSequence, CaptureE
 }
 
 /// The first frame that shows a head, and that head.
-fn first_head(frames: &[FaceView], sex: Sex) -> Result<(usize, AdaptedHead), CaptureError> {
+fn first_head(frames: &[FaceView], sex: Sex) -> Result<(usize, AdaptedHead), UnfitFace> {
     let mut refused = None;
     let enough = |f: &&FaceView| f.points.iter().flatten().count() >= FEWEST;
     for (first, frame) in frames.iter().enumerate().take(FIRST).filter(|(_, f)| enough(f)) {
@@ -69,7 +69,7 @@ fn first_head(frames: &[FaceView], sex: Sex) -> Result<(usize, AdaptedHead), Cap
     }
     Err(refused.unwrap_or_else(|| {
         let problem = format!("none of the first {} has {FEWEST} points", frames.len().min(FIRST));
-        CaptureError::unfit("the frames", problem, "begin where the face is seen")
+        UnfitFace::new("the frames", problem, "begin where the face is seen")
     }))
 }
 

@@ -1,16 +1,15 @@
 use std::f64::consts::TAU;
 
-use glam::{DQuat, DVec2, DVec3};
+use glam::{DMat3, DQuat, DVec2, DVec3};
 use image::{Rgb, RgbImage};
 use toile_assets::body::shape::Shapes;
 use toile_assets::body::{Region, Sex};
 use toile_assets::numeric::random::SplitMix64;
-use toile_sensors::calibration::CalibratedCamera;
+use toile_sensors::calibration::{CalibratedCamera, CameraParameters};
 use toile_sensors::face_points::FACE_POINTS;
 
 use super::head_mesh::middle;
 use super::*;
-use crate::render::look_at;
 
 /// A head that no field of the prior made: sides of a head stretched, waves over it, another nose and chin, not quite symmetric.
 pub(super) fn stranger(sex: Sex, seed: u64) -> Vec<DVec3> {
@@ -47,7 +46,18 @@ pub(super) fn stranger(sex: Sex, seed: u64) -> Vec<DVec3> {
 pub(super) fn cameras(angles: &[f64]) -> Vec<CalibratedCamera> {
     let at = |(k, a): (usize, &f64)| {
         let (s, c) = a.to_radians().sin_cos();
-        look_at(&format!("cam{k}"), [1200, 1600], 3_600.0, [DVec3::new(1.2 * s, 0.05, 1.2 * c), DVec3::ZERO], DVec3::Y)
+        let from = DVec3::new(1.2 * s, 0.05, 1.2 * c);
+        let ahead = -from.normalize();
+        let right = ahead.cross(DVec3::Y).normalize();
+        let rotation = DMat3::from_cols(right, ahead.cross(right), ahead).transpose();
+        let given = CameraParameters {
+            size: [1200.0, 1600.0],
+            matrix: [[3_600.0, 0.0, 599.5], [0.0, 3_600.0, 799.5], [0.0, 0.0, 1.0]],
+            distortion: Vec::new(),
+            rotation,
+            translation: -(rotation * from),
+        };
+        CalibratedCamera::new(&format!("cam{k}"), &given).expect("a camera that looks at a place is one")
     };
     angles.iter().enumerate().map(at).collect()
 }

@@ -4,7 +4,7 @@ use glam::{DMat3, DVec2, DVec3};
 use toile_sensors::calibration::{CalibratedCamera, CameraParameters};
 use toile_sensors::face_points::FACE_POINTS;
 
-use crate::error::CaptureError;
+use super::unfit::UnfitFace;
 
 /// Focal length over the longer side of a picture whose lens nobody knows: a portrait's.
 const PORTRAIT: f64 = 1.6;
@@ -26,7 +26,7 @@ pub struct FaceView {
 ///
 /// # Errors
 /// A picture without pixels.
-pub fn assumed_camera(size: [u32; 2], focal_px: Option<f64>) -> Result<CalibratedCamera, CaptureError> {
+pub fn assumed_camera(size: [u32; 2], focal_px: Option<f64>) -> Result<CalibratedCamera, UnfitFace> {
     let focal = focal_px.unwrap_or(PORTRAIT * f64::from(size[0].max(size[1])));
     let middle = size.map(|s| f64::from(s) / 2.0 - 0.5);
     let given = CameraParameters {
@@ -37,5 +37,5 @@ pub fn assumed_camera(size: [u32; 2], focal_px: Option<f64>) -> Result<Calibrate
         translation: DVec3::ZERO,
     };
     CalibratedCamera::new("photograph", &given)
-        .map_err(|problem| CaptureError::unfit("the photograph", problem, "give another"))
+        .map_err(|problem| UnfitFace::new("the photograph", problem, "give another"))
 }

@@ -1,7 +1,7 @@
 //! A drawing as pixels: what is nearer to a mark than half a pixel is covered by it.
 
-use toile_view::image::{Image, Size};
-use toile_view::text::{TextSize, draw};
+use crate::image::{Image, Size};
+use crate::text::{TextSize, draw};
 
 use super::{Anchor, BLACK, Colour, Drawing, Mark};
 

@@ -4,12 +4,11 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use serde::Serialize;
+use toile_cli::arguments::{Printing, count};
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::terminal::{self, Paint, Tone};
 use toile_perf::ansur::{self, BodyStudy, MeasureErrors, Survey};
-
-use crate::arguments::{Printing, count};
-use crate::exit::AppError;
-use crate::report::Document;
-use crate::terminal::{self, Paint, Tone};
 
 /// Most people of a file that are built: more than any survey has.
 const MAX_PEOPLE: u64 = 100_000;

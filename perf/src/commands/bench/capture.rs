@@ -3,14 +3,13 @@
 use std::path::PathBuf;
 
 use serde::Serialize;
+use toile_cli::arguments::{Printing, count};
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::output::OutputFolder;
+use toile_cli::terminal;
 use toile_perf::capture::flow::{self, FABRIC_GOAL, FlowCase, FlowRow, GOALS};
 use toile_perf::capture::sheet::Sheet;
-
-use crate::arguments::{Printing, count};
-use crate::exit::AppError;
-use crate::output::OutputFolder;
-use crate::report::Document;
-use crate::terminal;
 
 /// Follow a cloth whose motion is known before virtual cameras, and say how far off it is found.
 ///

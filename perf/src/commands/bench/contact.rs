@@ -1,15 +1,15 @@
 //! `toile bench contact`: cloth against itself, other cloth and the skin, with its targets.
 
+use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::output::OutputFolder;
+use toile_cli::picture::write_png;
+use toile_cli::terminal::{self, Words};
 use toile_perf::contact::{self, OutfitPicture};
-
-use crate::exit::AppError;
-use crate::output::OutputFolder;
-use crate::pictures::write_png;
-use crate::report::Document;
-use crate::terminal::{self, Words};
 
 /// Measure contact of cloth with itself, with other cloth and with the skin, against its targets.
 ///
@@ -73,23 +73,19 @@ fn draw(folder: &Path, json: bool) -> Result<(), AppError> {
     let words = Words::new(json);
     let mut out = OutputFolder::prepare(folder)?;
     let mut pictures = Vec::new();
-    contact::pictures::<AppError>(&mut |picture| {
+    let drawn = contact::pictures::<Box<dyn Error>>(&mut |picture| {
         let file = picture.file();
         words.print_line(&file);
         write_png(&mut out, &file, &picture.image)?;
         pictures.push(DrawnOutfit { file, picture });
         Ok(())
-    })?;
+    });
+    // An error of an output file keeps its exit code; any other is a fault.
+    drawn.map_err(|e| e.downcast::<AppError>().map_or_else(AppError::internal, |own| *own))?;
     out.commit()?;
     if json {
         return terminal::print_json(&Document::new("bench-contact-pictures", DrawnOutfits { pictures }));
     }
     let row = |drawn: &DrawnOutfit| format!("{}: {}\n", folder.join(&drawn.file).display(), drawn.picture.words());
     terminal::print(&pictures.iter().map(row).collect::<String>())
-}
-
-impl From<contact::ContactError> for AppError {
-    fn from(error: contact::ContactError) -> Self {
-        Self::internal(error)
-    }
 }

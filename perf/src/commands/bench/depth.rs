@@ -1,10 +1,9 @@
 //! `toile bench depth`: from a depth frame to the shopper's clean points.
 
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::terminal::{self, Words};
 use toile_perf::depth;
-
-use crate::exit::AppError;
-use crate::report::Document;
-use crate::terminal::{self, Words};
 
 /// Time every stage from a depth frame to the shopper's clean points, with the errors of the same run.
 ///

@@ -5,16 +5,15 @@ use std::path::PathBuf;
 use serde::Serialize;
 use toile_assets::fabric::Fabric;
 use toile_assets::put_line;
+use toile_cli::arguments::quality;
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::output::OutputFolder;
+use toile_cli::picture::write_png;
+use toile_cli::terminal::{self, Words};
 use toile_engine::cloth::Quality;
 use toile_perf::drape::{CusickRow, SPACINGS_MM, cusick};
 use toile_view::contact_sheet::contact_sheet;
-
-use crate::arguments::quality;
-use crate::exit::AppError;
-use crate::output::OutputFolder;
-use crate::pictures::write_png;
-use crate::report::Document;
-use crate::terminal::{self, Words};
 
 /// Drape fabrics over Cusick's disc, at 20, 10 and 5 mm.
 ///

@@ -2,11 +2,10 @@
 
 use std::path::PathBuf;
 
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::terminal::{self, Words};
 use toile_perf::filters::{self, FiltersError};
-
-use crate::exit::AppError;
-use crate::report::Document;
-use crate::terminal::{self, Words};
 
 /// Measure jitter, lag and overshoot of the filters of joints, and the slide of feet.
 ///

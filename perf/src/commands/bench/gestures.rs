@@ -5,13 +5,13 @@ use std::time::Instant;
 
 use clap::value_parser;
 use toile_assets::numeric::statistics::median_of;
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::terminal::{self, Words};
 use toile_perf::gestures::{Act, GestureConditions, GestureCount, GestureStudy, held_up, sequence};
 use toile_track::gesture::{Gestures, HandSegmenter};
 
 use super::gestures_report::GesturesReport;
-use crate::exit::AppError;
-use crate::report::Document;
-use crate::terminal::{self, Words};
 
 /// Most sequences of a cell: 70 cells of a millisecond each make it a quarter of an hour.
 const MAX_SEQUENCES: i64 = 10_000;

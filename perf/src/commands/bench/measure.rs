@@ -6,24 +6,23 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use serde::Serialize;
 use toile_assets::body::Sex;
+use toile_cli::arguments::{Printing, count};
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::output::OutputFolder;
+use toile_cli::picture::write_png;
+use toile_cli::terminal::{self, Paint, Tone};
 use toile_perf::ansur::Survey;
 use toile_perf::measuring::{
     self, CrossedMeasure, Family, MeasuredPerson, MeasuringAgreement, MeasuringOptions, MeasuringStudy, Sensor,
     StatedDecile, crossed, reliability,
 };
-use toile_perf::plot::axis::Axis;
-use toile_perf::plot::chart::{Chart, Series, SeriesStyle};
-use toile_perf::plot::svg;
-use toile_perf::plot::{BLACK, SERIES_COLOURS};
 use toile_view::contact_sheet::contact_sheet;
 use toile_view::image::Image;
-
-use crate::arguments::{Printing, count};
-use crate::exit::AppError;
-use crate::output::OutputFolder;
-use crate::pictures::write_png;
-use crate::report::Document;
-use crate::terminal::{self, Paint, Tone};
+use toile_view::plot::axis::Axis;
+use toile_view::plot::chart::{Chart, Series, SeriesStyle};
+use toile_view::plot::svg;
+use toile_view::plot::{BLACK, SERIES_COLOURS};
 
 /// Most people of a file that are measured: more than any survey has.
 const MAX_PEOPLE: u64 = 100_000;

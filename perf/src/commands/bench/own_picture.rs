@@ -3,15 +3,14 @@
 use std::path::PathBuf;
 
 use serde::Serialize;
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::output::OutputFolder;
+use toile_cli::picture::write_png;
+use toile_cli::terminal::{self, Words};
 use toile_perf::own_picture::{self, OwnPictureError, OwnPictureTable};
 use toile_pose::files;
 use toile_view::image::Image;
-
-use crate::exit::AppError;
-use crate::output::OutputFolder;
-use crate::pictures::write_png;
-use crate::report::Document;
-use crate::terminal::{self, Words};
 
 /// Measure how far the garment on a shopper's own picture is from where it would really be.
 ///

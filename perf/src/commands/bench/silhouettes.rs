@@ -3,17 +3,16 @@
 use std::path::PathBuf;
 
 use serde::Serialize;
+use toile_cli::arguments::{Printing, count};
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::output::OutputFolder;
+use toile_cli::terminal;
 use toile_perf::ansur::Survey;
 use toile_perf::capture::followed::{FollowStudy, follow_study};
 use toile_perf::capture::silhouettes::{
     GIRTH_MM, SilhouetteStudy, SilhouetteStudyError, SilhouetteStudyOptions, study,
 };
-
-use crate::arguments::{Printing, count};
-use crate::exit::AppError;
-use crate::output::OutputFolder;
-use crate::report::Document;
-use crate::terminal;
 
 /// Measure synthetic people by their silhouettes, and compare with their true measures.
 ///

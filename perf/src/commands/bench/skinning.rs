@@ -3,18 +3,19 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use toile_cli::arguments::count;
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::output::OutputFolder;
+use toile_cli::picture::write_png;
+use toile_cli::terminal::{self, Paint, Words};
 use toile_engine::lanes::Width;
 use toile_engine::skin::Blend;
 use toile_fitting::scene::yardstick;
 use toile_perf::skinning::{self, SkinningError, SkinningOptions, SkinningSubject};
 
 use super::skinning_report::{self, SkinningReport};
-use crate::arguments::{count, lanes};
-use crate::exit::AppError;
-use crate::output::OutputFolder;
-use crate::pictures::write_png;
-use crate::report::Document;
-use crate::terminal::{self, Paint, Words};
+use crate::commands::arguments::lanes;
 
 /// Most vertices: 4 million, about 1 GB of arrays.
 const MAX_VERTS: u64 = 1 << 22;
@@ -131,7 +132,7 @@ fn refused(error: SkinningError) -> AppError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arguments::parsed;
+    use crate::commands::arguments::parsed;
 
     fn options(line: &str) -> SkinningOptions {
         parsed::<SkinningArgs>(line).unwrap().options()

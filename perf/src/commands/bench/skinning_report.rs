@@ -2,12 +2,11 @@
 
 use serde::Serialize;
 use toile_assets::put_line;
+use toile_cli::terminal::{Paint, Tone};
 use toile_engine::skin::Blend;
 use toile_fitting::scene::yardstick;
 use toile_perf::skinning::table::SkinningRow;
 use toile_perf::skinning::{Skinning, Timing};
-
-use crate::terminal::{Paint, Tone};
 
 /// The body of `toile bench skinning`.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -6,24 +6,25 @@ use clap::builder::PossibleValuesParser;
 use clap::value_parser;
 use toile_assets::scene::skirt::{Motion, Stretch};
 use toile_assets::wardrobe;
+use toile_cli::arguments::{count, one_of, quality};
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::heap;
+use toile_cli::output::OutputFolder;
+use toile_cli::terminal::{self, Paint, Words};
 use toile_engine::cloth::Quality;
 use toile_engine::lanes::Width;
 use toile_fitting::heap::HeapProbe;
 use toile_gpu::backend::Backend;
 use toile_perf::crossover;
-use toile_perf::plot::raster;
 use toile_perf::skirt::options::{MAX_GARMENTS, SkirtMesh, SkirtOptions};
 use toile_perf::skirt::{self, SkirtError, table};
 use toile_perf::turns::{self, TurnCase, TurnsError};
 use toile_perf::worn::{self, WornError, WornOptions};
+use toile_view::plot::raster;
 
 use super::{backend, skirt_summary, worn_summary};
-use crate::arguments::{BackendArg, count, lanes, one_of, quality};
-use crate::exit::AppError;
-use crate::heap;
-use crate::output::OutputFolder;
-use crate::report::Document;
-use crate::terminal::{self, Paint, Words};
+use crate::commands::arguments::{BackendArg, lanes};
 
 /// Most vertices: 512 a side.
 const MAX_VERTS: u64 = 1 << 18;
@@ -310,7 +311,7 @@ fn not_worn(error: WornError) -> AppError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arguments::parsed;
+    use crate::commands::arguments::parsed;
 
     fn options(line: &str) -> Result<SkirtOptions, AppError> {
         parsed::<SkirtArgs>(line).unwrap().options()

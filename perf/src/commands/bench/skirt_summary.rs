@@ -1,9 +1,8 @@
 //! `toile bench skirt` in words.
 
 use toile_assets::put_line;
+use toile_cli::terminal::{Paint, Tone};
 use toile_perf::skirt::report::SkirtReport;
-
-use crate::terminal::{Paint, Tone};
 
 /// The summary of a run of the skirt: no time without the error reached at it.
 pub fn summary(report: &SkirtReport, paint: Paint) -> String {

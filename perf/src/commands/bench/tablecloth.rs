@@ -5,14 +5,13 @@ use std::path::PathBuf;
 use serde::Serialize;
 use toile_assets::fabric::Fabric;
 use toile_assets::put_line;
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::output::OutputFolder;
+use toile_cli::picture::write_png;
+use toile_cli::terminal::{self, Words};
 use toile_perf::drape::{TableclothStudy, VARIANTS, tablecloth};
 use toile_view::contact_sheet::contact_sheet;
-
-use crate::exit::AppError;
-use crate::output::OutputFolder;
-use crate::pictures::write_png;
-use crate::report::Document;
-use crate::terminal::{self, Words};
 
 /// Lay a tablecloth over a rectangular table at 5, 2, 1, .5 and .4 cm, each held against the finest.
 ///

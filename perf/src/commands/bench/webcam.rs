@@ -3,13 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use clap::value_parser;
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::output::{Inputs, OutputFile};
+use toile_cli::terminal::{self, Words};
 use toile_perf::webcam::{self, WebcamError};
 use toile_pose::files;
-
-use crate::exit::AppError;
-use crate::output::{Inputs, OutputFile};
-use crate::report::Document;
-use crate::terminal::{self, Words};
 
 /// Measure joints by a webcam: degrees from the truth, beside those of depth, and the time of a picture.
 ///

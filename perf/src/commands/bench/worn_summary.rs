@@ -1,9 +1,8 @@
 //! `toile bench skirt --garment` in words.
 
 use toile_assets::put_line;
+use toile_cli::terminal::{Paint, Tone};
 use toile_perf::worn::WornReport;
-
-use crate::terminal::{Paint, Tone};
 
 /// The summary of a run of garments on a mannequin: no time without the error reached at it.
 pub fn summary(report: &WornReport, paint: Paint) -> String {

@@ -2,11 +2,11 @@
 
 use toile_assets::body::Body;
 use toile_assets::wardrobe::own;
+use toile_cli::exit::AppError;
 use toile_fitting::dress::choice::{Choice, Worn};
 use toile_fitting::dress::measured::Measured;
 use toile_fitting::dress::outfit::Outfit;
 
-use crate::exit::AppError;
 use crate::report::Recommendation;
 
 /// Sizes and bakes every garment, and tucks in those that are named.

@@ -2,9 +2,9 @@
 
 use std::fs;
 
-use toile::exit::{Code, install_panic_hook};
-use toile::guarded;
-use toile::output::OutputFolder;
+use toile_cli::exit::{Code, install_panic_hook};
+use toile_cli::output::OutputFolder;
+use toile_cli::program::guarded;
 
 #[test]
 fn a_panic_on_any_thread_exits_70_and_takes_unfinished_files_back() {
