@@ -19,6 +19,7 @@ pub mod body;
 
 pub mod export;
 pub mod import;
+pub mod people;
 pub mod rig;
 pub mod scene;
 pub mod sizes;

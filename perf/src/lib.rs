@@ -7,14 +7,11 @@
 // Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
 pub mod agreement;
 pub mod backend;
-pub mod crossings;
 pub mod depth;
 pub mod distance;
 pub mod filters;
 pub mod gestures;
 pub mod oracle;
-pub mod people;
-pub mod plot;
 mod random;
 pub mod reliability;
 

@@ -1,8 +1,6 @@
 //! Bodies built to the measures of people of the survey: a small version of `toile bench body`.
 
-#[path = "../../tests/src/recordings.rs"]
-mod recordings;
-
+use crate::recordings;
 use toile_perf::ansur::{Survey, study};
 
 #[test]

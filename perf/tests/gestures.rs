@@ -1,8 +1,6 @@
 //! Gestures held against simulated shoppers, laws that they must obey, and what real sensors recorded.
 
-#[path = "../../tests/src/recordings.rs"]
-mod recordings;
-
+use crate::recordings;
 use glam::{Quat, Vec3};
 use toile_base::frame::{DepthFrame, HandState, Joints, TrackedJoint};
 use toile_base::skeleton::Joint;

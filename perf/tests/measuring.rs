@@ -1,11 +1,9 @@
 //! A small study of measuring: the whole way from the survey to the table.
 
-#[path = "../../tests/src/recordings.rs"]
-mod recordings;
-
 use std::path::{Path, PathBuf};
 
-use toile_base::numeric::random::SplitMix64;
+use crate::recordings;
+use toile_assets::numeric::random::SplitMix64;
 use toile_perf::ansur::Survey;
 use toile_perf::measuring::{
     Family, MeasuredPerson, MeasuringAgreement, MeasuringOptions, MeasuringStudy, Moment, PersonSurfaces, Sensor,

@@ -1,8 +1,6 @@
 //! Whether the probabilities that are stated of sizes are true, of real women.
 
-#[path = "../../tests/src/recordings.rs"]
-mod recordings;
-
+use crate::recordings;
 use toile_perf::reliability::{ansur, of_dress};
 
 /// Of the sizes said to be right with some probability that share is right, on real women measured with errors.

@@ -1,8 +1,6 @@
 //! A small study of bodies from silhouettes: a woman and a man of the other family, before four cameras.
 
-#[path = "../../tests/src/recordings.rs"]
-mod recordings;
-
+use crate::recordings;
 use toile_perf::ansur::Survey;
 use toile_perf::capture::followed::follow_study;
 use toile_perf::capture::silhouettes::{SilhouetteStudyOptions, study};

@@ -9,7 +9,7 @@ use toile_tests::tree::{self, FLOORS};
 
 /// Files that may hold unsafe code, each with its reason.
 const UNSAFE_FILES: [(&str, &str); 40] = [
-    ("engine/app/src/heap.rs", "the program's allocator counts, for which it has to implement an unsafe trait"),
+    ("engine/cli/src/heap.rs", "the programs' allocator counts, for which it has to implement an unsafe trait"),
     ("engine/c/src/border.rs", "what C hands over is read and written"),
     ("engine/c/src/failure.rs", "a function that C calls by its name"),
     ("engine/c/src/version.rs", "the same"),

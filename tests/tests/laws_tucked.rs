@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3A};
 use toile_engine::cloth::layers::tuck_in;
 use toile_engine::frame::Frame;
 use toile_engine::surface::SurfaceMesh;
-use toile_perf::crossings::CrossingTest;
+use toile_fitting::crossings::CrossingTest;
 use toile_tests::dressed;
 
 /// Edges and faces that may pass through each other, of some 30,000 edges: about a hundred do, all at the waistband's edge, over

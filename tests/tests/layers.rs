@@ -69,54 +69,14 @@ fn crates_import_only_the_floors_below() {
     assert!(wrong.is_empty(), "imports that point up:\n{}", wrong.join("\n"));
 }
 
-/// The benchmarks' crate: evidence for developers, nothing that the running program needs.
+/// The benchmarks' crate: evidence for developers, nothing that another crate needs.
 const BENCHMARKS: &str = "toile-perf";
 
-/// The commands that measure the engine, files and folders, the count of crossings that reports of what is played have, and the
-/// loops of a fabric, which are measured on its law and plotted.
-const BENCH_COMMANDS: [&str; 10] = [
-    "bench.rs",
-    "bench/",
-    "colliders.rs",
-    "crossings.rs",
-    "fabric/loops.rs",
-    "latency.rs",
-    "pareto.rs",
-    "soak.rs",
-    "torture.rs",
-    "validate.rs",
-];
-
-/// Whether a file may import the benchmarks: they themselves, the tests, and the program's bench commands.
-fn may_import_benchmarks(place: &str) -> bool {
-    let command = place.strip_prefix("engine/app/src/commands/");
-    let measures =
-        command.is_some_and(|of| BENCH_COMMANDS.iter().any(|c| of == *c || (c.ends_with('/') && of.starts_with(c))));
-    place.starts_with("perf/") || place.starts_with("tests/") || measures
-}
-
 #[test]
-fn only_the_bench_commands_import_the_benchmarks() {
-    let mut found = BTreeSet::new();
-    for (folder, _) in FLOORS {
-        for file in tree::crate_files(folder) {
-            let place = tree::name(&file);
-            let paths = scan::paths(&scan::without_tests(&scan::tokens(&tree::read(&file))));
-            let imports = |path: &NamedPath| path.segments[0].replace('_', "-") == BENCHMARKS;
-            if !may_import_benchmarks(&place) && paths.iter().any(imports) {
-                found.insert(place);
-            }
-        }
-    }
-    exceptions::hold("imports_of_the_benchmarks", &found);
-}
-
-#[test]
-fn only_the_program_and_the_tests_depend_on_the_benchmarks() {
-    for (folder, name) in FLOORS {
+fn only_perf_and_tests_import_the_benchmarks() {
+    for (folder, name) in FLOORS.iter().filter(|(_, name)| ![BENCHMARKS, "toile-tests"].contains(name)) {
         let table: toml::Table = tree::read(&tree::root().join(folder).join("Cargo.toml")).parse().unwrap();
-        let depends = dependencies(&table).iter().any(|d| d == BENCHMARKS);
-        assert!(!depends || ["toile", "toile-tests"].contains(name), "{name} depends on the benchmarks");
+        assert!(!dependencies(&table).iter().any(|d| d == BENCHMARKS), "{name} depends on the benchmarks");
     }
 }
 
@@ -314,18 +274,6 @@ mod the_law_itself {
             ("made", "use crate::b::B;"),
         ]);
         assert_eq!(arrows.len(), 1);
-    }
-
-    #[test]
-    fn imports_of_the_benchmarks_are_allowed_in_bench_commands_alone() {
-        for fine in
-            ["engine/app/src/commands/bench/skirt.rs", "engine/app/src/commands/soak.rs", "tests/tests/skirt.rs"]
-        {
-            assert!(may_import_benchmarks(fine), "{fine}");
-        }
-        for wrong in ["engine/kiosk/src/service.rs", "engine/app/src/commands/run.rs", "engine/app/src/soak.rs"] {
-            assert!(!may_import_benchmarks(wrong), "{wrong}");
-        }
     }
 
     #[test]

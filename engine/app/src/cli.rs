@@ -3,14 +3,16 @@
 //! Each command's own arguments stand beside its work in [`crate::commands`].
 
 use std::ffi::OsString;
+use std::process::ExitCode;
 
-use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
+use toile_cli::exit::AppError;
+use toile_cli::program;
+use toile_cli::replay::ReplayArgs;
 
+use crate::commands;
 use crate::commands::bake::BakeArgs;
-use crate::commands::bench::BenchCommand;
 use crate::commands::body::BodyArgs;
-use crate::commands::capture::CaptureCommand;
 use crate::commands::catalogue::CatalogueCommand;
 use crate::commands::collage::CollageArgs;
 use crate::commands::completions::CompletionsArgs;
@@ -18,21 +20,14 @@ use crate::commands::convert::ConvertArgs;
 use crate::commands::doctor::DoctorArgs;
 use crate::commands::fabric::FabricCommand;
 use crate::commands::kiosk::KioskArgs;
-use crate::commands::latency::LatencyArgs;
 use crate::commands::live::LiveArgs;
 use crate::commands::measure::MeasureArgs;
-use crate::commands::pareto::ParetoArgs;
 use crate::commands::plan::PlanArgs;
+use crate::commands::programs::{self, OTHER_COMMANDS, OtherCommand};
 use crate::commands::record::RecordArgs;
-use crate::commands::replay::ReplayArgs;
 use crate::commands::run::RunArgs;
-use crate::commands::soak::SoakArgs;
-use crate::commands::study::StudyArgs;
 use crate::commands::tailor::TailorArgs;
-use crate::commands::torture::TortureArgs;
 use crate::commands::try_on::TryOnArgs;
-use crate::commands::validate::ValidateArgs;
-use crate::exit::AppError;
 
 /// A real-time virtual fitting room: measures a shopper and dresses a body of their size.
 ///
@@ -44,6 +39,7 @@ use crate::exit::AppError;
 #[command(
     name = "toile",
     version,
+    subcommands = OTHER_COMMANDS.iter().map(OtherCommand::grammar),
     override_usage = "toile [OPTIONS OF TRY-ON]\n       toile <COMMAND>",
     after_help = "Example: dress the shopper of the embedded session, and look at out/\n  toile"
 )]
@@ -68,41 +64,61 @@ pub(crate) enum Command {
     Fabric(FabricCommand),
     Collage(CollageArgs),
     Body(BodyArgs),
-    #[command(subcommand)]
-    Capture(CaptureCommand),
     Run(RunArgs),
     Doctor(DoctorArgs),
-    #[command(subcommand)]
-    Bench(BenchCommand),
-    Validate(ValidateArgs),
-    Pareto(ParetoArgs),
-    Torture(TortureArgs),
-    Latency(LatencyArgs),
     Plan(PlanArgs),
-    Study(StudyArgs),
     Replay(ReplayArgs),
-    Soak(SoakArgs),
     Kiosk(KioskArgs),
     Completions(CompletionsArgs),
-    /// Help or version: text to print.
-    #[command(skip)]
-    Print(String),
 }
 
-/// All commands with their options and help, for the manual and for completions.
+/// All commands with their options and help, for the manual and for completions; those of other programs by name.
 pub fn command() -> clap::Command {
     CommandLine::command()
 }
 
-/// Parses a command line, the program's name first.
-///
-/// # Errors
-/// [`AppError::Usage`] with one sentence.
-pub(crate) fn parse(args: Vec<OsString>) -> Result<Command, AppError> {
-    let args = with_default_command(args);
-    match CommandLine::try_parse_from(&args) {
-        Ok(line) => Ok(line.command),
-        Err(error) => help_or_error(&error, &args),
+/// Runs one command line, the program's name first, and returns the exit code of the process.
+pub fn run(args: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let args = with_default_command(args.into_iter().collect());
+    if let Some((other, args)) = of_another_program(&args) {
+        let handed_over = || programs::hand_over(other.program, &args).map(|never| match never {});
+        return program::guarded(handed_over).into();
+    }
+    program::run::<CommandLine>(args, |line| dispatch(&line.command))
+}
+
+/// The command of another program that a line names, and the line that this program understands: `help bench` is
+/// `bench --help`.
+fn of_another_program(args: &[OsString]) -> Option<(&'static OtherCommand, Vec<OsString>)> {
+    let named = |at: usize| args.get(at).and_then(|name| OtherCommand::named(name.to_str()?));
+    if let Some(other) = named(1) {
+        return Some((other, other.arguments(&args[1..])));
+    }
+    let helped = named(2).filter(|_| args[1] == "help")?;
+    let args: Vec<OsString> = args[2..].iter().cloned().chain(["--help".into()]).collect();
+    Some((helped, helped.arguments(&args)))
+}
+
+fn dispatch(asked: &Command) -> Result<(), AppError> {
+    match asked {
+        Command::TryOn(args) => commands::try_on::run(args),
+        Command::Measure(args) => commands::measure::run(args),
+        Command::Record(args) => commands::record::run(args),
+        Command::Live(args) => commands::live::run(args),
+        Command::Convert(args) => commands::convert::run(args),
+        Command::Bake(args) => commands::bake::run(args),
+        Command::Tailor(args) => commands::tailor::run(args),
+        Command::Catalogue(command) => commands::catalogue::run(command),
+        Command::Fabric(command) => commands::fabric::run(command),
+        Command::Collage(args) => commands::collage::run(args),
+        Command::Body(args) if args.colliders => commands::colliders::run(args),
+        Command::Body(args) => commands::body::run(args),
+        Command::Run(args) => commands::run::run(args),
+        Command::Doctor(args) => commands::doctor::run(args),
+        Command::Plan(args) => commands::plan::run(args),
+        Command::Replay(args) => commands::replay::run(args),
+        Command::Kiosk(args) => commands::kiosk::run(args),
+        Command::Completions(args) => commands::completions::run(args, command()),
     }
 }
 
@@ -120,36 +136,6 @@ fn with_default_command(mut args: Vec<OsString>) -> Vec<OsString> {
         _ => args.insert(1, "try-on".into()),
     }
     args
-}
-
-/// Help and version become text to print; a real error becomes one sentence that ends with where help is.
-fn help_or_error(error: &clap::Error, args: &[OsString]) -> Result<Command, AppError> {
-    if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
-        let colour = crate::terminal::Paint::for_stdout().is_on();
-        let text = error.render();
-        return Ok(Command::Print(if colour { text.ansi().to_string() } else { text.to_string() }));
-    }
-    let known = |arg: &&OsString| command().get_subcommands().any(|c| **arg == c.get_name());
-    let place = args.get(1).filter(known).map_or_else(String::new, |name| format!(" {}", name.to_string_lossy()));
-    Err(AppError::Usage(sentence(error, &place)))
-}
-
-fn sentence(error: &clap::Error, place: &str) -> String {
-    if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
-        return format!("`toile{place}` needs a command; see `toile{place} --help`");
-    }
-    let text = error.render().to_string();
-    let parts = text.lines().map(str::trim).take_while(|line| !line.starts_with("Usage:"));
-    let parts: Vec<&str> = parts.filter(|line| !line.is_empty() && !line.starts_with("For more information")).collect();
-    let (what, tips) = parts.split_first().unwrap_or((&"the command line was not understood", &[]));
-    let what = what.trim_start_matches("error: ");
-    // A list of missing arguments ends its first line with a colon; any other lines are tips.
-    let tips = match (tips, what.ends_with(':')) {
-        ([], _) => String::new(),
-        (tips, true) => format!(" {}", tips.join(", ")),
-        (tips, false) => format!(" ({})", tips.join("; ").replace("tip: ", "")),
-    };
-    format!("{what}{tips}; see `toile{place} --help`")
 }
 
 #[cfg(test)]

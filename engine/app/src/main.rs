@@ -2,13 +2,13 @@
 
 use std::process::ExitCode;
 
-use toile::heap::Counted;
+use toile_cli::heap::Counted;
 
-/// The system's allocator, counted: `toile bench` and `toile soak` report allocations and memory as they happen in the
-/// program that is shipped. A frame allocates nothing, so counting costs it nothing.
+/// The system's allocator, counted: reports tell allocations and memory as they happen in the program that is shipped.
+/// A frame allocates nothing, so counting costs it nothing.
 #[global_allocator]
 static ALLOCATOR: Counted = Counted;
 
 fn main() -> ExitCode {
-    toile::run(std::env::args_os())
+    toile::cli::run(std::env::args_os())
 }

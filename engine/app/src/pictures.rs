@@ -6,7 +6,11 @@ use std::io::BufWriter;
 use std::ops::RangeInclusive;
 
 use glam::Vec3;
-use toile_base::limits::STEP_HZ;
+use toile_assets::limits::STEP_HZ;
+use toile_cli::exit::AppError;
+use toile_cli::output::OutputFolder;
+use toile_cli::picture::write_png;
+use toile_cli::terminal::Progress;
 use toile_engine::frame::Snapshot;
 use toile_engine::lines::Line;
 use toile_engine::skin::Posed;
@@ -17,10 +21,7 @@ use toile_view::image::{Animation, Image, Size};
 use toile_view::scene::{Bounds, Camera};
 use toile_view::trace::TraceQuality;
 
-use crate::exit::AppError;
-use crate::output::OutputFolder;
 use crate::renderer::PictureRenderer;
-use crate::terminal::Progress;
 
 /// Rows of a still: enough to see a hem's folds, few enough that three take a few seconds.
 pub const STILL_ROWS: u16 = 800;
@@ -210,13 +211,6 @@ fn contact_sheet(out: &mut OutputFolder, kept: &[(Image, u64)]) -> Result<(), Ap
         picks.iter().map(|&i| format!("{:.1} s", kept[i].1 as f64 / f64::from(STEP_HZ))).collect();
     let captions: Vec<&str> = captions.iter().map(String::as_str).collect();
     write_png(out, "contact-sheet.png", &contact_sheet::contact_sheet(&images, SHEET_COLUMNS, &captions))
-}
-
-/// Writes an image as a file of the output folder.
-pub fn write_png(out: &mut OutputFolder, name: &str, image: &Image) -> Result<(), AppError> {
-    let mut bytes = Vec::new();
-    image.write_png(&mut bytes).map_err(AppError::internal)?;
-    Ok(out.write(name, &bytes)?)
 }
 
 #[cfg(test)]

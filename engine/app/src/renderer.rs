@@ -4,14 +4,13 @@
 //! Budget: a second for a still by rays, milliseconds on a GPU.
 //! Thread: the main thread; rays use every core.
 
-use toile_base::garment::Garment;
+use toile_assets::garment::Garment;
+use toile_cli::exit::AppError;
 use toile_engine::lines::Line;
 use toile_view::figure::Figure;
 use toile_view::image::{Image, Size};
 use toile_view::scene::{Bounds, Camera, Scene, Surface};
 use toile_view::trace::{TraceQuality, TracedScene};
-
-use crate::exit::AppError;
 
 #[cfg(feature = "view")]
 mod gpu;

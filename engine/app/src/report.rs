@@ -8,11 +8,10 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 use toile_assets::adapt::MeshReport;
+use toile_cli::document::{DefinedMeasure, MeasuredLength};
 use toile_fitting::scene::StepTimes;
 use toile_fitting::scene::contact::ContactReport;
 use toile_fitting::wearing::PosePulls;
-
-use crate::machine::Machine;
 
 mod body;
 mod colliders;
@@ -22,41 +21,6 @@ mod run;
 pub use body::{BodyReport, Influences, JointFound, Named, SurfaceReport};
 pub use colliders::Followed;
 pub use run::{KineticEnergy, RunGarment, RunPenetration, RunReport};
-
-/// What every object carries, around what one command has to say.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Document<T> {
-    /// Name and version of the object's format: `toile.<command>/1`.
-    pub schema: String,
-    /// Version of the program.
-    pub version: &'static str,
-    /// The machine that the figures were measured on.
-    pub machine: Machine,
-    /// The command's own keys, on the same level.
-    #[serde(flatten)]
-    pub body: T,
-}
-
-impl<T> Document<T> {
-    /// The object of a command, with the machine as it is now.
-    pub fn new(command: &str, body: T) -> Self {
-        Self {
-            schema: format!("toile.{command}/1"),
-            version: env!("CARGO_PKG_VERSION"),
-            machine: Machine::here(),
-            body,
-        }
-    }
-}
-
-/// One measure of the body.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct MeasuredLength {
-    /// The value (mm).
-    pub value: f64,
-    /// Standard uncertainty (mm).
-    pub sigma: f64,
-}
 
 /// The measures of one shopper.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
@@ -309,19 +273,6 @@ pub struct MethodMeasures {
     pub measures: Vec<DefinedMeasure>,
 }
 
-/// A measure with its definition.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct DefinedMeasure {
-    /// Name of the measure.
-    pub name: &'static str,
-    /// Where the tape lies (EN 13402-1, ISO 8559-1).
-    pub definition: &'static str,
-    /// The value (mm).
-    pub value: f64,
-    /// Standard deviation (mm).
-    pub sigma: f64,
-}
-
 /// How well a body fits the depth.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct FittedBody {
@@ -367,13 +318,10 @@ pub struct ConvertReport {
     pub files: Vec<PathBuf>,
 }
 
-/// A 64-bit state hash as the reports write it.
-pub fn hash_text(hash: u64) -> String {
-    format!("{hash:016x}")
-}
-
 #[cfg(test)]
 mod tests {
+    use toile_cli::document::{Document, hash_text};
+
     use super::*;
 
     fn try_on() -> TryOn {

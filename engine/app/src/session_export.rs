@@ -7,12 +7,11 @@ use std::path::PathBuf;
 use glam::{Affine3A, Vec3};
 use toile_assets::export::session::{ExportError, ExportFrame};
 use toile_assets::export::{ExportFormat, ExportPlan, FrameRate, MovingPart, SessionExport};
-use toile_base::skeleton::BONES;
+use toile_assets::skeleton::BONES;
+use toile_cli::exit::AppError;
+use toile_cli::output::OutputFolder;
 use toile_engine::body::palette;
 use toile_engine::frame::{Frame, Snapshot};
-
-use crate::exit::AppError;
-use crate::output::OutputFolder;
 
 /// Promises all files of a plan and opens them; they get their names when the folder is committed.
 ///

@@ -1,11 +1,11 @@
 //! The reports as people read them: what `--json` says, in words and tables.
 
 use crate::report::{
-    BodyReport, MeasureReport, MeasuredLength, PhysicsReport, Recommendation, RunReport, SessionReport,
-    ShopperMeasures, TryOn,
+    BodyReport, MeasureReport, PhysicsReport, Recommendation, RunReport, SessionReport, ShopperMeasures, TryOn,
 };
-use crate::terminal::{Paint, Tone};
 use toile_assets::put_line;
+use toile_cli::document::MeasuredLength;
+use toile_cli::terminal::{Paint, Tone};
 use toile_engine::frame::{DRESS_STEPS, SETTLE_STEPS};
 use toile_fitting::scene::contact::ContactReport;
 use toile_fitting::wearing::{PosePulls, Pull, ZonePull};

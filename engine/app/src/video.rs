@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use toile_base::limits::STEP_HZ;
+use toile_assets::limits::STEP_HZ;
+use toile_cli::exit::AppError;
+use toile_cli::terminal::Progress;
 use toile_engine::frame::Snapshot;
 use toile_engine::lines::Line;
 use toile_view::drawn_frame::DrawnFrame;
@@ -10,9 +12,7 @@ use toile_view::image::Size;
 use toile_view::trace::TraceQuality;
 use toile_view::video::VideoWriter;
 
-use crate::exit::AppError;
 use crate::renderer::PictureRenderer;
-use crate::terminal::Progress;
 
 /// Width and height of a frame: a display that stands upright, at half its resolution.
 const SIZE: Size = Size::new(540, 960);

@@ -1,12 +1,10 @@
 //! Bad input: one sentence that says what, where and the cure, the exit code of the contract, and nothing left behind.
 
-mod common;
-mod samples;
-
 use std::fs::{self, File};
 
-use common::{Scratch, refusal};
-use samples::embedded_session;
+use crate::common::{Scratch, refusal};
+use crate::samples;
+use crate::samples::embedded_session;
 
 /// Runs a command that must be refused with exit code `code`: one line on stderr with all `words` in it, nothing on
 /// stdout, no file or folder more or less than before.

@@ -1,10 +1,8 @@
 //! `toile bake` as a user or a script meets it.
 
-mod common;
-
 use std::fs;
 
-use common::{Scratch, sentence, stdout};
+use crate::common::{Scratch, sentence, stdout};
 use serde_json::Value;
 
 #[test]

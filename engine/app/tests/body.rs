@@ -1,13 +1,10 @@
 //! `toile body`, and `toile try-on --body`, as a script meets them.
 
-mod common;
-#[path = "../../../tests/src/recordings.rs"]
-mod recordings;
-
 use std::fs;
 use std::path::PathBuf;
 
-use common::Scratch;
+use crate::common::Scratch;
+use crate::recordings;
 
 /// The MakeHuman folder of the shared data; nothing, with a word, where it is not there and need not be.
 fn makehuman() -> Option<PathBuf> {

@@ -1,20 +1,18 @@
 //! Live cameras as a user meets them, with a library that plays a recording in a Kinect's place (Debian's freenect).
 
-mod common;
-mod kinect;
-
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use common::Scratch;
-use kinect::{IMAGES, player, write_recording};
+use crate::common::Scratch;
+use crate::kinect;
+use crate::kinect::{IMAGES, player, write_recording};
 use serde_json::Value;
 use toile_sensors::source::live::CameraKind;
 
 /// Runs a command with the recording in a Kinect's place.
 fn with_kinect(scratch: &Scratch, library: &Path, recording: &Path, args: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_toile"));
+    let mut command = Command::new(crate::PROGRAM);
     command.current_dir(scratch.path()).args(args);
     kinect::play(&mut command, library, recording).output().unwrap()
 }

@@ -1,11 +1,9 @@
 //! `toile catalogue` as a shop meets it, and its packages in a try-on and in the kiosk.
 
-mod common;
-
 use std::fs;
 use std::path::Path;
 
-use common::{Scratch, sentence, stdout};
+use crate::common::{Scratch, sentence, stdout};
 use serde_json::Value;
 
 fn json(scratch: &Scratch, line: &[&str]) -> Value {

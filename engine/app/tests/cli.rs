@@ -1,11 +1,9 @@
 //! The command line as a user or a script meets it: the built program, its streams and its exit codes.
 
-mod common;
-
 use std::fs;
 use std::process::{Command, Output, Stdio};
 
-use common::{Scratch, sentence, stdout};
+use crate::common::{Scratch, sentence, stdout};
 use serde_json::Value;
 
 fn toile(args: &[&str]) -> Output {
@@ -13,14 +11,14 @@ fn toile(args: &[&str]) -> Output {
 }
 
 fn program() -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_toile"));
+    let mut command = Command::new(crate::PROGRAM);
     command.stdin(Stdio::null()).env_remove("RUST_BACKTRACE").current_dir(std::env::temp_dir());
     command
 }
 
 #[test]
 fn help_is_on_stdout_and_ends_with_an_example() {
-    for command in ["", "try-on", "measure", "record", "convert", "bake", "doctor", "bench", "completions"] {
+    for command in ["", "try-on", "measure", "record", "convert", "bake", "doctor", "catalogue", "completions"] {
         let args: Vec<&str> = [command, "--help"].into_iter().filter(|a| !a.is_empty()).collect();
         let output = toile(&args);
         assert_eq!(output.status.code(), Some(0), "{command}");
@@ -41,15 +39,14 @@ fn version_is_the_packages() {
 
 #[test]
 fn a_line_not_understood_exits_2_with_one_sentence() {
-    let lines: [&[&str]; 9] = [
+    let lines: [&[&str]; 8] = [
         &["--bogus"],
         &["try-on", "--garmet", "x"],
         &["mesure", "x"],
         &["measure"],
         &["record", "--out", "x.mcap", "--seconds", "0"],
-        &["bench"],
+        &["catalogue"],
         &["bake"],
-        &["bench", "skinning", "--verts", "0"],
         &["completions", "tcsh"],
     ];
     for line in lines {
@@ -102,83 +99,12 @@ fn doctor_for_people_has_no_colour_in_a_pipe() {
 }
 
 #[test]
-fn bench_skinning_reports_time_and_error_together() {
-    let output = toile(&["bench", "skinning", "--verts", "2000", "--json"]);
-    assert_eq!(output.status.code(), Some(0));
-    assert!(output.stderr.is_empty());
-    let json: Value = serde_json::from_str(&stdout(&output)).expect("stdout is exactly one JSON object");
-    assert_eq!(json["schema"], "toile.bench-skinning/1");
-    assert_eq!(json["verts"], 2000);
-    let number = |key: &str| json[key].as_f64().unwrap_or_else(|| panic!("{key} is no number: {json}"));
-    assert!(number("us") > 0.0 && number("yardstick_us") > 0.0);
-    assert!((number("ns_per_vertex") - number("us") / 2.0).abs() < 1e-6);
-    assert!((0.0..1e-6).contains(&number("max_error_m")), "{json}");
-    assert!(json["machine"]["cpu"].is_string());
-
-    let output = toile(&["bench", "skinning", "--verts", "500"]);
-    assert_eq!(output.status.code(), Some(0));
-    let text = stdout(&output);
-    assert!(text.contains("500 vertices") && text.contains("ns a vertex") && !text.contains('\x1b'), "{text}");
-
-    let output = toile(&["bench", "skinning", "--backend", "gpu", "--dual"]);
-    assert_eq!(output.status.code(), Some(2), "what is reported anyway is no option");
-}
-
-#[test]
-fn bench_skirt_reports_time_and_error_of_the_same_steps() {
-    let output = toile(&["bench", "skirt", "--verts", "256", "--runs", "2", "--steps", "30", "--json"]);
-    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-    assert!(output.stderr.is_empty());
-    let json: Value = serde_json::from_str(&stdout(&output)).expect("stdout is exactly one JSON object");
-    assert_eq!(json["schema"], "toile.bench-skirt/1");
-    let contract = [
-        "/step_us/p50",
-        "/step_us/p99",
-        "/step_us/p999",
-        "/step_us/max",
-        "/strain/mean",
-        "/strain/p99",
-        "/strain/max",
-        "/penetration_mm/max",
-        "/penetration_mm/fraction",
-        "/allocations_per_step",
-        "/memory_bytes",
-        "/yardstick_us",
-        "/y_ratio",
-        "/substeps",
-        "/lanes",
-        "/hem_winding_wrong",
-        "/kinetic_energy_mj",
-    ];
-    for key in contract {
-        assert!(json.pointer(key).is_some_and(Value::is_number), "{key}: {json}");
-    }
-    assert!(json["stages_us"].is_object() && json["state_hash"].as_str().unwrap().len() == 16);
-    assert_eq!(json["allocations_per_step"], 0.0, "the built program counts its own allocations");
-    assert!(json["memory_bytes"].as_u64().unwrap() > 256 * 12, "{json}");
-    let ratio = json["step_us"]["p50"].as_f64().unwrap() / json["yardstick_us"].as_f64().unwrap();
-    assert!((ratio - json["y_ratio"].as_f64().unwrap()).abs() < 1e-9);
-
-    let output = toile(&["bench", "skirt", "--verts", "256", "--runs", "1", "--steps", "5", "--motion", "settled"]);
-    assert_eq!(output.status.code(), Some(0));
-    let text = stdout(&output);
-    assert!(text.contains("256 vertices") && text.contains("strain") && !text.contains('\x1b'), "{text}");
-}
-
-#[test]
-fn bench_skirt_refuses_what_is_no_grid() {
-    let output = toile(&["bench", "skirt", "--verts", "1000"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(sentence(&output).contains("1000 vertices"));
-}
-
-#[test]
 fn completions_know_the_commands() {
     for shell in ["bash", "zsh", "fish"] {
         let output = toile(&["completions", shell]);
         assert_eq!(output.status.code(), Some(0), "{shell}");
         let text = stdout(&output);
-        assert!(text.contains("try-on") && text.contains("garment"), "{shell}");
+        assert!(text.contains("try-on") && text.contains("garment") && text.contains("torture"), "{shell}");
     }
 }
 

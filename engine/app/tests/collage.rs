@@ -1,10 +1,8 @@
 //! `toile collage` as a script meets it.
 
-mod common;
-
 use std::fs;
 
-use common::{Scratch, object, sentence};
+use crate::common::{Scratch, object, sentence};
 
 const SKIRT: &str = "name = \"Skirt\"\nlayer = \"shirts\"\nlevel = \"waist\"\n[front]\npicture = \"skirt.png\"\n\
                      points = [[20, 10], [80, 10]]\ndistance_mm = 300\n[stretches]\nwaist = [650, 800]\n";

@@ -1,10 +1,7 @@
 //! `toile convert`: what is kept of a recording, and that nothing that shows a person is kept unasked.
 
-mod common;
-#[path = "../../../tests/src/recordings.rs"]
-mod recordings;
-
-use common::Scratch;
+use crate::common::Scratch;
+use crate::recordings;
 use serde_json::Value;
 use toile_base::skeleton::Joint;
 use toile_sensors::session::Session;

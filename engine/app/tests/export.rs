@@ -1,10 +1,8 @@
 //! What is exported, and a body that moves by itself, as a script meets them.
 
-mod common;
-
 use std::fs;
 
-use common::Scratch;
+use crate::common::Scratch;
 
 /// The 32-bit floats of the bytes from a place on.
 fn floats(bytes: &[u8], from: usize, read: fn([u8; 4]) -> f32) -> Vec<u32> {

@@ -1,8 +1,6 @@
 //! `toile fabric`: what is listed, what a fabric's law gives back, and that a sheet becomes a file or is refused by its line.
 
-mod common;
-
-use common::{Scratch, object, refusal, stdout};
+use crate::common::{Scratch, object, refusal, stdout};
 
 const SHEET: &str =
     "LT, 0.712\nWT, 9.0, 10.0\nRT, 54\nB, 0.118, 0.102\n2HB, 0.124, 0.110\nG, 0.8\n2HG, 1.5\nW, 12\nT, 0.6\n";

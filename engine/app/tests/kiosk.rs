@@ -1,9 +1,5 @@
 //! `toile kiosk --headless` as a service manager and a script meet it: readiness, the watchdog, signals, what it leaves behind.
 
-#![cfg(unix)]
-
-mod common;
-
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
 use std::os::unix::net::UnixDatagram;
@@ -15,7 +11,7 @@ use std::sync::{Arc, OnceLock, PoisonError, RwLock, RwLockReadGuard};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use common::Scratch;
+use crate::common::Scratch;
 use serde_json::Value;
 
 /// Visits in quick succession, a health line each fifth of a second; the rest of `[sensor]` comes before it.
@@ -30,7 +26,7 @@ fn long_visits() -> String {
     static SESSION: OnceLock<PathBuf> = OnceLock::new();
     let session = SESSION.get_or_init(|| {
         let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("long-visit.mcap");
-        let mut record = Command::new(env!("CARGO_BIN_EXE_toile"));
+        let mut record = Command::new(crate::PROGRAM);
         record.args(["record", "--quiet", "--seconds", STAY_S, "--out"]).arg(&file);
         assert!(record.status().expect("the built program starts").success());
         file
@@ -58,7 +54,7 @@ struct Running(Child);
 
 impl Running {
     fn start(scratch: &Scratch, manager: &Path, args: &[&str]) -> Self {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_toile"));
+        let mut command = Command::new(crate::PROGRAM);
         command.args(["kiosk", "--headless", "--json"]).args(args).current_dir(scratch.path());
         command.env("NOTIFY_SOCKET", manager).env("WATCHDOG_USEC", "900000").env_remove("WATCHDOG_PID");
         command.env_remove("RUST_BACKTRACE").env("TMPDIR", scratch.path()).env("XDG_RUNTIME_DIR", scratch.path());
@@ -350,7 +346,7 @@ fn the_unit_starts_what_there_is_with_the_rights_that_it_needs() {
     let link = fs::read_to_string(folder.join("link.conf")).unwrap();
     assert!(value(&link, "IPAddressAllow").starts_with("192.168."), "{link}");
     // systemd itself, where there is one. It looks whether the program is there, so the one that is.
-    let program = env!("CARGO_BIN_EXE_toile");
+    let program = crate::PROGRAM;
     let scratch = Scratch::new("kiosk-unit");
     fs::write(scratch.path().join("toile.service"), unit.replace("/usr/bin/toile", program)).unwrap();
     let verify = Command::new("systemd-analyze").args(["verify", "toile.service"]).current_dir(scratch.path()).output();

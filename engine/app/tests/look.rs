@@ -1,10 +1,8 @@
 //! Who draws: `--renderer`, `--lines` and `--video` of the built program, with a GPU built in or without.
 
-mod common;
-
 use std::process::Output;
 
-use common::Scratch;
+use crate::common::Scratch;
 
 fn stderr_of(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
@@ -110,7 +108,7 @@ mod built_in {
     #[test]
     fn a_machine_without_an_adapter_is_told_with_the_cure() {
         let scratch = Scratch::new("look-none");
-        let mut command = Command::new(env!("CARGO_BIN_EXE_toile"));
+        let mut command = Command::new(crate::PROGRAM);
         command.args(["try-on", "--renderer", "gpu", "--quiet"]).current_dir(scratch.path()).stdin(Stdio::null());
         let none = scratch.path().join("none.json");
         let output = command.env("VK_DRIVER_FILES", &none).env("VK_ICD_FILENAMES", &none).output().unwrap();

@@ -1,15 +1,13 @@
 //! The manual: one page a command, which a strict reader of manual pages has nothing to say about.
 //!
-//! `cargo test` builds the example that writes it; with `--test man` alone, add `--examples`.
-
-mod common;
+//! `cargo test` builds the example that writes it; with `--test main` alone, add `--examples`.
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use common::Scratch;
+use crate::common::Scratch;
 
 /// Runs the example that writes the pages.
 fn man(args: &[&Path]) -> Output {

@@ -1,13 +1,10 @@
 //! One answer: the same recording gives the same measures, the same size and the same verdicts by whichever door it comes in.
 
-mod common;
-#[path = "../../../tests/src/recordings.rs"]
-mod recordings;
-
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use common::Scratch;
+use crate::common::Scratch;
+use crate::recordings;
 use serde_json::Value;
 use toile_assets::wardrobe;
 use toile_fitting::dress::attire::Attire;

@@ -1,10 +1,8 @@
 //! `toile plan` as a user and a script meet it.
 
-mod common;
-
 use std::fs;
 
-use common::Scratch;
+use crate::common::Scratch;
 use serde_json::Value;
 
 fn plan(scratch: &Scratch, args: &[&str]) -> (Option<i32>, Value, String) {

@@ -1,11 +1,9 @@
 //! `toile run` as a user meets it: scenes of their own, dumps, hashes, refusals.
 
-mod common;
-
 use std::fs;
 use std::path::Path;
 
-use common::{Scratch, object, refusal};
+use crate::common::{Scratch, object, refusal};
 use serde_json::Value;
 use toile_assets::scene_file::{SceneFile, examples};
 

@@ -3,22 +3,19 @@
 //! `TOILE_SHOP_PICTURES=docs/pictures` keeps a picture of each screen there, for the documents; with `TOILE_SHOP_CAMERA=kinect` the visitor is seen by
 //! a Kinect, which fakenect plays.
 
-#![cfg(all(feature = "kiosk", target_os = "linux"))]
-
-mod common;
-mod kinect;
 #[path = "../examples/shop/main.rs"]
 #[expect(dead_code, reason = "of the example only what writes the shop is used")]
 mod shop;
-mod xvfb;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use common::Scratch;
-use xvfb::{Display, Picture};
+use crate::common::Scratch;
+use crate::kinect;
+use crate::xvfb;
+use crate::xvfb::{Display, Picture};
 
 const SIZE: [u32; 2] = [540, 960];
 
@@ -56,7 +53,7 @@ struct Kiosk {
 impl Kiosk {
     fn start(scratch: &Scratch) -> Self {
         let display = Display::start(SIZE);
-        let mut command = Command::new(env!("CARGO_BIN_EXE_toile"));
+        let mut command = Command::new(crate::PROGRAM);
         let mut config = CONFIG.to_owned();
         if std::env::var_os("TOILE_SHOP_CAMERA").is_some() {
             let library = kinect::player().expect("Debian's freenect is installed");

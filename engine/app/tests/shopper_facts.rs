@@ -1,8 +1,6 @@
 //! What a shopper says of themselves: measures by tape count in every command, a child moves nothing, and what cannot be is named.
 
-mod common;
-
-use common::{Scratch, object, refusal};
+use crate::common::{Scratch, object, refusal};
 use serde_json::Value;
 
 /// A second of the synthetic shopper.

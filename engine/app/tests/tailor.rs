@@ -1,10 +1,8 @@
 //! `toile tailor` as a user or a script meets it, and the sizes of what it makes.
 
-mod common;
-
 use std::path::Path;
 
-use common::{Scratch, sentence, stdout};
+use crate::common::{Scratch, sentence, stdout};
 use serde_json::Value;
 
 /// A draft of FreeSewing's circle skirt, and the seams of all of them.

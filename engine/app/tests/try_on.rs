@@ -1,13 +1,11 @@
 //! A whole try-on through the built program: the JSON, the files, and the same bits twice.
 
-mod common;
-
 use std::fs::{self, File};
 use std::io::BufReader;
 use std::path::Path;
 use std::thread;
 
-use common::{Scratch, object};
+use crate::common::{Scratch, object};
 use serde_json::Value;
 
 /// Every key that the contract names for `try-on`.

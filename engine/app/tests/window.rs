@@ -4,19 +4,15 @@
 //! Screens are compared with those kept in tests/screens; `TOILE_KEEP_SCREENS=1` keeps new ones. What was seen lies in
 //! target/screens.
 
-#![cfg(all(feature = "kiosk", target_os = "linux"))]
-
-mod common;
-mod xvfb;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use common::Scratch;
+use crate::common::Scratch;
+use crate::xvfb;
+use crate::xvfb::{Display, Picture};
 use serde_json::Value;
-use xvfb::{Display, Picture};
 
 const SIZE: [u32; 2] = [540, 960];
 
@@ -50,7 +46,7 @@ impl Kiosk {
     fn start(scratch: &Scratch) -> Self {
         let display = Display::start(SIZE);
         fs::write(scratch.path().join("kiosk.toml"), CONFIG).unwrap();
-        let program = Command::new(env!("CARGO_BIN_EXE_toile"))
+        let program = Command::new(crate::PROGRAM)
             .args(["kiosk", "--windowed", &format!("{}x{}", SIZE[0], SIZE[1]), "--json", "--config", "kiosk.toml"])
             .current_dir(scratch.path())
             .env("DISPLAY", display.name())
@@ -193,7 +189,7 @@ fn a_visit_by_mouse_and_keys_from_arriving_to_leaving() {
 #[test]
 fn without_a_display_it_says_what_to_do() {
     let scratch = Scratch::new("nowhere");
-    let mut command = Command::new(env!("CARGO_BIN_EXE_toile"));
+    let mut command = Command::new(crate::PROGRAM);
     command.arg("kiosk").current_dir(scratch.path()).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");
     let output = command.env_remove("WAYLAND_SOCKET").output().unwrap();
     let message = String::from_utf8_lossy(&output.stderr).into_owned();

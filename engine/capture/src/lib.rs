@@ -14,14 +14,11 @@ pub mod surface;
 
 pub mod plane;
 
-pub mod depth_buffer;
-
 pub mod flow;
 pub mod pose;
 pub mod render;
 
 pub mod body;
-pub mod face;
 pub mod recording;
 
 #[cfg(test)]

@@ -47,6 +47,7 @@
 //! ```
 
 // Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
+pub mod crossings;
 pub mod error;
 pub mod heap;
 pub mod timing;

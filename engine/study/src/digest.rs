@@ -2,11 +2,11 @@
 
 use std::fmt::Write;
 
-use sha2::{Digest, Sha256};
+use hmac_sha256::Hash;
 
 /// The digest of some parts after one another, each with its length, in hexadecimal.
 pub(crate) fn of_parts(parts: &[&[u8]]) -> String {
-    let mut digest = Sha256::new();
+    let mut digest = Hash::new();
     for part in parts {
         digest.update((part.len() as u64).to_le_bytes());
         digest.update(part);
@@ -16,7 +16,7 @@ pub(crate) fn of_parts(parts: &[&[u8]]) -> String {
 
 /// The digest of bytes, as `sha256sum` prints it.
 pub(crate) fn of_bytes(bytes: &[u8]) -> String {
-    hexadecimal(&Sha256::digest(bytes))
+    hexadecimal(&Hash::hash(bytes))
 }
 
 fn hexadecimal(bytes: &[u8]) -> String {

@@ -16,6 +16,7 @@ pub mod video;
 
 pub mod contact_sheet;
 pub mod fit_map;
+pub mod plot;
 
 pub mod trim_look;
 

@@ -3,11 +3,11 @@
 use glam::{DVec3, Vec3};
 use image::RgbImage;
 use serde::Serialize;
-use toile_capture::depth_buffer::DepthBuffer;
 use toile_capture::flow::{FlowSettings, FlowTracker, Reference, Springs};
 use toile_capture::recover::{Recovered, VALUES, recover};
 use toile_capture::surface::Surface;
 use toile_fitting::scene::RunError;
+use toile_pose::depth_buffer::DepthBuffer;
 
 use super::cloth::{Disturbance, FABRIC, FROM, Filmed, FilmedCloth, play, scene};
 use super::error::FlowStudyError;

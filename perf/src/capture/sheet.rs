@@ -1,7 +1,7 @@
 //! A contact sheet of a row: what a camera saw, and the mesh that was found, coloured by its distance from the truth.
 
 use image::RgbImage;
-use toile_capture::depth_buffer::DepthBuffer;
+use toile_pose::depth_buffer::DepthBuffer;
 use toile_sensors::calibration::CalibratedCamera;
 use toile_view::contact_sheet::contact_sheet;
 use toile_view::image::{Error, Image, Size};

@@ -4,7 +4,7 @@
 //! Budget: some two minutes for the whole table; nothing but the steps is timed.
 //! Thread: one, and the engine's where two are named; with nothing else running.
 //!
-//! Crossings are counted by [`crate::crossings`], which shares no code with the engine.
+//! Crossings are counted by [`toile_fitting::crossings`], which shares no code with the engine.
 
 mod exact;
 mod off;

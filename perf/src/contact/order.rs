@@ -4,7 +4,7 @@ use toile_base::numeric::random::SplitMix64;
 
 use super::row::{ContactError, ContactRow};
 use super::scenes::{self, play, runner};
-use crate::crossings::CrossingTest;
+use toile_fitting::crossings::CrossingTest;
 
 /// Starts that are tried.
 const SEEDS: u64 = 100;

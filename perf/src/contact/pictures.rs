@@ -18,8 +18,8 @@ use toile_view::trace::{TraceQuality, TracedScene};
 use super::row::ContactError;
 use super::skin::bring_into;
 use super::worn::{OUTFITS, Outfit, options};
-use crate::crossings::CrossingWatch;
 use crate::worn::{WornScene, step_at};
+use toile_fitting::crossings::CrossingWatch;
 
 /// One view: tall enough to see a slit between two garments.
 const VIEW: Size = Size::new(480, 800);

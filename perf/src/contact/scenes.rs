@@ -4,7 +4,7 @@ use toile_assets::scene_file::{SceneError, SceneFile, SceneSource};
 use toile_fitting::scene::Runner;
 
 use super::row::ContactError;
-use crate::crossings::{CrossingFigures, CrossingWatch};
+use toile_fitting::crossings::{CrossingFigures, CrossingWatch};
 
 /// Half a turn of the lower end in three seconds, which comes nearer to the upper one meanwhile.
 const TURN: &str = "time,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n0.5,0,0.008,0,0,0.258819,0,0.965926\n\

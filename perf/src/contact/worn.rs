@@ -7,8 +7,8 @@ use toile_fitting::heap::HeapProbe;
 use toile_gpu::backend::Backend;
 
 use super::row::{ContactError, ContactRow};
-use crate::crossings::{CrossingFigures, CrossingWatch};
 use crate::worn::{WornOptions, WornScene};
+use toile_fitting::crossings::{CrossingFigures, CrossingWatch};
 
 /// Steps of the outfit: 30 s.
 const OUTFIT_STEPS: usize = 3_600;

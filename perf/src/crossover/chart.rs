@@ -1,9 +1,9 @@
 //! The chart of a crossover: time a step over the particles of the scene.
 
 use super::study::{Crossover, CrossoverRow, EACH};
-use crate::plot::axis::Axis;
-use crate::plot::chart::{Chart, Series, SeriesStyle};
-use crate::plot::{BLACK, Drawing, SERIES_COLOURS};
+use toile_view::plot::axis::Axis;
+use toile_view::plot::chart::{Chart, Series, SeriesStyle};
+use toile_view::plot::{BLACK, Drawing, SERIES_COLOURS};
 
 /// What 120 Hz leaves a step (us).
 const STEP_US: f64 = 1e6 / 120.0;

@@ -271,6 +271,6 @@ mod tests {
         assert_eq!(row.device.is_none(), row.missing.is_some());
         let text = study.markdown();
         assert!(text.contains("| 1 x 1024 |") && text.contains("evice"), "{text}");
-        assert!(crate::plot::svg::text(&super::super::chart(&study)).contains("one thread"));
+        assert!(toile_view::plot::svg::text(&super::super::chart(&study)).contains("one thread"));
     }
 }

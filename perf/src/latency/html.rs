@@ -3,8 +3,8 @@
 use toile_fitting::live::report::{Quantiles, QueueUse, ThreadPlacement};
 
 use super::report::{BARS, Goal, Latency, LatencyStage};
-use crate::plot::histogram::Histogram;
-use crate::plot::page::{Entry, Page};
+use toile_view::plot::histogram::Histogram;
+use toile_view::plot::page::{Entry, Page};
 
 /// The page; `machine` and `scene` are one line of words each.
 pub fn page(report: &Latency, machine: &str, scene: &str) -> String {

@@ -3,10 +3,10 @@
 use super::front;
 use super::models::MODELS;
 use super::report::{Drape, Fate, ModelPoint, ParetoReport, Point, SceneReport, Survival};
-use crate::plot::axis::Axis;
-use crate::plot::chart::{Chart, Series, SeriesStyle};
-use crate::plot::tiles::{Cell, Tiles};
-use crate::plot::{BLACK, Drawing, SERIES_COLOURS};
+use toile_view::plot::axis::Axis;
+use toile_view::plot::chart::{Chart, Series, SeriesStyle};
+use toile_view::plot::tiles::{Cell, Tiles};
+use toile_view::plot::{BLACK, Drawing, SERIES_COLOURS};
 
 /// A chart under its file's name.
 pub struct NamedDrawing {

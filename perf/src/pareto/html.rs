@@ -3,7 +3,7 @@
 use super::charts::NamedDrawing;
 use super::front;
 use super::report::{Drape, ModelPoint, ParetoReport, Point, SceneReport};
-use crate::plot::page::{Entry, Page};
+use toile_view::plot::page::{Entry, Page};
 
 const FRONT: [&str; 7] = ["front, one thread", "substeps", "iterations", "step us", "mean mm", "max mm", "strain %"];
 

@@ -61,7 +61,7 @@ pub fn files(report: &ParetoReport) -> Result<Vec<ReportFile>, ParetoError> {
     }
     for figure in &figures {
         let mut png = Vec::new();
-        crate::plot::raster::image(&figure.drawing).write_png(&mut png)?;
+        toile_view::plot::raster::image(&figure.drawing).write_png(&mut png)?;
         files.push(ReportFile { name: format!("{}.png", figure.name), bytes: png });
     }
     files.push(ReportFile { name: "pareto.html".into(), bytes: html::page(report, &figures).into_bytes() });

@@ -2,8 +2,8 @@
 
 use super::report::Fate;
 use super::*;
-use crate::plot::axis::{Axis, figure};
-use crate::plot::{Anchor, Drawing, Mark, raster, svg};
+use toile_view::plot::axis::{Axis, figure};
+use toile_view::plot::{Anchor, Drawing, Mark, raster, svg};
 
 fn at(step_us: f64, error_mm: f64) -> Point {
     Point { scene: "s".into(), mesh: "m".into(), threads: 1, step_us, error_mm, ..Point::default() }

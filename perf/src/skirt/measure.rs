@@ -15,7 +15,7 @@ use super::options::{SkirtOptions, WARM_UP};
 use super::report::{self, SkirtReport};
 use super::scene::{MeteredStages, SkirtScene};
 use crate::backend::SteppedBy;
-use crate::crossings::CrossingWatch;
+use toile_fitting::crossings::CrossingWatch;
 
 /// Steps at the end over which the greatest energy of motion is looked for: a second.
 const RESTING_STEPS: usize = 120;

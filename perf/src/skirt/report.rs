@@ -9,7 +9,7 @@ use toile_gpu::backend::BackendTimes;
 
 use super::options::SkirtOptions;
 use crate::backend::SteppedBy;
-use crate::crossings::CrossingFigures;
+use toile_fitting::crossings::CrossingFigures;
 
 /// How far warp and weft edges are from their length, as a part of it (0.01 is 1 %).
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]

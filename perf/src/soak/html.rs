@@ -5,10 +5,10 @@ use toile_fitting::live::report::QueueUse;
 use super::fault_monitor::FOLLOWS_M;
 use super::memory::MemorySample;
 use super::report::{FaultKindFigures, MemoryFigures, Soak, SoakCheck};
-use crate::plot::axis::Axis;
-use crate::plot::chart::{Chart, Series, SeriesStyle};
-use crate::plot::page::{Entry, Page};
-use crate::plot::{Drawing, SERIES_COLOURS};
+use toile_view::plot::axis::Axis;
+use toile_view::plot::chart::{Chart, Series, SeriesStyle};
+use toile_view::plot::page::{Entry, Page};
+use toile_view::plot::{Drawing, SERIES_COLOURS};
 
 /// The limit of a recovery (ms).
 const LIMIT_MS: f64 = 1_000.0;

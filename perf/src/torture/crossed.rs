@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3A};
 
-use crate::crossings::{CrossingTest, LOOKED_STEPS};
+use toile_fitting::crossings::{CrossingTest, LOOKED_STEPS};
 
 /// What is known of the crossings of a trial's cloths.
 #[derive(Debug)]

@@ -25,8 +25,8 @@ use toile_sensors::segment::Zone;
 use toile_track::fit::FitOptions;
 use toile_track::fit::tracker::BodyTracker;
 
-use crate::people::sizes;
 use scene::{Performer, WebcamMoment};
+use toile_assets::people::sizes;
 
 /// Pictures a second (Hz): every second one of a webcam's.
 const RATE_HZ: u64 = 15;

@@ -18,7 +18,7 @@ use toile_view::image::Size;
 use toile_view::scene::{Camera, Colours, MANNEQUIN, Material, Scene, Surface};
 use toile_view::trace::{TraceQuality, TracedScene};
 
-use crate::people::SizedPerson;
+use toile_assets::people::SizedPerson;
 
 /// Width and height of the pictures (px), and the focal length of a webcam that sees 60 degrees.
 pub const SIZE: [u32; 2] = [640, 480];

@@ -5,7 +5,7 @@ use std::io;
 use clap::{Arg, Command};
 use clap_mangen::Man;
 use clap_mangen::roff::{Roff, bold, roman};
-use toile::exit::Code;
+use toile_cli::exit::Code;
 
 /// One page, as its file is named and as `man` reads it.
 pub struct Page {
@@ -75,24 +75,17 @@ fn more(name: &str) -> More {
         }
         "toile-try-on" => More { files: &TRY_ON_FILES, guide: Some("measuring"), ..More::default() },
         "toile-kiosk" => More { codes: &[Code::Device], files: &KIOSK_FILES, guide: Some("kiosk") },
-        "toile-latency" => {
-            More { files: &[("latency.html", "The figures as a page, in the folder of --out.")], ..judged("loop") }
-        }
+        "toile-latency" => judged("loop"),
         "toile-replay" => More { codes: &[Code::Diverged], ..guide("loop") },
         "toile-soak" => More { codes: &[Code::Threshold, Code::Device], ..guide("soak") },
         "toile-validate" => judged("validate"),
         "toile-torture" => judged("torture"),
-        "toile-capture" | "toile-capture-flow" | "toile-capture-pose" | "toile-capture-compare" => guide("capture"),
-        "toile-bench-capture" => judged("capture"),
+        "toile-capture" => guide("capture"),
+        "toile-study" => guide("study"),
+        "toile-bench" => More { codes: &[Code::Threshold, Code::Device], ..More::default() },
         "toile-plan" => judged("plan"),
         "toile-body" => judged("avatars"),
-        "toile-bench-body" => judged("bodies"),
-        "toile-bench-measure" => judged("measuring"),
-        "toile-bench-skinning" => More { codes: &[Code::Device], ..guide("skinning") },
-        "toile-bench-skirt" => More { codes: &[Code::Device], ..More::default() },
-        "toile-bench-filters" => guide("filters"),
-        "toile-bench-gestures" => guide("gestures"),
-        "toile-bench-depth" | "toile-convert" => guide("depth"),
+        "toile-convert" => guide("depth"),
         "toile-measure" | "toile-record" => guide("measuring"),
         "toile-run" | "toile-bake" => guide("scene"),
         "toile-pareto" => guide("pareto"),

@@ -2,10 +2,16 @@
 
 use std::path::PathBuf;
 
+use toile_cli::program::Asked;
+
 use super::*;
 
 fn parsed(line: &str) -> Result<Command, AppError> {
-    parse(line.split_whitespace().map(OsString::from).collect())
+    let args = with_default_command(line.split_whitespace().map(OsString::from).collect());
+    match program::parse::<CommandLine>(&args)? {
+        Asked::Command(line) => Ok(line.command),
+        Asked::Text(text) => panic!("{text}"),
+    }
 }
 
 #[test]
@@ -62,7 +68,8 @@ fn every_command_and_option_says_what_it_does() {
 
 #[test]
 fn a_wrong_line_gives_one_sentence_with_its_cure() {
-    let lines = ["toile --garmet x", "toile mesure", "toile bench", "toile measure", "toile record --out f --seed x"];
+    let lines =
+        ["toile --garmet x", "toile mesure", "toile catalogue", "toile measure", "toile record --out f --seed x"];
     for line in lines {
         let error = parsed(line).unwrap_err();
         assert!(matches!(error, AppError::Usage(_)), "{line}");
@@ -71,4 +78,18 @@ fn a_wrong_line_gives_one_sentence_with_its_cure() {
     }
     let message = parsed("toile --garmet x").unwrap_err().to_string();
     assert!(message.contains("--garmet") && message.contains("'--garment'"), "{message}");
+}
+
+#[test]
+fn commands_of_other_programs_keep_their_arguments() {
+    let of = |line: &str| {
+        let args = with_default_command(line.split_whitespace().map(OsString::from).collect());
+        let words =
+            |args: Vec<OsString>| args.into_iter().map(|a| a.into_string().unwrap()).collect::<Vec<_>>().join(" ");
+        of_another_program(&args).map(|(other, args)| (other.program, words(args)))
+    };
+    assert_eq!(of("toile bench skirt --json"), Some(("toile-perf", "bench skirt --json".into())));
+    assert_eq!(of("toile --json study merge tee"), Some(("toile-study", "--json merge tee".into())));
+    assert_eq!(of("toile help capture face"), Some(("toile-capture", "face --help".into())));
+    assert_eq!(of("toile measure bench"), None);
 }

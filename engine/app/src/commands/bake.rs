@@ -11,16 +11,9 @@ use toile_assets::draping::{self, PatternPackage};
 use toile_assets::file::{self, FileKind};
 use toile_assets::sizes::Population;
 use toile_assets::wardrobe::{self, WardrobeError, own};
-use toile_bake;
-use toile_bake::Shape;
-use toile_bake::survey::{MeshSurvey, survey};
-use toile_base::body::{Measures, Sex};
-use toile_base::fabric::Fabric;
-use toile_base::garment::Garment;
-
-use crate::exit::AppError;
-use crate::report::Document;
-use crate::terminal::{self, Paint, Tone};
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::terminal::{self, Paint, Tone};
 
 /// Bake a garment, and report what its mesh becomes: fibers, solvers, bending, memory.
 ///

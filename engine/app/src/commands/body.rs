@@ -8,9 +8,13 @@ use glam::Affine3A;
 use toile_assets::export::{DressedBody, glb};
 use toile_assets::import::{avatar, makehuman};
 use toile_assets::scene;
-use toile_base::body::{Body, Measures, Sex};
-use toile_base::frame::Joints;
-use toile_base::skeleton::BONES;
+use toile_assets::skeleton::BONES;
+use toile_cli::arguments::{Printing, count, one_of};
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::output::{Inputs, OutputFolder};
+use toile_cli::picture::write_png;
+use toile_cli::terminal::{self, Paint};
 use toile_engine::body::{JointFrames, Poser, palette};
 use toile_engine::frame::BLEND;
 use toile_engine::skin::SkinningJob;
@@ -20,13 +24,9 @@ use toile_view::image::Size;
 use toile_view::scene::{Camera, Colours, Material, Scene, Surface};
 use toile_view::trace::{TraceQuality, TracedScene};
 
-use crate::arguments::{Printing, SkinArg, count, one_of};
-use crate::exit::AppError;
-use crate::output::{Inputs, OutputFolder};
-use crate::pictures::write_png;
-use crate::report::{BodyReport, Document, Followed, Influences, JointFound, Named, SurfaceReport};
+use crate::arguments::SkinArg;
+use crate::report::{BodyReport, Followed, Influences, JointFound, Named, SurfaceReport};
 use crate::summary;
-use crate::terminal::{self, Paint};
 
 /// Most random bodies: some minutes' worth.
 const MAX_RANDOM: u64 = 10_000;

@@ -11,8 +11,11 @@ use toile_assets::catalogue::{
     Catalogue, CatalogueItem, GarmentManifest, GarmentPackage, ShopTheme, ThemeColours, contrast, package, word,
 };
 use toile_assets::wardrobe::own;
-use toile_base::body::{Measures, Sex};
-use toile_base::frame::Joints;
+use toile_cli::arguments::Printing;
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::output::{Inputs, OutputFile};
+use toile_cli::terminal::{self, Paint, Tone, Words};
 use toile_fitting::dress::choice::Choice;
 use toile_fitting::dress::wish::Wish;
 use toile_fitting::dress::{dressed, session};
@@ -21,11 +24,7 @@ use toile_view::drawn_frame::{self, DrawnFrame};
 use toile_view::figure::Appearance;
 use toile_view::image::{Image, Size, linear};
 
-use crate::arguments::{AppearanceArgs, Printing};
-use crate::exit::AppError;
-use crate::output::{Inputs, OutputFile};
-use crate::report::Document;
-use crate::terminal::{self, Paint, Tone, Words};
+use crate::arguments::AppearanceArgs;
 
 /// A shop's catalogue of garment packages.
 ///

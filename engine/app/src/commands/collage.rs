@@ -6,18 +6,18 @@ use serde::Serialize;
 use toile_assets::catalogue::{CollageGarment, CollagePictures, limits};
 use toile_assets::file::{self, FileKind};
 use toile_assets::sizes::SizeTable;
-use toile_base::body::{Body, Measures, Sex};
+use toile_cli::arguments::{Printing, count, one_of};
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::output::{Inputs, OutputFolder};
+use toile_cli::picture::write_png;
+use toile_cli::terminal;
 use toile_view::collage::{BodyLayers, CollageError, CollageSide, WornPhotographs, collage};
 use toile_view::contact_sheet::contact_sheet;
 use toile_view::image::Image;
 
 use super::tailor::wearer;
-use crate::arguments::{AppearanceArgs, Printing, count, one_of};
-use crate::exit::AppError;
-use crate::output::{Inputs, OutputFolder};
-use crate::pictures::write_png;
-use crate::report::Document;
-use crate::terminal;
+use crate::arguments::AppearanceArgs;
 
 /// Most garments on one body: two a layer.
 const MOST: usize = 16;

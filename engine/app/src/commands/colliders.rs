@@ -7,21 +7,22 @@ use std::time::Instant;
 
 use glam::Vec3;
 use serde::Serialize;
-use toile_assets::rig::{MEAN_GOAL_MM, P95_GOAL_MM};
-use toile_base::body::Body;
-use toile_base::numeric::statistics::quantile;
-use toile_perf::people;
+use toile_assets::body::Body;
+use toile_assets::numeric::statistics::quantile;
+use toile_assets::people;
+use toile_assets::rig::{MEAN_GOAL_MM, P95_GOAL_MM, Rig};
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::output::{Inputs, OutputFolder};
+use toile_cli::picture::write_png;
+use toile_cli::terminal::{self, Paint, Tone, Words};
 use toile_view::contact_sheet;
 use toile_view::image::Size;
 use toile_view::scene::{Camera, Colours, Material, Scene, Surface};
 use toile_view::trace::{TraceQuality, TracedScene};
 
 use crate::commands::body::{self, BodyArgs};
-use crate::exit::AppError;
-use crate::output::{Inputs, OutputFolder};
-use crate::pictures::write_png;
-use crate::report::{Document, Followed};
-use crate::terminal::{self, Paint, Tone, Words};
+use crate::report::Followed;
 
 /// A picture of one side.
 const STILL: Size = Size::new(480, 580);

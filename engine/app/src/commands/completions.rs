@@ -2,9 +2,8 @@
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap_complete::{Shell, generate};
-
-use crate::exit::AppError;
-use crate::terminal;
+use toile_cli::exit::AppError;
+use toile_cli::terminal;
 
 /// Shells that completions are written for, as they are called.
 const SHELLS: [&str; 5] = ["bash", "elvish", "fish", "powershell", "zsh"];

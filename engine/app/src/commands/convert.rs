@@ -2,16 +2,17 @@
 
 use std::path::PathBuf;
 
+use toile_cli::arguments::{Printing, one_of};
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::output::{Inputs, OutputFile};
+use toile_cli::terminal;
 use toile_fitting::dress::measured::{self, ShopperFacts};
 use toile_sensors::segment::Segmenter;
 use toile_sensors::session::Session;
 use toile_sensors::source::{self, OpenOptions};
 
-use crate::arguments::{Printing, one_of};
-use crate::exit::AppError;
-use crate::output::{Inputs, OutputFile};
-use crate::report::{self, ConvertReport, Document};
-use crate::terminal;
+use crate::report::{self, ConvertReport};
 
 /// Turn any supported recording into a Toile session.
 ///

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use toile_base::garment::Garment;
 use toile_engine::cloth::Cloth;
-use toile_perf::crossings::{CrossingFigures, CrossingWatch};
+use toile_fitting::crossings::{CrossingFigures, CrossingWatch};
 
 use crate::report::CrossingReport;
 

@@ -14,10 +14,9 @@ use std::path::{Path, PathBuf};
 use toile_assets::put_line;
 
 use serde::Serialize;
-
-use crate::exit::AppError;
-use crate::report::Document;
-use crate::terminal::{self, Paint, Tone};
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::terminal::{self, Paint, Tone};
 
 /// Report what this machine has, and the exact cure for what is missing.
 #[derive(Debug, Clone, PartialEq, clap::Args)]

@@ -11,13 +11,11 @@ use serde::Serialize;
 use toile_assets::fabric::sheet::MeasuredSheet;
 use toile_assets::file::{self, FileKind};
 use toile_assets::put_line;
-use toile_base::fabric::Fabric;
-
-use crate::arguments::Printing;
-use crate::exit::AppError;
-use crate::output::{Inputs, OutputFile};
-use crate::report::Document;
-use crate::terminal;
+use toile_cli::arguments::Printing;
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::output::{Inputs, OutputFile};
+use toile_cli::terminal;
 
 /// Fabrics: list them, show one with its loops, make one of a laboratory's sheet.
 // The help of a command is the doc of its arguments, which a doc of the variant would replace.

@@ -5,14 +5,14 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::value_parser;
+use toile_cli::arguments::Printing;
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::terminal::{self, Words};
 use toile_kiosk::KioskOptions;
 use toile_kiosk::service::instance;
 
 use super::doctor;
-use crate::arguments::Printing;
-use crate::exit::AppError;
-use crate::report::Document;
-use crate::terminal::{self, Words};
 
 /// Longest run that is asked for by its length (s): a year.
 const MOST_SECONDS: i64 = 366 * 86_400;

@@ -7,8 +7,13 @@ use std::time::{Duration, Instant};
 use clap::value_parser;
 use serde::Serialize;
 use toile_assets::put_line;
-use toile_base::body::Sex;
-use toile_base::frame::DepthFrame;
+use toile_cli::arguments::Printing;
+use toile_cli::camera::{self, CameraUse, MountArgs};
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::output::OutputFolder;
+use toile_cli::picture::write_png;
+use toile_cli::terminal::{self, Words};
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::frame_loop::sensor_thread::{FrameSource, SourceFrame};
 use toile_fitting::live::camera_start::StartedCamera;
@@ -16,14 +21,6 @@ use toile_fitting::live::depth_camera::{CameraFeed, CameraFigures, CameraHandle}
 use toile_fitting::live::report::Quantiles;
 use toile_sensors::source::live::{CameraName, CameraState, ColourImage};
 use toile_view::image::{Image, Size};
-
-use crate::arguments::Printing;
-use crate::camera::{self, CameraUse, MountArgs};
-use crate::exit::AppError;
-use crate::output::OutputFolder;
-use crate::pictures::write_png;
-use crate::report::Document;
-use crate::terminal::{self, Words};
 
 /// Longest look (s): a day.
 const MOST_SECONDS: i64 = 86_400;

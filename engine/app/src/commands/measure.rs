@@ -8,17 +8,17 @@ use toile_track::estimate::Estimate;
 use toile_track::fit::measuring::{FittedMeasures, MEASURES};
 use toile_track::measures;
 
-use toile_base::body::Sex;
+use toile_assets::body::Sex;
+use toile_cli::arguments::{Printing, TapeArgs, one_of};
+use toile_cli::document::{DefinedMeasure, Document, MeasuredLength, in_mm};
+use toile_cli::exit::AppError;
+use toile_cli::output::{Inputs, OutputFolder};
+use toile_cli::picture::write_png;
+use toile_cli::terminal::{self, Paint};
 
-use crate::arguments::{Printing, TapeArgs, one_of};
-use crate::exit::AppError;
-use crate::output::{Inputs, OutputFolder};
 use crate::overlay::{Fit, overlay};
-use crate::pictures::write_png;
-use crate::report::measures::in_mm;
-use crate::report::{self, DefinedMeasure, Document, FittedBody, MeasureReport, MethodMeasures};
+use crate::report::{self, FittedBody, MeasureReport, MethodMeasures};
 use crate::summary;
-use crate::terminal::{self, Paint};
 
 /// Measure the person in a recording or a depth frame.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
@@ -110,7 +110,7 @@ fn methods(measured: &Measured) -> Vec<MethodMeasures> {
 }
 
 fn defined(name: &'static str, estimate: Estimate) -> DefinedMeasure {
-    let report::MeasuredLength { value, sigma } = in_mm(estimate);
+    let MeasuredLength { value, sigma } = in_mm(estimate);
     DefinedMeasure { name, definition: measures::definition(name), value, sigma }
 }
 

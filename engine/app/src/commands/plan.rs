@@ -9,6 +9,11 @@ mod table;
 use clap::builder::PossibleValuesParser;
 use std::path::PathBuf;
 use toile_assets::scene_file::examples;
+use toile_cli::arguments::{Printing, WorkersArg, WornArgs};
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::heap::counted;
+use toile_cli::terminal::{self, Paint};
 use toile_engine::cloth::Cloth;
 use toile_engine::colliders::Colliders;
 use toile_engine::frame::Frame;
@@ -27,12 +32,7 @@ use toile_fitting::plan::verdict::{Priced, Verdict, judge};
 use toile_fitting::plan::weigh;
 use toile_fitting::plan::work::STAGES;
 
-use crate::arguments::{Printing, WorkersArg, WornArgs};
 use crate::commands::run::RunScene;
-use crate::exit::AppError;
-use crate::heap::counted;
-use crate::report::Document;
-use crate::terminal::{self, Paint};
 
 /// The scene that is planned.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,10 +5,13 @@ use std::path::PathBuf;
 use clap::value_parser;
 use glam::{Affine3A, Vec3};
 use toile_assets::scene;
-use toile_base::body::Body;
-use toile_base::clock::SECOND_NS;
-use toile_base::frame::{Intrinsics, Joints};
-use toile_base::skeleton::{BONES, JOINTS, Pose};
+use toile_assets::skeleton::{BONES, JOINTS, Pose};
+use toile_cli::arguments::Printing;
+use toile_cli::camera::{self, MountArgs};
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::output::{Inputs, OutputFile};
+use toile_cli::terminal;
 use toile_engine::body::{JointFrames, palette};
 use toile_engine::frame::BLEND;
 use toile_engine::skin::SkinningJob;
@@ -17,12 +20,7 @@ use toile_sensors::source::live::CameraName;
 use toile_sensors::source::synthetic::{JointNoise, KinectNoise, SyntheticCamera};
 
 use super::record_camera::{self, CameraRequest};
-use crate::arguments::Printing;
-use crate::camera::{self, MountArgs};
-use crate::exit::AppError;
-use crate::output::{Inputs, OutputFile};
-use crate::report::{self, Document, RecordReport};
-use crate::terminal;
+use crate::report::{self, RecordReport};
 
 /// Longest session that `record` makes (s); at 30 frames a second this is some hundred megabytes.
 const MAX_SECONDS: i64 = 600;

@@ -5,14 +5,15 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
+use toile_cli::arguments::Printing;
+use toile_cli::camera::{self, MountArgs};
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::output::{Inputs, OutputFile};
+use toile_cli::terminal;
 use toile_sensors::source::live::{self, Arrival, CameraFrame, CameraName, CameraRecorder};
 
-use crate::arguments::Printing;
-use crate::camera::{self, MountArgs};
-use crate::exit::AppError;
-use crate::output::{Inputs, OutputFile};
-use crate::report::{self, Document, SessionReport};
-use crate::terminal;
+use crate::report::{self, SessionReport};
 
 /// Longest that a frame is waited for at once.
 const PATIENCE: Duration = Duration::from_millis(50);

@@ -19,16 +19,17 @@ use toile_fitting::scene::contact::ContactReport;
 use toile_fitting::scene::events::ClothEvents;
 use toile_fitting::scene::yardstick;
 
-use crate::arguments::{Printing, one_of};
 use crate::commands::crossings::CrossingCount;
-use crate::exit::AppError;
-use crate::heap::counted;
-use crate::output::Inputs;
-use crate::output::OutputFolder;
-use crate::report::{self, CrossingReport, Document, RunGarment, RunReport};
+use crate::report::{self, CrossingReport, RunGarment, RunReport};
 use crate::summary;
-use crate::terminal::{self, Paint, Words};
 use dump::{Dump, Format};
+use toile_cli::arguments::{Printing, one_of};
+use toile_cli::document::{Document, hash_text};
+use toile_cli::exit::AppError;
+use toile_cli::heap::counted;
+use toile_cli::output::Inputs;
+use toile_cli::output::OutputFolder;
+use toile_cli::terminal::{self, Paint, Words};
 
 /// Most steps that `run` takes: ten days at 120 Hz.
 const MAX_RUN_STEPS: u64 = 100_000_000;
@@ -245,7 +246,7 @@ fn report(runner: &Runner, args: &RunArgs, dumped: u64, yardstick_us: Option<f64
         crossings: None,
         contact: runner.layers().map(|l| ContactReport::from(l.counts())),
         warnings: runner.warnings(),
-        state_hash: report::hash_text(runner.state_hash()),
+        state_hash: hash_text(runner.state_hash()),
         dump: args.dump.clone(),
         dumped_frames: dumped,
     }

@@ -16,14 +16,15 @@ use toile_assets::drafting;
 use toile_assets::draping::{self, DrapedPattern, PatternPackage};
 use toile_assets::sizes::GarmentKind;
 use toile_assets::tailor::PanelQuality;
-use toile_base::body::Sex;
+use toile_cli::arguments::{Printing, one_of};
+use toile_cli::document::Document;
+use toile_cli::exit::AppError;
+use toile_cli::output::{Inputs, OutputFile, OutputFolder};
+use toile_cli::terminal::{self, Paint, Tone};
 use toile_view::figure::Figure;
 
-use crate::arguments::{AppearanceArgs, Printing, one_of};
-use crate::exit::AppError;
-use crate::output::{Inputs, OutputFile, OutputFolder};
-use crate::report::{Document, StrainReport};
-use crate::terminal::{self, Paint, Tone};
+use crate::arguments::AppearanceArgs;
+use crate::report::StrainReport;
 
 /// Sew a pattern up around a body and let it hang.
 ///

@@ -18,9 +18,12 @@ use toile_assets::adapt::MeshReport;
 use toile_assets::export::{self, DressedBody, glb};
 use toile_assets::import::avatar::MovingBody;
 use toile_assets::{drafting, wardrobe};
-use toile_base::body::Body;
-use toile_base::limits::STEP_SECONDS;
-use toile_base::skeleton::{BONES, Joint};
+use toile_cli::arguments::{Printing, TapeArgs, one_of, quality};
+use toile_cli::document::{Document, hash_text};
+use toile_cli::exit::AppError;
+use toile_cli::output::Inputs;
+use toile_cli::output::OutputFolder;
+use toile_cli::terminal::{self, Paint, Progress, Words};
 use toile_engine::body::palette;
 use toile_engine::cloth::Settings;
 use toile_engine::frame::{Frame, Snapshot};
@@ -37,17 +40,13 @@ use toile_view::drawn_frame::DrawnFrame;
 use toile_view::figure::{Appearance, Figure};
 use toile_view::fit_map::{self, JudgedTightness};
 
-use crate::arguments::{AppearanceArgs, ExportArgs, Printing, TapeArgs, one_of, quality};
+use crate::arguments::{AppearanceArgs, ExportArgs};
 use crate::commands::crossings::CrossingCount;
-use crate::exit::AppError;
-use crate::output::Inputs;
-use crate::output::OutputFolder;
 use crate::pictures::{FinalState, Pictures, ROWS, STILL_ROWS, WorstMoment};
 use crate::renderer::{PictureRenderer, RendererChoice};
-use crate::report::{self, Document, Recommendation, TryOn, ZoneFitReport};
+use crate::report::{self, Recommendation, TryOn, ZoneFitReport};
 use crate::session_export::DressedExport;
 use crate::summary;
-use crate::terminal::{self, Paint, Progress, Words};
 use crate::video::Video;
 
 /// Measure a shopper, dress them, and write pictures and a report.
@@ -257,7 +256,7 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
             poses,
             animation: moving.as_ref().map(animated::report).transpose()?,
             export: played.export,
-            state_hash: report::hash_text(frame.state_hash()),
+            state_hash: hash_text(frame.state_hash()),
             renderer: played.renderer,
             files,
         },

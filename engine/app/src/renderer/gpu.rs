@@ -1,6 +1,7 @@
 //! The GPU renderer, off the screen, for the pictures of a try-on.
 
-use toile_base::garment::Garment;
+use toile_assets::garment::Garment;
+use toile_cli::exit::AppError;
 use toile_engine::lines::Line;
 use toile_view::figure::Figure;
 use toile_view::image::{Image, Size};
@@ -9,8 +10,6 @@ use toile_view::raster::{
 };
 use toile_view::scene::{Camera, Colours, Surface};
 use toile_view::trace::TraceQuality;
-
-use crate::exit::AppError;
 
 /// A device, and what draws stills and frames on it; each is made when it is first asked for.
 pub struct GpuRenderer {

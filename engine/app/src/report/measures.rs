@@ -1,10 +1,10 @@
 //! Sessions and measures as reports show them.
 
 use toile_assets::sizes::Population;
+use toile_cli::document::in_mm;
 use toile_sensors::source;
-use toile_track::estimate::Estimate;
 
-use super::{MeasuredLength, SessionReport, ShopperMeasures};
+use super::{SessionReport, ShopperMeasures};
 
 /// The session, with more sentences beside its own.
 pub fn session(session: &source::Session, more: &[String]) -> SessionReport {
@@ -14,12 +14,6 @@ pub fn session(session: &source::Session, more: &[String]) -> SessionReport {
         seconds: session.duration_ns() as f64 * 1e-9,
         notes: session.notes.iter().chain(more).cloned().collect(),
     }
-}
-
-/// An estimate (m) in millimetres; tenths of a millimetre are all that a measure deserves.
-pub fn in_mm(estimate: Estimate) -> MeasuredLength {
-    let mm = |x: f32| (f64::from(x) * 1e4).round() / 10.0;
-    MeasuredLength { value: mm(estimate.value), sigma: mm(estimate.sigma) }
 }
 
 /// The measures of the contract; what could not be seen is what such a body has on average, with that sigma.

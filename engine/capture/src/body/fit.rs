@@ -18,7 +18,7 @@ use toile_track::fit::{
 use super::joint_point::JointPoint;
 use super::rim::{DrawnSurface, RimMatch, matches, overlap, rim};
 use super::view::View;
-use crate::depth_buffer::DepthBuffer;
+use toile_pose::depth_buffer::DepthBuffer;
 
 /// Stages of the fit, coarse to fine: largest distance of a match (m), distance at which it has a quarter of its weight (m), steps.
 pub(super) const COARSE: [(f64, f64, usize); 2] = [(0.30, 0.20, 6), (0.15, 0.08, 6)];

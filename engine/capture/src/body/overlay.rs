@@ -6,7 +6,7 @@ use glam::DVec3;
 use image::{ImageFormat, Rgb, RgbImage};
 
 use super::measured::SilhouetteView;
-use crate::depth_buffer::DepthBuffer;
+use toile_pose::depth_buffer::DepthBuffer;
 
 /// Height of a view in the picture (px).
 const TALL: f64 = 480.0;

@@ -4,7 +4,7 @@
 use glam::{DVec2, DVec3};
 
 use super::view::{TangentPlane, View};
-use crate::depth_buffer::DepthBuffer;
+use toile_pose::depth_buffer::DepthBuffer;
 
 /// Least cosine between the ways out of a body's rim and of an outline that belong together.
 const ALIKE: f64 = 0.6;

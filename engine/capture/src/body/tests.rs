@@ -9,8 +9,8 @@ use toile_track::fit::measuring::MEASURES;
 use super::measured::opposite;
 use super::view::View;
 use super::*;
-use crate::depth_buffer::DepthBuffer;
 use crate::render::look_at;
+use toile_pose::depth_buffer::DepthBuffer;
 
 /// Cameras round the origin at these angles (degrees).
 fn cameras(angles: &[f64]) -> Vec<CalibratedCamera> {

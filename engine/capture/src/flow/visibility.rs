@@ -4,8 +4,8 @@ use glam::{DVec3, Vec3};
 use toile_sensors::calibration::CalibratedCamera;
 
 use super::patches::LevelSamples;
-use crate::depth_buffer::DepthBuffer;
 use crate::surface::Surface;
+use toile_pose::depth_buffer::DepthBuffer;
 
 /// Pixels of the depth buffer a pixel of the picture: half is enough to find what is hidden.
 const SCALE: f64 = 0.5;

@@ -8,7 +8,7 @@ use toile_base::numeric::random::SplitMix64;
 use toile_sensors::calibration::CalibratedCamera;
 
 use super::scene::{Bar, Lighting, PrintedSurface};
-use crate::depth_buffer::DepthBuffer;
+use toile_pose::depth_buffer::DepthBuffer;
 
 /// Colour of the room behind, 0 to 1, and how much it varies.
 const ROOM: [f32; 3] = [0.36, 0.37, 0.40];

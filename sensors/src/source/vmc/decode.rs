@@ -4,13 +4,12 @@
 //! has sent before has come, or when one comes a second time.
 
 use glam::{Quat, Vec3};
-use rosc::{OscMessage, OscPacket, OscType};
 
 use super::bones::{BoneMap, COUNT, Local, bone};
-use crate::limits::{MAX_OSC_BUNDLES, MAX_PACKET_BYTES};
-use toile_base::clock::SECOND_NS;
-use toile_base::frame::Joints;
-use toile_base::limits::MAX_COORDINATE;
+use super::osc::{self, OscArgument, OscMessage, OscPacket};
+use crate::clock::SECOND_NS;
+use crate::frame::Joints;
+use crate::limits::{MAX_COORDINATE, MAX_OSC_BUNDLES, MAX_PACKET_BYTES};
 
 /// A sender's time that goes back by more than this (s) is that of a sender that began anew; by less, a late packet's.
 const RESTART_SECONDS: f64 = 1.0;
@@ -107,11 +106,11 @@ impl Decoder {
         }
         // The parser descends into bundles by recursion; a datagram can nest hundreds.
         let bundles = datagram.windows(8).filter(|w| w == b"#bundle\0").count();
-        let packet = if bundles <= MAX_OSC_BUNDLES { rosc::decoder::decode_udp(datagram) } else { Err(nested()) };
+        let packet = if bundles <= MAX_OSC_BUNDLES { osc::decode(datagram) } else { None };
         match packet {
-            Ok((_, packet)) if self.clock(&packet, arrival_ns) => self.apply(&packet, arrival_ns),
-            Ok(_) => self.drops.late += 1,
-            Err(_) => self.drops.malformed += 1,
+            Some(packet) if self.clock(&packet, arrival_ns) => self.apply(&packet, arrival_ns),
+            Some(_) => self.drops.late += 1,
+            None => self.drops.malformed += 1,
         }
     }
 
@@ -137,8 +136,8 @@ impl Decoder {
 
     fn apply(&mut self, packet: &OscPacket, arrival_ns: u64) {
         match packet {
-            OscPacket::Bundle(bundle) => bundle.content.iter().for_each(|p| self.apply(p, arrival_ns)),
-            OscPacket::Message(message) => match message.addr.as_str() {
+            OscPacket::Bundle(packets) => packets.iter().for_each(|p| self.apply(p, arrival_ns)),
+            OscPacket::Message(message) => match message.address {
                 "/VMC/Ext/Root/Pos" => match local(message) {
                     Some(root) => self.root = root,
                     None => self.drops.invalid += 1,
@@ -150,7 +149,7 @@ impl Decoder {
     }
 
     fn bone(&mut self, message: &OscMessage, arrival_ns: u64) {
-        let Some(OscType::String(name)) = message.args.first() else {
+        let Some(OscArgument::Text(name)) = message.arguments.first() else {
             self.drops.invalid += 1;
             return;
         };
@@ -189,17 +188,13 @@ impl Decoder {
     }
 }
 
-fn nested() -> rosc::OscError {
-    rosc::OscError::BadPacket("too many bundles")
-}
-
 /// The sender's time in a packet (s).
 fn time(packet: &OscPacket) -> Option<f64> {
     match packet {
-        OscPacket::Bundle(bundle) => bundle.content.iter().find_map(time),
-        OscPacket::Message(message) if message.addr == "/VMC/Ext/T" => match message.args.first() {
-            Some(OscType::Float(t)) => Some(f64::from(*t)),
-            Some(OscType::Double(t)) => Some(*t),
+        OscPacket::Bundle(packets) => packets.iter().find_map(time),
+        OscPacket::Message(message) if message.address == "/VMC/Ext/T" => match message.arguments.first() {
+            Some(OscArgument::Float(t)) => Some(f64::from(*t)),
+            Some(OscArgument::Double(t)) => Some(*t),
             _ => None,
         },
         OscPacket::Message(_) => None,
@@ -209,10 +204,10 @@ fn time(packet: &OscPacket) -> Option<f64> {
 /// The pose in a message's arguments 1 to 7, in our axes; `None` where they are not one.
 fn local(message: &OscMessage) -> Option<Local> {
     let mut numbers = [0.0; 7];
-    for (number, arg) in numbers.iter_mut().zip(message.args.get(1..8)?) {
+    for (number, arg) in numbers.iter_mut().zip(message.arguments.get(1..8)?) {
         *number = match arg {
-            OscType::Float(x) => *x,
-            OscType::Double(x) => *x as f32,
+            OscArgument::Float(x) => *x,
+            OscArgument::Double(x) => *x as f32,
             _ => return None,
         };
     }

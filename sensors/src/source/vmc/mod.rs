@@ -11,6 +11,7 @@
 
 mod bones;
 mod decode;
+mod osc;
 mod receive;
 
 pub use decode::{Decoder, Drops};

@@ -3,8 +3,9 @@
 use std::collections::BTreeSet;
 use std::time::Instant;
 
+use toile_cli::machine;
+
 use super::check::{Check, field, kernel_file};
-use crate::machine;
 
 /// Physics and sensor threads want one core each.
 const CORES_WANTED: usize = 2;

@@ -3,10 +3,10 @@
 use std::env;
 use std::path::{Path, PathBuf};
 
+use toile_cli::output::OutputFolder;
 use toile_gpu::Adapter;
 
 use super::check::Check;
-use crate::output::OutputFolder;
 
 pub fn gpu(adapters: &[Adapter]) -> Check {
     let (name, use_for) = ("gpu", "cloth and pictures on the GPU; the CPU does both without");

@@ -1,11 +1,10 @@
 //! A plan as people read it.
 
+use toile_cli::terminal::{Paint, Tone};
 use toile_fitting::plan::report::Plan;
 use toile_fitting::plan::weigh::Played;
 use toile_fitting::plan::work::STAGES;
 use toile_fitting::scene::contact::ContactReport;
-
-use crate::terminal::{Paint, Tone};
 
 /// The plan as tables for a terminal; `costs` adds the time of each kind of work.
 pub fn table(plan: &Plan, costs: bool, paint: Paint) -> String {

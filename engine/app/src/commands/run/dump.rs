@@ -10,11 +10,10 @@ use glam::Vec3;
 use toile_assets::export::session::ExportFrame;
 use toile_assets::export::{ExportFormat, ExportPlan, FrameRate, MovingPart, SessionExport, SurfaceLook};
 use toile_assets::scene_file::{SceneGarment, UserMesh};
-use toile_bake::check::corners;
+use toile_cli::exit::AppError;
+use toile_cli::output::OutputFolder;
 use toile_fitting::scene::Runner;
 
-use crate::exit::AppError;
-use crate::output::OutputFolder;
 use crate::session_export;
 
 /// Name of the file that lists the others.

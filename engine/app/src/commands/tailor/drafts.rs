@@ -6,9 +6,8 @@ use toile_assets::draping::{self, PatternPackage, PatternSizes, SizedDraft};
 use toile_assets::sizes::{GarmentKind, SizeTable};
 use toile_base::body::{Measures, Sex};
 
+use toile_cli::exit::AppError;
 use toile_fitting::dress::offer;
-
-use crate::exit::AppError;
 
 /// For whom the drafts are that are named.
 pub struct DraftChoice<'a> {

@@ -5,20 +5,19 @@ use std::fmt::Write;
 
 use glam::Vec3;
 use toile_assets::draping::DrapedPattern;
-use toile_bake::Shape;
-use toile_bake::check::corners;
-use toile_base::fabric::Fabric;
-use toile_base::mesh::vertex_normals;
+use toile_assets::fabric::Fabric;
+use toile_assets::garment::check::corners;
+use toile_assets::garment::{Look, Shape};
+use toile_assets::mesh::vertex_normals;
+use toile_cli::exit::AppError;
+use toile_cli::output::OutputFolder;
+use toile_cli::picture::write_png;
 use toile_view::cloth_look::GarmentLook;
 use toile_view::contact_sheet;
 use toile_view::figure::Figure;
 use toile_view::image::{Image, Size, linear};
 use toile_view::scene::{Camera, Colours, Material, Scene, Surface};
 use toile_view::trace::{TraceQuality, TracedScene};
-
-use crate::exit::AppError;
-use crate::output::OutputFolder;
-use crate::pictures::write_png;
 
 /// A picture of one side.
 const STILL: Size = Size::new(480, 800);

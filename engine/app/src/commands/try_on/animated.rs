@@ -4,10 +4,10 @@ use std::path::Path;
 
 use toile_assets::import::avatar::{ImportOptions, MovingBody, read_moving};
 use toile_assets::sizes::Population;
+use toile_cli::exit::AppError;
 use toile_fitting::dress::choice::Choice;
 use toile_fitting::dress::{measured, motion, wish};
 
-use crate::exit::AppError;
 use crate::report::AnimationReport;
 
 /// The body of a file and its motion by the animation of this name.

@@ -1,12 +1,11 @@
 //! What is worn: garments in the sizes that fit, and what is said of them.
 
 use toile_assets::wardrobe::own;
-use toile_base::body::Body;
+use toile_cli::exit::AppError;
 use toile_fitting::dress::choice::{Choice, Worn};
 use toile_fitting::dress::measured::Measured;
 use toile_fitting::dress::outfit::Outfit;
 
-use crate::exit::AppError;
 use crate::report::Recommendation;
 
 /// Sizes and bakes every garment, and tucks in those that are named.

@@ -1,9 +1,9 @@
 //! Laws of the decoder: frames are complete, time runs forwards, and whatever is wrong is counted.
 
-use rosc::{OscBundle, OscTime, encoder};
-use toile_base::skeleton::Joint;
+use rosc::{OscBundle, OscMessage, OscPacket, OscTime, OscType, encoder};
+use toile_assets::skeleton::Joint;
 
-use super::*;
+use super::{Decoder, Drops, MAX_PACKET_BYTES, Vec3};
 
 fn float(address: &str, args: Vec<OscType>) -> OscPacket {
     OscPacket::Message(OscMessage { addr: address.to_owned(), args })

@@ -1,0 +1,71 @@
+//! `toile bench`: what one part of the frame costs, with the error at that speed.
+//!
+//! Reads: arguments, recordings and surveys. Writes: tables or one JSON object on stdout, charts where they are asked for.
+//! Budget: seconds to minutes, as each benchmark's help says.
+//! Thread: the main thread, and those that a benchmark measures.
+
+use clap::Subcommand;
+use toile_cli::exit::AppError;
+
+pub(super) mod backend;
+mod body;
+mod capture;
+mod contact;
+mod depth;
+mod drape;
+mod filters;
+mod gestures;
+mod gestures_report;
+mod measure;
+mod own_picture;
+mod silhouettes;
+mod skinning;
+mod skinning_report;
+mod skirt;
+mod skirt_summary;
+mod tablecloth;
+mod webcam;
+mod worn_summary;
+
+/// Time one part of the frame, with the error at that speed.
+#[derive(Debug, Clone, PartialEq, Subcommand)]
+#[command(after_help = "Example: the cost of a step of cloth, with its strain\n  toile bench skirt --motion walk")]
+pub enum BenchCommand {
+    Skinning(skinning::SkinningArgs),
+    Skirt(skirt::SkirtArgs),
+    Body(body::BodyBenchArgs),
+    Measure(measure::MeasureBenchArgs),
+    Filters(filters::FiltersArgs),
+    Gestures(gestures::GesturesArgs),
+    Depth(depth::DepthArgs),
+    Contact(contact::ContactArgs),
+    Webcam(webcam::WebcamBenchArgs),
+    OwnPicture(own_picture::OwnPictureArgs),
+    Drape(drape::DrapeArgs),
+    Tablecloth(tablecloth::TableclothArgs),
+    Capture(capture::CaptureBenchArgs),
+    Silhouettes(silhouettes::SilhouettesArgs),
+}
+
+/// Runs `toile bench`.
+///
+/// # Errors
+/// As each benchmark says.
+pub fn run(command: &BenchCommand) -> Result<(), AppError> {
+    match command {
+        BenchCommand::Skinning(args) => skinning::run(args),
+        BenchCommand::Skirt(args) => skirt::run(args),
+        BenchCommand::Body(args) => body::run(args),
+        BenchCommand::Measure(args) => measure::run(args),
+        BenchCommand::Filters(args) => filters::run(args),
+        BenchCommand::Gestures(args) => gestures::run(args),
+        BenchCommand::Depth(args) => depth::run(args),
+        BenchCommand::Contact(args) => contact::run(args),
+        BenchCommand::Webcam(args) => webcam::run(args),
+        BenchCommand::OwnPicture(args) => own_picture::run(args),
+        BenchCommand::Drape(args) => drape::run(args),
+        BenchCommand::Tablecloth(args) => tablecloth::run(args),
+        BenchCommand::Capture(args) => capture::run(args),
+        BenchCommand::Silhouettes(args) => silhouettes::run(args),
+    }
+}

@@ -1,0 +1,69 @@
+//! The built program, as a script meets it. Tests of the programs include this file; each names its program as `crate::PROGRAM`.
+
+#![allow(dead_code, reason = "each program uses its part")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+
+/// A folder of a test's own, empty; it goes with the test.
+pub struct Scratch(PathBuf);
+
+impl Scratch {
+    pub fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("toile-{}-{name}", std::process::id()));
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(&path).expect("the temporary folder can be written");
+        Self(path)
+    }
+
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+
+    /// Runs the program in this folder.
+    pub fn toile(&self, args: &[&str]) -> Output {
+        let mut command = Command::new(crate::PROGRAM);
+        command.stdin(Stdio::null()).env_remove("RUST_BACKTRACE").current_dir(&self.0);
+        // Graphics drivers complain on stderr where there is none.
+        command.env("XDG_RUNTIME_DIR", &self.0);
+        command.args(args).output().expect("the built program starts")
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// What a run printed.
+pub fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).expect("stdout is UTF-8")
+}
+
+/// The one object that a run printed, which said nothing beside it.
+pub fn object(output: &Output) -> Value {
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    assert!(said.is_empty(), "with --json nothing is said: {said}");
+    serde_json::from_slice(&output.stdout).expect("stdout is exactly one JSON object")
+}
+
+/// The one line on stderr of a run.
+pub fn sentence(output: &Output) -> String {
+    let said = String::from_utf8(output.stderr.clone()).expect("stderr is UTF-8");
+    assert_eq!(said.lines().count(), 1, "not one line: {said}");
+    assert!(said.starts_with("toile: ") && said.ends_with('\n'), "{said}");
+    said
+}
+
+/// The sentence of a run that was refused with a code, and printed no data.
+pub fn refusal(output: &Output, code: i32) -> String {
+    let said = sentence(output);
+    assert_eq!(output.status.code(), Some(code), "{said}");
+    assert!(output.stdout.is_empty(), "data beside: {said}");
+    said
+}
