@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::recordings;
-use toile_assets::numeric::random::SplitMix64;
+use toile_base::numeric::random::SplitMix64;
 use toile_perf::ansur::Survey;
 use toile_perf::measuring::{
     Family, MeasuredPerson, MeasuringAgreement, MeasuringOptions, MeasuringStudy, Moment, PersonSurfaces, Sensor,

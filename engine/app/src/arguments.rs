@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use toile_assets::export::ExportFormat;
-use toile_assets::limits::STEP_HZ;
+use toile_base::limits::STEP_HZ;
 use toile_cli::arguments::one_of;
 use toile_cli::exit::AppError;
 use toile_view::figure::{Appearance, Hair, SkinTone};

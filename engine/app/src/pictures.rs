@@ -6,7 +6,7 @@ use std::io::BufWriter;
 use std::ops::RangeInclusive;
 
 use glam::Vec3;
-use toile_assets::limits::STEP_HZ;
+use toile_base::limits::STEP_HZ;
 use toile_cli::exit::AppError;
 use toile_cli::output::OutputFolder;
 use toile_cli::picture::write_png;

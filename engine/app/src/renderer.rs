@@ -4,7 +4,7 @@
 //! Budget: a second for a still by rays, milliseconds on a GPU.
 //! Thread: the main thread; rays use every core.
 
-use toile_assets::garment::Garment;
+use toile_base::garment::Garment;
 use toile_cli::exit::AppError;
 use toile_engine::lines::Line;
 use toile_view::figure::Figure;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use toile_assets::limits::STEP_HZ;
+use toile_base::limits::STEP_HZ;
 use toile_cli::exit::AppError;
 use toile_cli::terminal::Progress;
 use toile_engine::frame::Snapshot;

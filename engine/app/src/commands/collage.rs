@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
+use toile_base::body::{Body, Measures, Sex};
 use toile_assets::catalogue::{CollageGarment, CollagePictures, limits};
 use toile_assets::file::{self, FileKind};
 use toile_assets::sizes::SizeTable;

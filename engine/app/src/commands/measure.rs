@@ -8,7 +8,7 @@ use toile_track::estimate::Estimate;
 use toile_track::fit::measuring::{FittedMeasures, MEASURES};
 use toile_track::measures;
 
-use toile_assets::body::Sex;
+use toile_base::body::Sex;
 use toile_cli::arguments::{Printing, TapeArgs, one_of};
 use toile_cli::document::{DefinedMeasure, Document, MeasuredLength, in_mm};
 use toile_cli::exit::AppError;

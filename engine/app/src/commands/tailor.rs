@@ -12,6 +12,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use serde::Serialize;
+use toile_base::body::Sex;
 use toile_assets::drafting;
 use toile_assets::draping::{self, DrapedPattern, PatternPackage};
 use toile_assets::sizes::GarmentKind;

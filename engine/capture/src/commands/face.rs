@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::slice::from_ref;
 
 use serde::Serialize;
-use toile_assets::body::Sex;
+use toile_base::body::Sex;
 use toile_cli::arguments::{Printing, one_of};
 use toile_cli::document::Document;
 use toile_cli::exit::AppError;

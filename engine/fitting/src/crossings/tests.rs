@@ -1,7 +1,7 @@
 //! The crossing test against shapes whose crossings are known, and against all pairs one by one in whole numbers.
 
 use glam::{DVec3, I64Vec3};
-use toile_assets::numeric::random::SplitMix64;
+use toile_base::numeric::random::SplitMix64;
 
 use super::mesh::unique_edges;
 use super::predicate::passes_through;

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use serde::Serialize;
+use toile_base::fabric::Fabric;
 use toile_assets::put_line;
 use toile_cli::arguments::quality;
 use toile_cli::document::Document;

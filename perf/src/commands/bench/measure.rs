@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 use serde::Serialize;
-use toile_assets::body::Sex;
+use toile_base::body::Sex;
 use toile_cli::arguments::{Printing, count};
 use toile_cli::document::Document;
 use toile_cli::exit::AppError;

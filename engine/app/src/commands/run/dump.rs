@@ -9,6 +9,7 @@ use std::fmt::Write as _;
 use glam::Vec3;
 use toile_assets::export::session::ExportFrame;
 use toile_assets::export::{ExportFormat, ExportPlan, FrameRate, MovingPart, SessionExport, SurfaceLook};
+use toile_bake::check::corners;
 use toile_assets::scene_file::{SceneGarment, UserMesh};
 use toile_cli::exit::AppError;
 use toile_cli::output::OutputFolder;

@@ -5,10 +5,10 @@ use std::fmt::Write;
 
 use glam::Vec3;
 use toile_assets::draping::DrapedPattern;
-use toile_assets::fabric::Fabric;
-use toile_assets::garment::check::corners;
-use toile_assets::garment::{Look, Shape};
-use toile_assets::mesh::vertex_normals;
+use toile_base::fabric::Fabric;
+use toile_bake::check::corners;
+use toile_bake::Shape;
+use toile_base::mesh::vertex_normals;
 use toile_cli::exit::AppError;
 use toile_cli::output::OutputFolder;
 use toile_cli::picture::write_png;

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use serde_json::Value;
+use toile_base::body::{Body, Measures, Sex};
 use toile_assets::draping::{self, PatternPackage, PatternSizes, TO_MEASURE};
 use toile_assets::file::{self, FileKind};
 use toile_assets::pattern::Pattern;

@@ -1,5 +1,6 @@
 //! What is worn: garments in the sizes that fit, and what is said of them.
 
+use toile_base::body::Body;
 use toile_assets::wardrobe::own;
 use toile_cli::exit::AppError;
 use toile_fitting::dress::choice::{Choice, Worn};
