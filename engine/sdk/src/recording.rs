@@ -198,7 +198,7 @@ impl Measured {
         if let Some(fitted) = self.inner.fitted.as_ref().filter(|_| !self.has_joints && !self.has_tape) {
             return Ok(Body::of_shape(fitted.body.body.clone(), known, Vec::new()));
         }
-        let sex = self.inner.sex(wish::population(garments.iter().map(Garment::choice))?);
+        let sex = self.inner.sex(wish::population(garments.iter().map(Garment::source))?);
         let (shape, note) = measured_body::build(sex, &known, Population::from(Some(sex)))?;
         Ok(Body::of_shape(shape, known, note.into_iter().collect()))
     }

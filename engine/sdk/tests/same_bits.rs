@@ -4,7 +4,7 @@ use toile_assets::rig::Rig;
 use toile_assets::scene_file::{SceneFile, SceneSource};
 use toile_engine::cloth::Settings;
 use toile_engine::frame::Frame;
-use toile_fitting::dress::choice::Choice;
+use toile_fitting::dress::garment_source::GarmentSource;
 use toile_fitting::dress::measured::{self, ShopperFacts};
 use toile_fitting::dress::player::Player;
 use toile_fitting::dress::{body, session, wish};
@@ -17,7 +17,7 @@ use toile_sdk::{Body, DressOptions, Garment, Recording, Scene, Sex, TryOnOptions
 fn a_try_on_is_the_programs_own() {
     let session = session::open(None, None).unwrap();
     let measured = measured::measure(&session, ShopperFacts::default()).unwrap();
-    let choice = Choice::find("t-shirt").unwrap();
+    let choice = GarmentSource::find("t-shirt").unwrap();
     let sex = measured.sex(wish::population([&choice]).unwrap());
     let (body, _) = body::build(sex, &measured.best, Some(sex).into()).unwrap();
     let worn = choice.put_on(None, &measured.best, &body, &[]).unwrap();

@@ -12,7 +12,7 @@ use toile_assets::catalogue::{
     Catalogue, CatalogueItem, GarmentManifest, GarmentPackage, ShopTheme, ThemeColours, contrast, package, word,
 };
 use toile_assets::wardrobe::own;
-use toile_fitting::dress::choice::Choice;
+use toile_fitting::dress::garment_source::GarmentSource;
 use toile_fitting::dress::wish::Wish;
 use toile_fitting::dress::{dressed, session};
 use toile_sensors::frame::Joints;
@@ -162,7 +162,7 @@ fn check(args: &CheckArgs) -> Result<(), AppError> {
 /// A catalogue with the garments that can be worn.
 struct Checked {
     report: CatalogueReport,
-    items: Vec<(CatalogueItem, Choice)>,
+    items: Vec<(CatalogueItem, GarmentSource)>,
 }
 
 impl Checked {
@@ -194,13 +194,13 @@ impl Checked {
 }
 
 /// The garment of a package and its sizes.
-fn opened(path: &Path) -> Result<(Choice, Vec<String>), AppError> {
-    let choice = Choice::open(path)?;
+fn opened(path: &Path) -> Result<(GarmentSource, Vec<String>), AppError> {
+    let choice = GarmentSource::open(path)?;
     let sizes = sizes(&choice)?;
     Ok((choice, sizes))
 }
 
-fn sizes(choice: &Choice) -> Result<Vec<String>, AppError> {
+fn sizes(choice: &GarmentSource) -> Result<Vec<String>, AppError> {
     let average = Body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(AppError::internal)?;
     choice.fabric()?;
     let offer = choice.offer(&average)?;
@@ -265,7 +265,12 @@ fn sheet(args: &SheetArgs) -> Result<(), AppError> {
 }
 
 /// A garment on a body of its middle size, from the front.
-fn draw(manifest: &GarmentManifest, choice: &Choice, pose: &Joints, appearance: Appearance) -> Result<Image, AppError> {
+fn draw(
+    manifest: &GarmentManifest,
+    choice: &GarmentSource,
+    pose: &Joints,
+    appearance: Appearance,
+) -> Result<Image, AppError> {
     let wish = Wish { garments: vec![choice.name.clone()], ..Wish::default() };
     let mut dressed = dressed::mannequin(&wish, pose)?;
     for _ in 0..SETTLING {
@@ -290,7 +295,7 @@ fn pack(args: &PackArgs) -> Result<(), AppError> {
     let (bytes, manifest) = package::pack(&args.folder).map_err(AppError::input)?;
     let shown = args.folder.display().to_string();
     let package = GarmentPackage::of_bytes(&shown, bytes.clone()).map_err(AppError::input)?;
-    let sizes = sizes(&Choice::of_package(package, &shown)?)?;
+    let sizes = sizes(&GarmentSource::of_package(package, &shown)?)?;
     let files = out.write(&bytes).map_err(AppError::input)?;
     let name = args.out.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let report = CatalogueReport {

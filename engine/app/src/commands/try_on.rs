@@ -28,7 +28,7 @@ use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::frame_loop::governor::LADDER;
 use toile_engine::lines::{CAPACITY, Kind, Lines};
 use toile_engine::triple_buffer::Reader;
-use toile_fitting::dress::choice::Choice;
+use toile_fitting::dress::garment_source::GarmentSource;
 use toile_fitting::dress::measured::{self, Measured};
 use toile_fitting::dress::motion::{self, SessionMotion};
 use toile_fitting::dress::wish::{self, Wish};
@@ -284,7 +284,7 @@ fn wish(args: &TryOnArgs) -> Result<Wish, AppError> {
 fn worn_body(
     args: &TryOnArgs,
     measured: &mut Measured,
-    choices: &[Choice],
+    choices: &[GarmentSource],
     (has_joints, moving): (bool, Option<&MovingBody>),
 ) -> Result<(Body, Option<String>), AppError> {
     let sex = measured.sex(wish::population(choices)?);

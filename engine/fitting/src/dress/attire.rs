@@ -2,19 +2,19 @@
 
 use std::sync::Arc;
 
-use super::choice::Choice;
+use super::garment_source::GarmentSource;
 use super::wish::Wish;
 use crate::FittingError;
 
 /// Finds a garment by its name.
-pub type FindChoice<'a> = &'a dyn Fn(&str) -> Result<Arc<Choice>, FittingError>;
+pub type FindChoice<'a> = &'a dyn Fn(&str) -> Result<Arc<GarmentSource>, FittingError>;
 
 /// Finds a garment as it is at the moment.
 ///
 /// # Errors
-/// As [`Choice::find`].
-pub fn find_now(name: &str) -> Result<Arc<Choice>, FittingError> {
-    Choice::find(name).map(Arc::new)
+/// As [`GarmentSource::find`].
+pub fn find_now(name: &str) -> Result<Arc<GarmentSource>, FittingError> {
+    GarmentSource::find(name).map(Arc::new)
 }
 
 /// A wish with its garments.
@@ -23,7 +23,7 @@ pub struct Attire {
     /// What is asked for.
     pub wish: Wish,
     /// The garments, inner first.
-    pub choices: Vec<Arc<Choice>>,
+    pub choices: Vec<Arc<GarmentSource>>,
 }
 
 impl Attire {
@@ -39,8 +39,8 @@ impl Attire {
     /// A garment by its name: one of these, or as it is at the moment.
     ///
     /// # Errors
-    /// As [`Choice::find`].
-    pub fn find(&self, name: &str) -> Result<Arc<Choice>, FittingError> {
+    /// As [`GarmentSource::find`].
+    pub fn find(&self, name: &str) -> Result<Arc<GarmentSource>, FittingError> {
         match self.choices.iter().find(|choice| choice.name == name) {
             Some(choice) => Ok(choice.clone()),
             None => find_now(name),

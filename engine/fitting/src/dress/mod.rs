@@ -9,9 +9,9 @@
 
 pub mod attire;
 pub mod body;
-pub mod choice;
 pub mod depth;
 pub mod dressed;
+pub mod garment_source;
 pub mod measured;
 pub mod motion;
 pub mod offer;

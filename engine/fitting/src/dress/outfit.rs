@@ -6,14 +6,14 @@ use toile_assets::sizes::Girth;
 use toile_engine::cloth::layers::tuck_in;
 use toile_track::measure::Measurements;
 
-use super::choice::{Choice, Worn};
+use super::garment_source::{FittedGarment, GarmentSource};
 use crate::FittingError;
 
 /// Garments on one body.
 #[derive(Debug, Clone, Default)]
 pub struct Outfit {
     /// What became of each choice, without its garments, inner first.
-    pub worn: Vec<Worn>,
+    pub worn: Vec<FittedGarment>,
     /// The baked garments of all of them, inner first.
     pub garments: Vec<Garment>,
     /// Which of the choices each garment is of `[garments]`.
@@ -26,7 +26,7 @@ impl Outfit {
     /// # Errors
     /// A size that is not made, a garment that cannot be laid on the body.
     pub fn put_on<'a>(
-        choices: impl IntoIterator<Item = (&'a Choice, Option<&'a str>)>,
+        choices: impl IntoIterator<Item = (&'a GarmentSource, Option<&'a str>)>,
         measured: &Measurements,
         wearer: &Body,
     ) -> Result<Self, FittingError> {

@@ -6,7 +6,7 @@ use toile_assets::sizes::Population;
 use toile_engine::cloth::Quality;
 use toile_track::tape_readings::TapeReadings;
 
-use super::choice::Choice;
+use super::garment_source::GarmentSource;
 use super::measured::ShopperFacts;
 use crate::FittingError;
 
@@ -39,9 +39,9 @@ impl Wish {
     ///
     /// # Errors
     /// More than a body wears; a name that there is not, a file that cannot be used.
-    pub fn choices(&self) -> Result<Vec<Choice>, FittingError> {
+    pub fn choices(&self) -> Result<Vec<GarmentSource>, FittingError> {
         self.check_count()?;
-        self.names().into_iter().map(Choice::find).collect()
+        self.names().into_iter().map(GarmentSource::find).collect()
     }
 
     /// Whether a body can wear so many.
@@ -79,7 +79,7 @@ pub const fn shown_first(sex: Option<Sex>) -> &'static [&'static str] {
 ///
 /// # Errors
 /// A garment whose size table cannot be used.
-pub fn population<'a>(choices: impl IntoIterator<Item = &'a Choice>) -> Result<Population, FittingError> {
+pub fn population<'a>(choices: impl IntoIterator<Item = &'a GarmentSource>) -> Result<Population, FittingError> {
     for choice in choices {
         let population = choice.population()?;
         if population != Population::Mixed {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use toile_assets::catalogue::{Catalogue, CatalogueItem};
 use toile_assets::file::{self, FileStamp};
 use toile_fitting::dress::attire::Attire;
-use toile_fitting::dress::choice::Choice;
+use toile_fitting::dress::garment_source::GarmentSource;
 use toile_fitting::dress::wish::Wish;
 
 use super::config::Config;
@@ -142,7 +142,7 @@ impl Reading<'_> {
     }
 
     /// What the configuration names, article numbers by their packages; nothing where it leaves that to the catalogue.
-    fn named(&mut self, catalogue: Option<&Catalogue>) -> Result<Vec<Arc<Choice>>, KioskError> {
+    fn named(&mut self, catalogue: Option<&Catalogue>) -> Result<Vec<Arc<GarmentSource>>, KioskError> {
         let wish = self.config.wish();
         wish.check_count()?;
         let mut choices = Vec::new();
@@ -163,7 +163,7 @@ impl Reading<'_> {
     }
 
     /// The first garment of a catalogue that can be worn.
-    fn first_of(&mut self, catalogue: &Catalogue) -> Result<Arc<Choice>, KioskError> {
+    fn first_of(&mut self, catalogue: &Catalogue) -> Result<Arc<GarmentSource>, KioskError> {
         for item in &catalogue.items {
             let name = item.path.display().to_string();
             match self.open(&name) {
@@ -176,7 +176,7 @@ impl Reading<'_> {
     }
 
     /// A garment, as it was open before where its file is still the same.
-    fn open(&self, name: &str) -> Result<Arc<Choice>, KioskError> {
+    fn open(&self, name: &str) -> Result<Arc<GarmentSource>, KioskError> {
         let stamp = file::stamp(Path::new(name));
         if let Some(before) = self.before {
             let mut open = before.first.choices.iter().zip(&before.stamps);
@@ -184,6 +184,6 @@ impl Reading<'_> {
                 return Ok(choice.clone());
             }
         }
-        Choice::find(name).map(Arc::new)
+        GarmentSource::find(name).map(Arc::new)
     }
 }

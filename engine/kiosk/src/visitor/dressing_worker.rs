@@ -12,8 +12,8 @@ use toile_engine::cloth::Quality;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_fitting::FittingError;
 use toile_fitting::dress::attire::Attire;
-use toile_fitting::dress::choice::Choice;
 use toile_fitting::dress::dressed::Dressed;
+use toile_fitting::dress::garment_source::GarmentSource;
 use toile_fitting::dress::measured::{self, ShopperFacts};
 use toile_fitting::dress::recipe::Recipe;
 use toile_fitting::live::background::{BackgroundJob, Finished};
@@ -114,7 +114,7 @@ pub struct DressingContext {
     /// Makes heads of faces, where shoppers may have theirs taken.
     faces: Option<Arc<Mutex<FaceMaker>>>,
     /// What this shopper has put on, open, the last one last: they keep it, whatever becomes of its file.
-    worn: Mutex<Vec<Arc<Choice>>>,
+    worn: Mutex<Vec<Arc<GarmentSource>>>,
 }
 
 /// Runs one job at a time on a thread of its own, beside the live loop.
@@ -209,7 +209,7 @@ impl DressingContext {
     }
 
     /// A garment as it hangs: one whose file is another one by now is not what the shopper has seen.
-    fn find(&self, name: &str) -> Result<Arc<Choice>, FittingError> {
+    fn find(&self, name: &str) -> Result<Arc<GarmentSource>, FittingError> {
         if let Some(first) = self.first.choices.iter().find(|choice| choice.name == name) {
             return Ok(first.clone());
         }
@@ -217,7 +217,7 @@ impl DressingContext {
         let found = match worn.iter().position(|choice| choice.name == name) {
             Some(place) => worn.remove(place),
             None => {
-                let found = Choice::find(name).map(Arc::new)?;
+                let found = GarmentSource::find(name).map(Arc::new)?;
                 let hung = self.wardrobe.items.iter().find(|item| item.name == name).and_then(|item| item.stamp);
                 if hung.is_some() && hung != file::stamp(Path::new(name)) {
                     return Err(FittingError::Input(format!(

@@ -10,7 +10,7 @@ use toile_assets::skeleton::Joint;
 use toile_engine::cloth::measure;
 use toile_engine::frame::{Frame, Snapshot as FrameSnapshot};
 use toile_engine::triple_buffer::Reader;
-use toile_fitting::dress::choice::{ChoiceSource, Worn};
+use toile_fitting::dress::garment_source::{FittedGarment, SourceKind};
 use toile_fitting::dress::outfit::Outfit;
 use toile_fitting::dress::player::Player;
 use toile_sensors::frame::Joints;
@@ -55,7 +55,7 @@ impl DressedScene {
         check_count(garments.len())?;
         let settings = options.settings()?;
         let first = first_joints(&options.motion, &body.shape().skeleton)?;
-        let choices = garments.iter().map(|garment| (garment.choice(), garment.size()));
+        let choices = garments.iter().map(|garment| (garment.source(), garment.size()));
         let mut outfit = Outfit::put_on(choices, body.known(), body.shape())?;
         options.tuck.iter().try_for_each(|name| outfit.tuck(name))?;
         let judged = outfit.judged();
@@ -195,16 +195,16 @@ impl DressedScene {
     }
 }
 
-fn order(garment: &Garment, worn: &Worn, baked: &[BakedGarment], of: &std::ops::Range<usize>) -> VertexOrder {
-    match &garment.choice().source {
-        ChoiceSource::Mesh(own) => {
+fn order(garment: &Garment, worn: &FittedGarment, baked: &[BakedGarment], of: &std::ops::Range<usize>) -> VertexOrder {
+    match &garment.source().kind {
+        SourceKind::Mesh(own) => {
             VertexOrder::of_file(&own.file_order, &baked[of.clone()], &worn.mesh_vertices, of.start)
         }
         _ => VertexOrder::drafted(&baked[of.start], of.start),
     }
 }
 
-fn described(garment: &Garment, worn: Worn, baked: &[BakedGarment], order: &VertexOrder) -> WornGarment {
+fn described(garment: &Garment, worn: FittedGarment, baked: &[BakedGarment], order: &VertexOrder) -> WornGarment {
     let first = baked.first();
     WornGarment {
         name: garment.name().to_owned(),

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use toile_assets::import::avatar::{ImportOptions, MovingBody, read_moving};
 use toile_assets::sizes::Population;
-use toile_fitting::dress::choice::Choice;
+use toile_fitting::dress::garment_source::GarmentSource;
 use toile_fitting::dress::{measured, motion, wish};
 
 use crate::exit::AppError;
@@ -14,7 +14,7 @@ use crate::report::AnimationReport;
 ///
 /// # Errors
 /// A file that is no such body or lacks the animation, and an animation of no file.
-pub fn body(file: Option<&Path>, name: &str, choices: &[Choice]) -> Result<MovingBody, AppError> {
+pub fn body(file: Option<&Path>, name: &str, choices: &[GarmentSource]) -> Result<MovingBody, AppError> {
     let Some(file) = file.filter(|file| !file.is_dir()) else {
         let cure = "name it too, as in --body walker.glb";
         return Err(AppError::Usage(format!("--animation {name} belongs to a .glb, .gltf or .vrm file; {cure}")));

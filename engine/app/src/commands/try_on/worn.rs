@@ -2,7 +2,7 @@
 
 use toile_assets::body::Body;
 use toile_assets::wardrobe::own;
-use toile_fitting::dress::choice::{Choice, Worn};
+use toile_fitting::dress::garment_source::{FittedGarment, GarmentSource};
 use toile_fitting::dress::measured::Measured;
 use toile_fitting::dress::outfit::Outfit;
 
@@ -14,7 +14,7 @@ use crate::report::Recommendation;
 /// # Errors
 /// A size that is not made, a garment that cannot be laid on the body or tucked in.
 pub fn put_on(
-    choices: &[Choice],
+    choices: &[GarmentSource],
     size: Option<&str>,
     tucked: &[String],
     measured: &Measured,
@@ -27,8 +27,8 @@ pub fn put_on(
 }
 
 /// What is said of each garment.
-pub fn recommendations(worn: &[Worn]) -> Vec<Recommendation> {
-    let said = |worn: &Worn| match &worn.fit {
+pub fn recommendations(worn: &[FittedGarment]) -> Vec<Recommendation> {
+    let said = |worn: &FittedGarment| match &worn.fit {
         Some(fit) => fit.clone().into(),
         None => Recommendation {
             garment: worn.mesh.as_ref().map(|mesh| mesh.file.clone()).unwrap_or_default(),
