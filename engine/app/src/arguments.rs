@@ -14,7 +14,8 @@ use toile_view::figure::{Appearance, Hair, SkinTone};
 
 use crate::exit::AppError;
 use crate::terminal::Words;
-use toile_fitting::dress::wish::Wish;
+use toile_fitting::dress::measured::ShopperFacts;
+use toile_fitting::dress::try_on::TryOn;
 use toile_track::tape_readings::TapeReadings;
 
 /// What a command prints, and where.
@@ -154,20 +155,13 @@ pub struct WornArgs {
 }
 
 impl WornArgs {
-    /// The same as the scene's maker takes it.
+    /// The request of a shopper who has yet to be measured.
     ///
     /// # Errors
     /// As [`TapeArgs::readings`].
-    pub fn wish(&self) -> Result<Wish, AppError> {
-        let tape = self.tape.readings()?;
-        Ok(Wish {
-            garments: self.garments.clone(),
-            size: self.size.clone(),
-            quality: self.quality,
-            sex: None,
-            child: None,
-            tape,
-        })
+    pub fn request(&self) -> Result<TryOn, AppError> {
+        let shopper = ShopperFacts { tape: self.tape.readings()?, ..ShopperFacts::default() };
+        Ok(TryOn::of_shopper(&self.garments, self.size.as_deref(), shopper).in_quality(self.quality))
     }
 }
 

@@ -10,11 +10,10 @@ use std::sync::Arc;
 use common::Scratch;
 use serde_json::Value;
 use toile_assets::wardrobe;
-use toile_fitting::dress::attire::Attire;
 use toile_fitting::dress::measured::{self, ShopperFacts};
 use toile_fitting::dress::offer::GarmentOffer;
 use toile_fitting::dress::session;
-use toile_fitting::dress::wish::Wish;
+use toile_fitting::dress::try_on::{TryOn, Wearer};
 use toile_fitting::live::dresser::{DressJob, DressOutcome, Dresser, ShopperSource};
 use toile_sdk::{Garment, Quality, Recording, TryOnOptions, try_on};
 
@@ -39,8 +38,8 @@ fn zones(recommendation: &Value) -> Vec<(String, f64, String)> {
 
 /// The headless kiosk's door: its dresser, with the recording that it plays.
 fn dressed_by_the_kiosk(path: &Path, garment: &str) -> (String, [f32; 5]) {
-    let wish = Wish { garments: vec![garment.to_owned()], ..Wish::default() };
-    let mut dresser = Dresser::new(Arc::new(Attire::open(wish).unwrap()));
+    let request = TryOn::of_shopper(&[garment.to_owned()], None, ShopperFacts::default());
+    let mut dresser = Dresser::new(Arc::new(request.open().unwrap()));
     let recording = Arc::new(session::open(Some(path), None).unwrap());
     dresser.begin(DressJob::Shopper(ShopperSource::Recording(recording))).unwrap();
     let dressed = loop {
@@ -50,8 +49,9 @@ fn dressed_by_the_kiosk(path: &Path, garment: &str) -> (String, [f32; 5]) {
             None => std::thread::sleep(std::time::Duration::from_millis(5)),
         }
     };
-    let recipe = &dressed.dressing.recipe;
-    (recipe.garments[0].1.clone(), recipe.measures.map(f32::from_bits))
+    let Wearer::Body { measures: m, .. } = dressed.request.wearer else { panic!("nobody was measured") };
+    let measures = [m.stature, m.shoulder_breadth, m.chest_girth, m.waist_girth, m.hip_girth];
+    (dressed.request.garments[0].size.clone().unwrap(), measures)
 }
 
 /// The door of programs of others: what is measured, the size, and every bit of the cloth are those of the command.

@@ -148,7 +148,7 @@ fn thirty_of_two_hundred_garments_are_opened_in_a_fixed_memory() {
     );
 
     let first = VisitorSetup::new(&config, &stock, 0).unwrap().first();
-    let quality = config.wish().quality;
+    let quality = config.request().quality;
     let context = DressingContext::new(
         wardrobe.clone(),
         stock.first.clone(),

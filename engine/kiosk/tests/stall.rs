@@ -13,9 +13,8 @@ use toile_engine::frame::{Frame, Snapshot, SnapshotTimes};
 use toile_engine::frame_loop::governor::Rung;
 use toile_engine::frame_loop::physics_thread::{FrameScene, Scene};
 use toile_engine::frame_loop::render_thread::Renderer;
-use toile_fitting::dress::attire::Attire;
-use toile_fitting::dress::wish::Wish;
-use toile_fitting::dress::{dressed, session};
+use toile_fitting::dress::session;
+use toile_fitting::dress::try_on::TryOn;
 use toile_fitting::live::assembly::{HeadlessRenderer, LoopOptions, LoopParts};
 use toile_fitting::live::dresser::Dresser;
 use toile_fitting::live::lateness::ThreadAccount;
@@ -119,8 +118,8 @@ impl ServiceManager for Diary {
 fn serve(diary: &Diary, display: Gate, meanwhile: impl FnOnce() + Send) {
     let (session, clock) = (Arc::new(session::open(None, None).unwrap()), RealClock::default());
     let pose = session::filtered(&session)[0];
-    let attire = Arc::new(Attire::open(Wish::default()).unwrap());
-    let dressed = dressed::mannequin_in(&attire, &pose).unwrap();
+    let request = Arc::new(TryOn::default().open().unwrap());
+    let dressed = request.on_mannequin(&pose).unwrap();
     // Nobody ever comes: the stall is the only thing that happens.
     let source = Feed::Played(Visits::of(&session, clock.now_ns(), 3_600_000_000_000));
     let first = DressedScene::new(dressed, |frame| (Gated::new(frame), ()));
@@ -151,7 +150,7 @@ fn serve(diary: &Diary, display: Gate, meanwhile: impl FnOnce() + Send) {
             stop: &stop,
             print_line: &print_line,
             figures: None,
-            dresser: Dresser::new(attire),
+            dresser: Dresser::new(request),
             to_scene: Box::new(|frame| (Gated::new(frame), ())),
             pose,
             flight_recorder: None,

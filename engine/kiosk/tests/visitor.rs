@@ -21,7 +21,7 @@ use toile_engine::frame_loop::physics_thread::FrameScene;
 use toile_engine::frame_loop::queue::{Receiver, Sender, bounded};
 use toile_engine::frame_loop::render_thread::Renderer;
 use toile_engine::triple_buffer::{Reader, TripleBuffer};
-use toile_fitting::dress::{dressed, session};
+use toile_fitting::dress::session;
 use toile_fitting::live::assembly::{HeadlessRenderer, LoopOptions, LoopParts};
 use toile_fitting::live::camera_start::{self, CameraSetup, StartedCamera};
 use toile_fitting::live::depth_camera::GATHERED;
@@ -399,7 +399,7 @@ fn serve_with(config: &str, own: bool, visit: impl FnOnce(&mut Finger) + Send) -
     let setup = VisitorSetup::new(&config, &stock, clock.now_ns()).unwrap();
     let session = Arc::new(session::open(None, None).unwrap());
     let pose = session::standing(&session).unwrap()[0];
-    let dressed = dressed::mannequin_in(&stock.first, &pose).unwrap();
+    let dressed = stock.first.on_mannequin(&pose).unwrap();
     let (source, played, pictures) = source(&session, own, clock);
     let (pictures, switch) = pictures.unzip();
     let first = DressedScene::new(dressed, |frame| (FrameScene::new(frame), Worn::default()));

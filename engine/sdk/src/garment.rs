@@ -9,6 +9,7 @@ use toile_assets::fabric::Fabric;
 use toile_assets::file::{self, FileKind};
 use toile_assets::{drafting, wardrobe};
 use toile_fitting::dress::garment_source::{GarmentSource, SourceKind};
+use toile_fitting::dress::try_on::RequestedGarment;
 
 use crate::error::{Error, Result};
 
@@ -119,6 +120,11 @@ impl Garment {
 
     pub(crate) fn source(&self) -> &GarmentSource {
         &self.source
+    }
+
+    /// The garment as a request has it.
+    pub(crate) fn requested(&self) -> RequestedGarment {
+        RequestedGarment::of(self.source.clone(), self.size.clone())
     }
 }
 

@@ -5,6 +5,7 @@
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use serde::Serialize;
 use toile_assets::body::{Body, Measures, Sex};
@@ -13,8 +14,8 @@ use toile_assets::catalogue::{
 };
 use toile_assets::wardrobe::own;
 use toile_fitting::dress::garment_source::GarmentSource;
-use toile_fitting::dress::wish::Wish;
-use toile_fitting::dress::{dressed, session};
+use toile_fitting::dress::session;
+use toile_fitting::dress::try_on::{RequestedGarment, TryOn};
 use toile_sensors::frame::Joints;
 use toile_view::contact_sheet;
 use toile_view::drawn_frame::{self, DrawnFrame};
@@ -162,7 +163,7 @@ fn check(args: &CheckArgs) -> Result<(), AppError> {
 /// A catalogue with the garments that can be worn.
 struct Checked {
     report: CatalogueReport,
-    items: Vec<(CatalogueItem, GarmentSource)>,
+    items: Vec<(CatalogueItem, Arc<GarmentSource>)>,
 }
 
 impl Checked {
@@ -182,9 +183,9 @@ impl Checked {
         for item in catalogue.items {
             let package = item.path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
             match opened(&item.path) {
-                Ok((choice, sizes)) => {
+                Ok((source, sizes)) => {
                     report.garments.push(garment(package, &item.manifest, sizes));
-                    items.push((item, choice));
+                    items.push((item, Arc::new(source)));
                 }
                 Err(why) => report.refused.push(RefusedReport { package, why: why.to_string() }),
             }
@@ -195,15 +196,15 @@ impl Checked {
 
 /// The garment of a package and its sizes.
 fn opened(path: &Path) -> Result<(GarmentSource, Vec<String>), AppError> {
-    let choice = GarmentSource::open(path)?;
-    let sizes = sizes(&choice)?;
-    Ok((choice, sizes))
+    let source = GarmentSource::open(path)?;
+    let sizes = sizes(&source)?;
+    Ok((source, sizes))
 }
 
-fn sizes(choice: &GarmentSource) -> Result<Vec<String>, AppError> {
+fn sizes(source: &GarmentSource) -> Result<Vec<String>, AppError> {
     let average = Body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(AppError::internal)?;
-    choice.fabric()?;
-    let offer = choice.offer(&average)?;
+    source.fabric()?;
+    let offer = source.offer(&average)?;
     let unsized_code = || vec![own::UNKNOWN.to_owned()];
     Ok(offer.map_or_else(unsized_code, |o| o.sizes.into_iter().map(|s| s.code).collect()))
 }
@@ -237,14 +238,14 @@ fn sheet(args: &SheetArgs) -> Result<(), AppError> {
     let pose = session::standing(&embedded)?[0];
     let mut pictures = Vec::with_capacity(items.len());
     let mut captions = Vec::with_capacity(items.len());
-    for (item, choice) in &items {
-        match draw(&item.manifest, choice, &pose, args.look.appearance()) {
+    for (item, source) in &items {
+        match draw(&item.manifest, source, &pose, args.look.appearance()) {
             Ok(image) => {
                 let price = item.manifest.price.as_ref().map_or_else(String::new, |p| format!(", {p}"));
                 captions.push(format!("{}{price}", word(&item.manifest.names, "en")));
                 pictures.push(image);
             }
-            Err(why) => report.refused.push(RefusedReport { package: choice.name.clone(), why: why.to_string() }),
+            Err(why) => report.refused.push(RefusedReport { package: source.name.clone(), why: why.to_string() }),
         }
         bar.inc(1);
     }
@@ -267,17 +268,17 @@ fn sheet(args: &SheetArgs) -> Result<(), AppError> {
 /// A garment on a body of its middle size, from the front.
 fn draw(
     manifest: &GarmentManifest,
-    choice: &GarmentSource,
+    source: &Arc<GarmentSource>,
     pose: &Joints,
     appearance: Appearance,
 ) -> Result<Image, AppError> {
-    let wish = Wish { garments: vec![choice.name.clone()], ..Wish::default() };
-    let mut dressed = dressed::mannequin(&wish, pose)?;
+    let request = TryOn { garments: vec![RequestedGarment::of(source.clone(), None)], ..TryOn::default() };
+    let mut dressed = request.on_mannequin(pose)?;
     for _ in 0..SETTLING {
         dressed.frame.step(pose);
     }
     let snapshot = dressed.reader.latest().clone();
-    let colour = manifest.colours.first().map_or(choice.fabric()?.colour, |c| c.srgb).map(linear);
+    let colour = manifest.colours.first().map_or(source.fabric()?.colour, |c| c.srgb).map(linear);
     let colours = vec![colour; dressed.frame.garments().len()];
     let drawn = DrawnFrame::new(&dressed.frame, appearance).coloured(&colours);
     Ok(drawn_frame::still(drawn, &snapshot, 0.0, PICTURE))

@@ -10,7 +10,7 @@ use toile_engine::frame_loop::physics_thread::{FrameScene, SceneStepper};
 use toile_engine::frame_loop::recording::{self, Entry, Recording};
 use toile_engine::frame_loop::replay::{Replayed, replay};
 use toile_engine::workers::WorkerPool;
-use toile_fitting::dress::recipe::Recipe;
+use toile_fitting::dress::try_on::TryOn;
 
 use crate::arguments::WorkersArg;
 use crate::commands::soak::{self, SoakRecipe};
@@ -50,7 +50,7 @@ pub enum Recorded {
     /// By `toile kiosk`, which crashed.
     Kiosk(KioskRecipe),
     /// Recorded by `toile latency`.
-    Session(Recipe),
+    Session(TryOn),
 }
 
 impl Recorded {
@@ -59,7 +59,7 @@ impl Recorded {
         match self {
             Self::Soak(recipe) => &recipe.version,
             Self::Kiosk(recipe) => &recipe.version,
-            Self::Session(recipe) => &recipe.version,
+            Self::Session(request) => &request.version,
         }
     }
 }
@@ -94,7 +94,7 @@ pub fn run(args: &ReplayArgs) -> Result<(), AppError> {
     let (frame, out) = match &recorded {
         Recorded::Soak(recipe) => soak::again(recipe.soak, &entries, workers)?,
         Recorded::Kiosk(_) => kiosk_recording::again(&notes, &entries, workers).map_err(|e| bad(&e))?,
-        Recorded::Session(recipe) => session(recipe, &entries, workers).map_err(|e| bad(&e))?,
+        Recorded::Session(request) => session(request.clone(), &entries, workers).map_err(|e| bad(&e))?,
     };
     let report = ReplayReport {
         workers,
@@ -123,12 +123,12 @@ pub fn run(args: &ReplayArgs) -> Result<(), AppError> {
 }
 
 /// Takes a recording of `toile latency` again.
-fn session(recipe: &Recipe, entries: &[Entry], workers: usize) -> Result<(Frame, Replayed), AppError> {
+fn session(request: TryOn, entries: &[Entry], workers: usize) -> Result<(Frame, Replayed), AppError> {
     let Some(Entry::Dressed(first)) = entries.first() else {
         let what = "it does not begin with how the shopper was dressed; record the run again";
         return Err(AppError::Input(what.to_owned()));
     };
-    let (frame, _reader) = recipe.make(first)?;
+    let frame = request.build(first)?.frame;
     let crew = WorkerPool::new(workers).map_err(AppError::input)?;
     let mut stepper = SceneStepper::new(FrameScene::new(frame.with_workers(crew)));
     let out = replay(&mut stepper, entries, &SimClock::default());

@@ -86,6 +86,20 @@ pub struct FittedGarment {
     pub mesh: Option<MeshReport>,
 }
 
+/// The people whom these garments are made for: the first garment that is not made for everybody decides.
+///
+/// # Errors
+/// A garment whose size table cannot be used.
+pub fn population<'a>(sources: impl IntoIterator<Item = &'a GarmentSource>) -> Result<Population, FittingError> {
+    for source in sources {
+        let population = source.population()?;
+        if population != Population::Mixed {
+            return Ok(population);
+        }
+    }
+    Ok(Population::Mixed)
+}
+
 impl GarmentSource {
     /// The garment of a name: one of the wardrobe, one that is drafted, a pattern by its ending, or else a mesh, where a file of that name
     /// exists. Behind a colon its fabric may stand, one that is built in: `shirt:lawn-gingham`.

@@ -9,9 +9,8 @@ use toile_sensors::source::Session;
 use super::background::{BackgroundJob, Finished};
 use super::depth_camera::CameraHandle;
 use crate::FittingError;
-use crate::dress::attire::Attire;
-use crate::dress::dressed::{self, Dressed};
 use crate::dress::session;
+use crate::dress::try_on::{DressedWorld, TryOn};
 
 /// A job for the dresser.
 #[derive(Debug, Clone)]
@@ -69,7 +68,7 @@ impl ShopperSource {
 /// Result of a job.
 pub enum DressOutcome {
     /// Somebody is dressed: a shopper, or the mannequin, which stands still.
-    Done(Box<Dressed>),
+    Done(Box<DressedWorld>),
     /// They could not be measured; why is not reported to anybody, for it may tell of them.
     Failed,
     /// The thread that dresses panicked.
@@ -79,19 +78,19 @@ pub enum DressOutcome {
 /// Dresses everybody in the same.
 #[derive(Debug)]
 pub struct Dresser {
-    attire: Arc<Attire>,
-    job: BackgroundJob<Result<Dressed, FittingError>>,
+    request: Arc<TryOn>,
+    job: BackgroundJob<Result<DressedWorld, FittingError>>,
 }
 
 impl Dresser {
     /// One that dresses everybody in this.
-    pub fn new(attire: Arc<Attire>) -> Self {
-        Self { attire, job: BackgroundJob::default() }
+    pub fn new(request: Arc<TryOn>) -> Self {
+        Self { request, job: BackgroundJob::default() }
     }
 
     /// From the next job on, everybody is dressed in something else.
-    pub fn change(&mut self, attire: Arc<Attire>) {
-        self.attire = attire;
+    pub fn change(&mut self, request: Arc<TryOn>) {
+        self.request = request;
     }
 
     /// Whether a job is under way, wanted or not.
@@ -104,10 +103,10 @@ impl Dresser {
     /// # Errors
     /// Where the system gives no thread.
     pub fn begin(&mut self, job: DressJob) -> std::io::Result<()> {
-        let attire = self.attire.clone();
+        let request = self.request.clone();
         self.job.start("toile-dresser", move || match job {
-            DressJob::Shopper(source) => dressed::shopper(&source.session(), &attire),
-            DressJob::Mannequin(pose) => dressed::mannequin_in(&attire, &pose),
+            DressJob::Shopper(source) => request.on_shopper(&source.session()),
+            DressJob::Mannequin(pose) => request.on_mannequin(&pose),
         })
     }
 
@@ -120,7 +119,7 @@ impl Dresser {
     pub fn poll(&mut self) -> Option<DressOutcome> {
         match self.job.poll()? {
             Finished::Panicked => Some(DressOutcome::Panicked),
-            Finished::Done { value: Ok(dressed), wanted } if wanted || dressed.dressing.still => {
+            Finished::Done { value: Ok(dressed), wanted } if wanted || dressed.still => {
                 Some(DressOutcome::Done(Box::new(dressed)))
             }
             Finished::Done { value: Err(_), wanted: true } => Some(DressOutcome::Failed),

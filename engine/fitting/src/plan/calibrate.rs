@@ -16,7 +16,6 @@ use toile_assets::rig::Rig;
 use toile_assets::scene_file::{SceneFile, SceneSource};
 use toile_assets::skeleton::Joint;
 use toile_engine::cloth::{Settings, program};
-use toile_engine::frame::Frame;
 use toile_engine::meter::STAGES as STEP_STAGES;
 use toile_engine::workers::{SHARES, WorkerPool};
 use toile_sensors::frame::Joints;
@@ -26,6 +25,7 @@ use super::cost::Costs;
 use super::fit::fit;
 use super::scene::{Playing, Scene};
 use super::work::{FirstStep, STAGES, Work, beside};
+use crate::dress::try_on::DressedBody;
 use crate::timing;
 
 /// Steps of each cloth that are not timed, and those that are.
@@ -189,7 +189,7 @@ fn meeting_us(scene: &Scene, costs: &Costs) -> Result<f64, PlanError> {
 /// The stages of a frame in which nothing is worn (us).
 fn body_us(body: &Body, rig: &Rig, track: &[Joints], workers: usize) -> Result<[f64; STEP_STAGES.len()], PlanError> {
     let settings = Settings { workers, ..Settings::default() };
-    let (mut frame, _reader) = Frame::new(body.clone(), rig, Vec::new(), settings)?;
+    let (mut frame, _reader) = DressedBody::new(rig.clone(), body.clone(), Vec::new()).build(settings)?;
     frame.measure_every(0);
     for k in 0..EMPTY_STEPS {
         if let Some(joints) = track.get(k * track.len() / EMPTY_STEPS) {

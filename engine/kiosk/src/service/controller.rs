@@ -6,9 +6,8 @@ use std::sync::Arc;
 use toile_engine::frame::Frame;
 use toile_engine::frame_loop::physics_thread::Scene;
 use toile_engine::frame_loop::sensor_thread::ObservedFrame;
-use toile_fitting::dress::attire::Attire;
-use toile_fitting::dress::dressed::Dressed;
 use toile_fitting::dress::session;
+use toile_fitting::dress::try_on::{DressedWorld, TryOn};
 use toile_fitting::live::dresser::{DressJob, DressOutcome, Dresser, ShopperSource};
 use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
 use toile_sensors::frame::Joints;
@@ -43,7 +42,7 @@ pub struct ControllerContext<S, O> {
 
 impl<S: Scene, O> ControllerContext<S, O> {
     /// Somebody dressed, as the loop takes them.
-    pub fn scene(&self, dressed: Dressed) -> DressedScene<S, O> {
+    pub fn scene(&self, dressed: DressedWorld) -> DressedScene<S, O> {
         DressedScene::new(dressed, &self.to_scene)
     }
 
@@ -64,7 +63,7 @@ impl<S: Scene, O> ControllerContext<S, O> {
     }
 
     /// From now on everybody wears something else first, the mannequin too, where there is another one.
-    pub fn restock(&mut self, first: Arc<Attire>, mannequin: Option<Box<Dressed>>) {
+    pub fn restock(&mut self, first: Arc<TryOn>, mannequin: Option<Box<DressedWorld>>) {
         self.dresser.change(first);
         if let Some(mannequin) = mannequin {
             let scene = self.scene(*mannequin);
@@ -112,7 +111,7 @@ pub struct HeadlessController {
     seen: (u64, bool),
     /// What the shopper is measured from, and who was made of it.
     model: Vec<Joints>,
-    fitted: Option<Box<Dressed>>,
+    fitted: Option<Box<DressedWorld>>,
     dressed: bool,
     watch: Option<StockWatch<()>>,
 }

@@ -35,7 +35,6 @@ use toile_engine::frame_loop::physics_thread::FrameScene;
 use toile_engine::frame_loop::render_thread::Renderer;
 use toile_engine::frame_loop::threads;
 use toile_engine::triple_buffer::Writer;
-use toile_fitting::dress::dressed;
 use toile_fitting::dress::session as sessions;
 use toile_fitting::live::assembly::{HeadlessRenderer, LoopOptions, LoopParts};
 use toile_fitting::live::dresser::{Dresser, ShopperSource};
@@ -202,7 +201,7 @@ where
     let session = played_session(config)?;
     // The mannequin stands as somebody does in the recording: a pose, and no body.
     let pose = sessions::standing(&session)?[0];
-    let dressed = dressed::mannequin_in(&stock.first, &pose)?;
+    let dressed = stock.first.on_mannequin(&pose)?;
     let SensorFeeds { feed, played, pictures, switch, portraits } = feed(config, session, clock)?;
     let workers = config.machine.workers.unwrap_or_else(workers);
     let (crew, worker) = threads::worker_pool(workers).map_err(KioskError::input)?;
@@ -219,7 +218,7 @@ where
         warnings: locked.err().map(|e| e.to_string()).into_iter().collect(),
     };
     let (flight_recorder, recording) = match config.crash.recording.clone() {
-        Some(path) => recording::keep(&dressed.dressing, path)
+        Some(path) => recording::keep(&dressed, path)
             .map(|(flight_recorder, recording)| (Some(flight_recorder), Some(recording)))?,
         None => (None, None),
     };

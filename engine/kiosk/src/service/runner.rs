@@ -216,7 +216,7 @@ impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
             self.controller.frame(frame);
         }
         match self.context.dresser.poll() {
-            Some(DressOutcome::Done(mannequin)) if mannequin.dressing.still => {
+            Some(DressOutcome::Done(mannequin)) if mannequin.still => {
                 let scene = self.context.scene(*mannequin);
                 self.context.changer.stand_by(scene);
             }

@@ -178,7 +178,7 @@ impl<'a, O> VisitController<'a, O> {
             && context.is_at_rest()
             && let Some(StockChange { stock, hung, mannequin }) = watch.take()
         {
-            self.model.restock(hung.clone(), stock.first.wish.garments.clone());
+            self.model.restock(hung.clone(), stock.first.names());
             self.worker.restock(hung, stock.first.clone());
             context.restock(stock.first, mannequin);
         }

@@ -54,14 +54,14 @@ impl VisitorSetup {
             times: VisitTimes::usual(config.times(), measure_ns, config::ns(display.picture_minutes * MINUTE_S)),
             language: Language::of(&display.language).unwrap_or_default(),
             large: display.large_type,
-            wear: stock.first.wish.garments.clone(),
+            wear: stock.first.names(),
             size: config.wear.size.clone(),
             tape,
             motion: display.motion,
             own_picture: display.own_picture == OwnPictureUse::First,
         };
         let first = stock.first.clone();
-        let (quality, appearance) = (config.wish().quality, display.appearance());
+        let (quality, appearance) = (stock.first.quality, display.appearance());
         let context = DressingContext::new(wardrobe.clone(), first, quality, facts, appearance);
         let context = context.serving(config.picture.clone()).making_faces(faces(config, &files::folder())?);
         let model = VisitModel::new(defaults, wardrobe, now_ns);

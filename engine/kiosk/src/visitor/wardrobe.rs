@@ -12,7 +12,6 @@ use toile_assets::drafting::{self, DraftStyle};
 use toile_assets::file::{self, FileStamp};
 use toile_assets::sizes::{GarmentKind, Population};
 use toile_assets::wardrobe::own;
-use toile_fitting::dress::attire;
 use toile_fitting::dress::garment_source::{GarmentSource, SourceKind};
 use toile_fitting::dress::offer::GarmentOffer;
 
@@ -310,7 +309,7 @@ impl Wardrobe {
     /// A garment whose file, sizes or fabric cannot be used.
     pub fn stock() -> Result<Self, KioskError> {
         let average = average()?;
-        let hung = |(name, _): &(&str, TextKey)| WardrobeItem::of(&*attire::find_now(name)?, &average);
+        let hung = |(name, _): &(&str, TextKey)| WardrobeItem::of(&GarmentSource::find(name)?, &average);
         Ok(Self::hung(STOCK.iter().map(hung).collect::<Result<_, KioskError>>()?, None))
     }
 
@@ -337,9 +336,9 @@ impl Wardrobe {
             }
             None => items = Self::stock()?.items,
         }
-        for source in &stock.first.choices {
-            if !items.iter().any(|item| item.is(&source.name)) {
-                items.push(WardrobeItem::of(source, &average)?);
+        for garment in &stock.first.garments {
+            if !items.iter().any(|item| item.is(&garment.name)) {
+                items.push(WardrobeItem::of(&*garment.source()?, &average)?);
             }
         }
         Ok(Self::hung(items, stock.catalogue.as_ref().and_then(|catalogue| catalogue.theme.clone())))

@@ -1,30 +1,9 @@
-//! What is worn: garments in the sizes that fit, and what is said of them.
+//! What is said of the garments that are worn.
 
-use toile_assets::body::Body;
 use toile_assets::wardrobe::own;
-use toile_fitting::dress::garment_source::{FittedGarment, GarmentSource};
-use toile_fitting::dress::measured::Measured;
-use toile_fitting::dress::outfit::Outfit;
+use toile_fitting::dress::garment_source::FittedGarment;
 
-use crate::exit::AppError;
 use crate::report::Recommendation;
-
-/// Sizes and bakes every garment, and tucks in those that are named.
-///
-/// # Errors
-/// A size that is not made, a garment that cannot be laid on the body or tucked in.
-pub fn put_on(
-    choices: &[GarmentSource],
-    size: Option<&str>,
-    tucked: &[String],
-    measured: &Measured,
-    body: &Body,
-) -> Result<Outfit, AppError> {
-    let mut outfit = Outfit::put_on(choices.iter().map(|choice| (choice, size)), &measured.best, body)?;
-    let mut tucked = tucked.iter();
-    tucked.try_for_each(|name| outfit.tuck(name)).map_err(|why| AppError::input(format!("--tuck: {why}")))?;
-    Ok(outfit)
-}
 
 /// What is said of each garment.
 pub fn recommendations(worn: &[FittedGarment]) -> Vec<Recommendation> {

@@ -15,7 +15,8 @@ use glam::{Affine3A, Vec2};
 use painted_face::{PaintedHead, Shot};
 use toile_assets::body::Sex;
 use toile_engine::frame::{Frame, Snapshot};
-use toile_fitting::dress::{dressed, session};
+use toile_fitting::dress::session;
+use toile_fitting::dress::try_on::DressedWorld;
 use toile_pose::files::{self, NetworkPackage};
 use toile_sensors::colour_camera::ColourCamera;
 use toile_sensors::frame::Joints;
@@ -57,7 +58,7 @@ fn face(folder: &Path) -> Arc<OwnHead> {
 fn hanging() -> (Frame, Snapshot) {
     let stock = Stock::read(&Config::parse("k.toml", "[wear]\ngarments = [\"strap-dress\"]\n").unwrap()).unwrap();
     let pose: Joints = session::standing(&session::open(None, None).unwrap()).unwrap()[0];
-    let dressed::Dressed { mut frame, mut reader, .. } = dressed::mannequin_in(&stock.first, &pose).unwrap();
+    let DressedWorld { mut frame, mut reader, .. } = stock.first.on_mannequin(&pose).unwrap();
     (0..STEPS).for_each(|_| {
         frame.step(&pose);
     });
