@@ -218,7 +218,7 @@ impl Frame {
 
     /// How often what is left of contact is looked for.
     pub fn set_contact(&mut self, every: ContactRates) {
-        self.settings.contact_every = every;
+        self.settings.contact = every;
         if let Some(layers) = &mut self.layers
             && !layers.asked(&self.settings)
         {

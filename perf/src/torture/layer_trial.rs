@@ -5,7 +5,7 @@ use toile_assets::bake::bake;
 use toile_assets::garment::{Garment, MeshError, Part, Shape};
 use toile_assets::skeleton::BONES;
 use toile_engine::cloth::layers::Layers;
-use toile_engine::cloth::{Cloth, Settings, Step};
+use toile_engine::cloth::{Cloth, ContactRates, Settings, Step};
 use toile_engine::colliders::Colliders;
 use toile_engine::workers::WorkerPool;
 
@@ -59,7 +59,7 @@ impl LayerTrial {
             crossed: CrossedEdges::new(&faces),
             layers: Layers::new(&garments).expect("sheets have faces"),
             pool: WorkerPool::new(1).expect("one worker is the caller's thread"),
-            settings: Settings { layers: true, folds: true, ..*settings },
+            settings: Settings { contact: ContactRates { layers: 1, folds: 1, ..settings.contact }, ..*settings },
             seen: TrialFigures::default(),
             garments,
             cloths,

@@ -77,7 +77,7 @@ impl Scene for FrameScene {
         let Self { frame, whole } = self;
         let settings = rung.of(whole);
         frame.set_quality(settings.substep_share, settings.wind);
-        frame.set_contact(settings.contact_every);
+        frame.set_contact(settings.contact);
     }
 
     fn measure(&mut self) {

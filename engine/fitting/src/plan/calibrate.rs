@@ -121,7 +121,8 @@ fn skirt_on(other: &Scene, body: &Body, rig: &Rig, track: &[Joints]) -> Result<S
     let mut skirt = other.garments[0].clone();
     let (pelvis, _) = SkinWeights::strongest([(Joint::Pelvis.index() as u8, 1.0)]);
     skirt.fixed_weights.iter_mut().for_each(|w| *w = pelvis);
-    let settings = Settings { folds: false, ..other.settings[0] };
+    let mut settings = other.settings[0];
+    settings.contact.folds = 0;
     Scene::worn(body, rig, vec![skirt], settings, track)
 }
 
