@@ -13,7 +13,7 @@ use toile_assets::catalogue::package;
 use toile_assets::drafting;
 use toile_fitting::dress::measured::ShopperFacts;
 use toile_fitting::dress::session;
-use toile_fitting::live::dresser::ShopperSource;
+use toile_fitting::live::shopper_source::ShopperSource;
 use toile_kiosk::service::config::Config;
 use toile_kiosk::service::stock::Stock;
 use toile_kiosk::visitor::dressing_worker::{

@@ -15,14 +15,14 @@ use toile_fitting::dress::garment_source::GarmentSource;
 use toile_fitting::dress::measured::{self, ShopperFacts};
 use toile_fitting::dress::try_on::{DressedWorld, RequestedGarment, TryOn};
 use toile_fitting::live::background::{BackgroundJob, Finished};
-use toile_fitting::live::dresser::ShopperSource;
+use toile_fitting::live::shopper_source::ShopperSource;
 use toile_sensors::frame::Joints;
 use toile_track::tape_readings;
 use toile_view::drawn_frame::{self, DrawnFrame};
 use toile_view::figure::{Appearance, OwnHead};
 use toile_view::image::{Size, linear};
 
-use super::own_face::{FaceMaker, FaceTrouble, Portrait};
+use super::own_face::{FaceTrouble, MakeHeads, Portrait};
 use super::picture::{self, RgbImage};
 use super::picture_link::PictureServer;
 use super::picture_store::{OfferedPicture, PictureLink};
@@ -95,7 +95,6 @@ pub enum JobResult {
 }
 
 /// What every job needs.
-#[derive(Debug)]
 pub struct DressingContext {
     /// The garments that can be chosen.
     pub wardrobe: Arc<Wardrobe>,
@@ -110,7 +109,7 @@ pub struct DressingContext {
     /// Where pictures are served, if they are.
     served: PictureConfig,
     /// Makes heads of faces, where shoppers may have theirs taken.
-    faces: Option<Arc<Mutex<FaceMaker>>>,
+    faces: Option<MakeHeads>,
     /// What this shopper has put on, open, the last one last: they keep it, whatever becomes of its file.
     worn: Mutex<Vec<Arc<GarmentSource>>>,
 }
@@ -195,7 +194,7 @@ impl DressingContext {
 
     /// The same, which makes heads of faces.
     #[must_use]
-    pub fn making_faces(self, faces: Option<Arc<Mutex<FaceMaker>>>) -> Self {
+    pub fn making_faces(self, faces: Option<MakeHeads>) -> Self {
         Self { faces, ..self }
     }
 
@@ -289,7 +288,7 @@ impl DressingContext {
         let sex = self.sex(client, worn);
         // Whose sex is not known changes the drawing with the garment.
         let either: Vec<Sex> = if client.known.population == Population::Mixed { Sex::ALL.into() } else { vec![sex] };
-        Ok(faces.lock().unwrap_or_else(PoisonError::into_inner).make(portrait, &either))
+        Ok(faces(portrait, &either))
     }
 
     fn dressed(&self, client: &MeasuredVisitor, worn: &Outfit) -> Result<DressedWorld, KioskError> {
