@@ -1,18 +1,15 @@
 //! One answer: the same recording gives the same measures, the same size and the same verdicts by whichever door it comes in.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use crate::common::Scratch;
 use crate::recordings;
 use serde_json::Value;
 use toile_assets::wardrobe;
-use toile_fitting::dress::attire::Attire;
 use toile_fitting::dress::measured::{self, ShopperFacts};
 use toile_fitting::dress::offer::GarmentOffer;
 use toile_fitting::dress::session;
-use toile_fitting::dress::wish::Wish;
-use toile_fitting::live::dresser::{DressJob, DressOutcome, Dresser, ShopperSource};
+use toile_fitting::dress::try_on::{TryOn, Wearer};
 use toile_sdk::{Garment, Quality, Recording, TryOnOptions, try_on};
 
 /// The measures of the contract.
@@ -34,21 +31,13 @@ fn zones(recommendation: &Value) -> Vec<(String, f64, String)> {
     recommendation["zones"].as_array().unwrap().iter().map(zone).collect()
 }
 
-/// The headless kiosk's door: its dresser, with the recording that it plays.
-fn dressed_by_the_kiosk(path: &Path, garment: &str) -> (String, [f32; 5]) {
-    let wish = Wish { garments: vec![garment.to_owned()], ..Wish::default() };
-    let mut dresser = Dresser::new(Arc::new(Attire::open(wish).unwrap()));
-    let recording = Arc::new(session::open(Some(path), None).unwrap());
-    dresser.begin(DressJob::Shopper(ShopperSource::Recording(recording))).unwrap();
-    let dressed = loop {
-        match dresser.poll() {
-            Some(DressOutcome::Done(dressed)) => break dressed,
-            Some(_) => panic!("nobody was dressed"),
-            None => std::thread::sleep(std::time::Duration::from_millis(5)),
-        }
-    };
-    let recipe = &dressed.dressing.recipe;
-    (recipe.garments[0].1.clone(), recipe.measures.map(f32::from_bits))
+/// The way of one call, as an embedder of `toile-fitting` takes it.
+fn dressed_in_one_call(path: &Path, garment: &str) -> (String, [f32; 5]) {
+    let request = TryOn::of_shopper(&[garment.to_owned()], None, ShopperFacts::default());
+    let dressed = request.on_shopper(&session::open(Some(path), None).unwrap()).unwrap();
+    let Wearer::Body { measures: m, .. } = dressed.request.wearer else { panic!("nobody was measured") };
+    let measures = [m.stature, m.shoulder_breadth, m.chest_girth, m.waist_girth, m.hip_girth];
+    (dressed.request.garments[0].size.clone().unwrap(), measures)
 }
 
 /// The door of programs of others: what is measured, the size, and every bit of the cloth are those of the command.
@@ -88,14 +77,14 @@ fn one_answer(path: &Path, garment: &str) {
     let recommended = &tried["recommendation"];
     let size_code = recommended["size"].as_str().unwrap();
     assert_eq!(planned["garments"][0]["size"], size_code, "{file}: plan");
-    let (kiosk_size, kiosk_body) = dressed_by_the_kiosk(path, garment);
-    assert_eq!(kiosk_size, size_code, "{file}: kiosk");
-    // The body that the kiosk shows has the measures that are reported, where no two of them contradict each other.
-    for (name, body) in MEASURES.iter().zip(kiosk_body) {
+    let (own_size, own_body) = dressed_in_one_call(path, garment);
+    assert_eq!(own_size, size_code, "{file}: one call");
+    // The body that is dressed has the measures that are reported, where no two of them contradict each other.
+    for (name, body) in MEASURES.iter().zip(own_body) {
         let printed = tried["measurements"][name]["value"].as_f64().unwrap();
         assert!(
             (f64::from(body) * 1e3 - printed).abs() < 0.1,
-            "{file}: {name} {printed} is {body} m on the kiosk's body"
+            "{file}: {name} {printed} is {body} m on the dressed body"
         );
     }
     // What the window judges by: the same function on the same measures.

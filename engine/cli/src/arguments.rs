@@ -5,7 +5,8 @@ use std::ops::RangeBounds;
 use clap::builder::{PossibleValuesParser, RangedU64ValueParser, TypedValueParser};
 use toile_engine::cloth::Quality;
 use toile_engine::workers::SHARES;
-use toile_fitting::dress::wish::Wish;
+use toile_fitting::dress::measured::ShopperFacts;
+use toile_fitting::dress::try_on::TryOn;
 use toile_track::tape_readings::TapeReadings;
 
 use crate::exit::AppError;
@@ -84,16 +85,9 @@ impl WornArgs {
     ///
     /// # Errors
     /// As [`TapeArgs::readings`].
-    pub fn wish(&self) -> Result<Wish, AppError> {
-        let tape = self.tape.readings()?;
-        Ok(Wish {
-            garments: self.garments.clone(),
-            size: self.size.clone(),
-            quality: self.quality,
-            sex: None,
-            child: None,
-            tape,
-        })
+    pub fn request(&self) -> Result<TryOn, AppError> {
+        let shopper = ShopperFacts { tape: self.tape.readings()?, ..ShopperFacts::default() };
+        Ok(TryOn::of_shopper(&self.garments, self.size.as_deref(), shopper).in_quality(self.quality))
     }
 }
 

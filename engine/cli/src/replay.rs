@@ -12,7 +12,7 @@ use toile_engine::frame_loop::physics_thread::{FrameScene, SceneStepper};
 use toile_engine::frame_loop::recording::{self, Entry, Recording};
 use toile_engine::frame_loop::replay::{Replayed, replay};
 use toile_engine::workers::WorkerPool;
-use toile_fitting::dress::recipe::Recipe;
+use toile_fitting::dress::try_on::TryOn;
 
 use crate::arguments::WorkersArg;
 use crate::document::{Document, hash_text};
@@ -121,12 +121,12 @@ impl ReplayArgs {
 ///
 /// # Errors
 /// A recording that does not begin with a dressed shopper, and a scene that cannot be made.
-pub fn session(recipe: &Recipe, entries: &[Entry], workers: usize) -> Result<(Frame, Replayed), AppError> {
+pub fn session(request: TryOn, entries: &[Entry], workers: usize) -> Result<(Frame, Replayed), AppError> {
     let Some(Entry::Dressed(first)) = entries.first() else {
         let what = "it does not begin with how the shopper was dressed; record the run again";
         return Err(AppError::Input(what.to_owned()));
     };
-    let (frame, _reader) = recipe.make(first)?;
+    let frame = request.build(first)?.frame;
     let crew = WorkerPool::new(workers).map_err(AppError::input)?;
     let mut stepper = SceneStepper::new(FrameScene::new(frame.with_workers(crew)));
     let out = replay(&mut stepper, entries, &SimClock::default());

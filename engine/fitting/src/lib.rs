@@ -7,17 +7,15 @@
 //! A recording becomes a dressed body in motion, with the measures, size and verdicts that every command of the program reports:
 //!
 //! ```
-//! use toile_fitting::dress::dressed::Dressed;
-//! use toile_fitting::dress::measured::{self, ShopperFacts};
 //! use toile_fitting::dress::player::Player;
-//! use toile_fitting::dress::recipe::Recipe;
-//! use toile_fitting::dress::{session, wish::Wish};
+//! use toile_fitting::dress::try_on::TryOn;
+//! use toile_fitting::dress::{measured, session};
 //!
 //! let session = session::open(None, None)?; // the embedded one; `Some(path)` is any recording
-//! let measured = measured::measure(&session, ShopperFacts::default())?;
-//! let recipe = Recipe::choose(&session.name, &measured, &Wish::default())?;
-//! let track = session::standing(&session)?;
-//! let mut dressed = Dressed::make(recipe, &track[0], false)?;
+//! let request = TryOn::default(); // or `TryOn::of_shopper(&names, size, facts)`
+//! let measured = measured::measure(&session, request.facts())?;
+//! let track = measured::track(&session, &measured)?;
+//! let mut dressed = request.sized_for(&session.name, &measured)?.build(&track[0])?;
 //! let mut player = Player::new(&track);
 //! for _ in 0..12 {
 //!     dressed.frame.step(&player.step());

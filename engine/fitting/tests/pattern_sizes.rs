@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
+use toile_base::body::{Body, Measures as BodyMeasures, Sex};
 use toile_assets::draping::{PatternPackage, PatternSizes, SizedDraft, read_package};
 use toile_assets::sizes::{GarmentKind, SizeTable};
-use toile_base::body::{Body, Measures as BodyMeasures, Sex};
-use toile_fitting::dress::choice::{Choice, ChoiceSource, ShopChoice};
+use toile_fitting::dress::garment_source::{GarmentSource, SourceKind};
 use toile_track::estimate::Estimate;
 use toile_track::measure::{Measurements, Source};
 use toile_track::measures::Measures;
@@ -41,11 +41,13 @@ fn wearer(size: &str, sigma: f32) -> (Body, Measurements) {
     (body, Measurements { measures, valid_pixels: 1, people: 1, frames: 30, source: Source::Depth, notes })
 }
 
-fn choice(package: &PatternPackage) -> Choice {
-    Choice {
+fn choice(package: &PatternPackage) -> GarmentSource {
+    GarmentSource {
         name: package.name.clone(),
-        source: ChoiceSource::Pattern(Box::new(package.clone())),
-        own: ShopChoice::default(),
+        kind: SourceKind::Pattern(Box::new(package.clone())),
+        fabric: None,
+        layer: None,
+        photographs: None,
     }
 }
 
@@ -102,7 +104,7 @@ fn a_pattern_without_sizes_is_judged_by_its_own_lengths() {
 #[test]
 fn what_is_worn_beneath_takes_its_thickness_all_around() {
     let (body, measured) = wearer("38", 0.005);
-    let [shirt, jacket] = ["t-shirt", "jacket"].map(|name| Choice::find(name).unwrap());
+    let [shirt, jacket] = ["t-shirt", "jacket"].map(|name| GarmentSource::find(name).unwrap());
     let beneath = vec![shirt.offer(&body).unwrap().unwrap()];
     let thickness = shirt.fabric().unwrap().thickness_mm * 1e-3;
     let ease = |beneath: &[_]| {

@@ -59,7 +59,7 @@ const FRICTION: &str = "no device has friction, second slopes or buckling; take 
 
 /// The same where the surroundings have a skin that the settings ask for.
 fn on_skin(colliders: &Colliders, settings: &Settings) -> Option<&'static str> {
-    (colliders.skin().is_some() && settings.contact().skin > 0).then_some(CLOTH_ON_SKIN)
+    (colliders.skin().is_some() && settings.contact.skin > 0).then_some(CLOTH_ON_SKIN)
 }
 
 /// Classes of scenes that are measured apart: by the bits of their particles' number.
@@ -352,11 +352,12 @@ fn on_device(
 mod tests {
     use glam::{Affine3A, Vec3};
     use toile_bake::bake;
-
+    
     use toile_bake::Shape;
     use toile_base::skeleton::BONES;
 
     use super::*;
+    use toile_engine::cloth::ContactRates;
 
     #[test]
     fn without_a_device_the_processor_steps_and_says_why() {
@@ -394,7 +395,7 @@ mod tests {
         }
         let cpu = Backends::for_scene(Backend::Cpu, Some(&layers), &colliders, &settings);
         assert_eq!(cpu.fallback(), None, "nobody asked for a device");
-        let off = Settings { folds: false, layers: false, ..settings };
+        let off = Settings { contact: ContactRates { folds: 0, layers: 0, ..settings.contact }, ..settings };
         let means = Backends::for_scene(Backend::Gpu, Some(&layers), &colliders, &off);
         assert_ne!(means.fallback(), Some(CLOTH_ON_CLOTH), "nothing asks for it");
     }

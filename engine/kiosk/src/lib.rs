@@ -7,14 +7,14 @@
 
 // Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
 pub mod error;
-#[cfg(any(test, feature = "metrics", feature = "window"))]
 mod http;
 
 pub mod service;
 
-#[cfg(any(test, feature = "window"))]
+#[cfg_attr(not(feature = "window"), allow(dead_code, reason = "pages are made for a window alone"))]
 pub mod visitor;
 
+mod headless;
 #[cfg(feature = "window")]
 pub mod window;
 
@@ -39,5 +39,5 @@ pub fn run(
     let windowed = window::run;
     #[cfg(not(feature = "window"))]
     let windowed = service::without_window;
-    service::run(options, begun, print_line, windowed)
+    service::run(options, begun, print_line, if options.headless { headless::run } else { windowed })
 }

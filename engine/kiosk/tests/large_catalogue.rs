@@ -11,7 +11,7 @@ use toile_assets::catalogue::package;
 use toile_assets::drafting;
 use toile_fitting::dress::measured::ShopperFacts;
 use toile_fitting::dress::session;
-use toile_fitting::live::dresser::ShopperSource;
+use toile_fitting::live::shopper_source::ShopperSource;
 use toile_kiosk::service::config::Config;
 use toile_kiosk::service::stock::Stock;
 use toile_kiosk::visitor::dressing_worker::{
@@ -149,7 +149,7 @@ fn thirty_of_two_hundred_garments_are_opened_in_a_fixed_memory() {
     );
 
     let first = VisitorSetup::new(&config, &stock, 0).unwrap().first();
-    let quality = config.wish().quality;
+    let quality = config.request().quality;
     let context = DressingContext::new(
         wardrobe.clone(),
         stock.first.clone(),

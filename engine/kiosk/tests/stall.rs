@@ -8,24 +8,23 @@ use std::sync::{Arc, Mutex, OnceLock};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use toile_base::frame::Joints;
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::frame::{Frame, Snapshot, SnapshotTimes};
 use toile_engine::frame_loop::governor::Rung;
 use toile_engine::frame_loop::physics_thread::{FrameScene, Scene};
 use toile_engine::frame_loop::render_thread::Renderer;
-use toile_fitting::dress::attire::Attire;
-use toile_fitting::dress::wish::Wish;
-use toile_fitting::dress::{dressed, session};
+use toile_fitting::dress::session;
 use toile_fitting::live::assembly::{HeadlessRenderer, LoopOptions, LoopParts};
-use toile_fitting::live::dresser::Dresser;
 use toile_fitting::live::lateness::ThreadAccount;
 use toile_fitting::live::live_loop::LiveLoop;
 use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
 use toile_fitting::live::source::{Feed, Visits};
+use toile_kiosk::service::config::Config;
 use toile_kiosk::service::runner::{Service, ServiceEnvironment, ServiceOptions};
 use toile_kiosk::service::service_manager::{ServiceManager, ServiceStatus, StopSignal};
-use toile_kiosk::service::session::SessionTimes;
+use toile_kiosk::service::stock::Stock;
+use toile_kiosk::visitor::setup::VisitorSetup;
+use toile_base::frame::Joints;
 
 /// Hangs whoever passes it while it is shut.
 type Gate = Arc<AtomicBool>;
@@ -119,21 +118,20 @@ impl ServiceManager for Diary {
 fn serve(diary: &Diary, display: Gate, meanwhile: impl FnOnce() + Send) {
     let (session, clock) = (Arc::new(session::open(None, None).unwrap()), RealClock::default());
     let pose = session::filtered(&session)[0];
-    let attire = Arc::new(Attire::open(Wish::default()).unwrap());
-    let dressed = dressed::mannequin_in(&attire, &pose).unwrap();
+    let config = Config::parse("kiosk.toml", "").unwrap();
+    let stock = Stock::read(&config).unwrap();
+    let setup = VisitorSetup::new(&config, &stock, clock.now_ns()).unwrap();
+    let dressed = stock.first.on_mannequin(&pose).unwrap();
     // Nobody ever comes: the stall is the only thing that happens.
     let source = Feed::Played(Visits::of(&session, clock.now_ns(), 3_600_000_000_000));
     let first = DressedScene::new(dressed, |frame| (Gated::new(frame), ()));
     let renderer = Display(HeadlessRenderer::default(), display);
     let parts = LoopParts { first, renderer, source, account: ThreadAccount::new(), recording: None };
     let (live, handover) = LiveLoop::start(parts, clock, LoopOptions::default()).unwrap();
-    let second = 1_000_000_000;
     let options = ServiceOptions {
         begun: Instant::now(),
         length: Some(Duration::from_secs(120)),
         crash_after: None,
-        times: SessionTimes { step_in_ns: second, step_out_ns: second, wipe_ns: second },
-        measure_ns: second,
         health_ns: 0,
         played: None,
         memory_locked: false,
@@ -151,12 +149,13 @@ fn serve(diary: &Diary, display: Gate, meanwhile: impl FnOnce() + Send) {
             stop: &stop,
             print_line: &print_line,
             figures: None,
-            dresser: Dresser::new(attire),
+            first: stock.first.clone(),
             to_scene: Box::new(|frame| (Gated::new(frame), ())),
             pose,
             flight_recorder: None,
         };
-        Service::new(live, SceneChanger::new(handover, true, None), options, environment).run().unwrap();
+        let (changer, controller) = (SceneChanger::new(handover, true, None), Box::new(setup.headless(None)));
+        Service::new(live, changer, controller, options, environment).run().unwrap();
     });
 }
 

@@ -140,7 +140,7 @@ fn what_is_added_replaced_and_removed_is_offered_and_what_is_the_same_is_not_rea
     let other = watched.change("another first garment");
     assert_eq!(articles(&other), ["A-2", "B-1", "D-1"]);
     let mannequin = other.mannequin.expect("a mannequin in the new dress");
-    assert!(mannequin.dressing.recipe.garments[0].0.ends_with("a.toile"));
+    assert!(mannequin.request.garments[0].name.ends_with("a.toile"));
     fs::remove_file(shop.folder().join("a.toile")).unwrap();
     assert!(watched.change("the first garment gone").mannequin.is_some());
     assert_eq!(watched.watch.figures().to_string(), "catalogue of 2 garments, read again 5 times");
@@ -193,7 +193,7 @@ fn a_catalogue_that_cannot_be_read_leaves_everything_as_it_was() {
     shop.write("c.toile", package::pack(&shop.0.join("source")).unwrap().0);
     watched.until("a garment that nobody can wear", |watch, lines| {
         let kept = lines.iter().any(|line| line.contains("stays as it was"));
-        kept || watch.take().is_some_and(|change| change.stock.first.wish.garments[0].ends_with("a.toile"))
+        kept || watch.take().is_some_and(|change| change.stock.first.garments[0].name.ends_with("a.toile"))
     });
     fs::remove_dir_all(shop.folder()).unwrap();
     watched.lines.clear();
@@ -210,11 +210,11 @@ fn a_file_that_is_named_is_watched_without_a_catalogue_too() {
     let mut watched = Watched::start(config.clone());
     shop.write("b.toile", packed(&shop.0, "B-2", "jacket", "90.00 EUR"));
     let change = watched.change("another garment");
-    assert_eq!(change.stock.first.wish.garments, ["wide-trousers", file.as_str()]);
+    assert_eq!(change.stock.first.names(), ["wide-trousers", file.as_str()]);
     assert!(change.mannequin.is_some());
     fs::remove_file(&file).unwrap();
     let change = watched.change("one garment less");
-    assert_eq!(change.stock.first.wish.garments, ["wide-trousers"]);
+    assert_eq!(change.stock.first.names(), ["wide-trousers"]);
     assert!(watched.watch.figures().to_string().contains("left out: b.toile"));
     // Nothing that is built in changes: nothing is watched.
     config.wear.garments = vec!["wide-trousers".into()];

@@ -11,23 +11,23 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use toile_assets::body::shape::Shapes;
 use toile_base::body::Sex;
+use toile_assets::body::shape::Shapes;
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::frame::Snapshot;
 use toile_engine::frame_loop::physics_thread::FrameScene;
 use toile_engine::frame_loop::queue::{Receiver, Sender, bounded};
 use toile_engine::frame_loop::render_thread::Renderer;
 use toile_engine::triple_buffer::{Reader, TripleBuffer};
-use toile_fitting::dress::{dressed, session};
+use toile_fitting::dress::session;
 use toile_fitting::live::assembly::{HeadlessRenderer, LoopOptions, LoopParts};
 use toile_fitting::live::camera_start::{self, CameraSetup, StartedCamera};
 use toile_fitting::live::depth_camera::GATHERED;
-use toile_fitting::live::dresser::{Dresser, ShopperSource};
 use toile_fitting::live::lateness::ThreadAccount;
 use toile_fitting::live::live_loop::LiveLoop;
 use toile_fitting::live::own_picture::{PictureReceiver, PictureSwitch};
 use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
+use toile_fitting::live::shopper_source::ShopperSource;
 use toile_fitting::live::source::{Feed, Visits};
 use toile_fitting::live::webcam::WebcamOptions;
 use toile_kiosk::service::config::Config;
@@ -35,9 +35,10 @@ use toile_kiosk::service::runner::{Service, ServiceEnvironment, ServiceOptions};
 use toile_kiosk::service::service_manager::{ServiceManager, ServiceStatus, StopSignal};
 use toile_kiosk::service::session::SessionState;
 use toile_kiosk::service::stock::Stock;
-use toile_kiosk::visitor::controller::{OutfitPair, VisitController, WindowChannels};
+use toile_kiosk::visitor::controller::VisitController;
 use toile_kiosk::visitor::model::Input;
 use toile_kiosk::visitor::own_face::WornFace;
+use toile_kiosk::visitor::page_window::{OutfitPair, WindowChannels};
 use toile_kiosk::visitor::plain;
 use toile_kiosk::visitor::screen::{Action, Block, BodyView, Page, Screen};
 use toile_kiosk::visitor::setup::VisitorSetup;
@@ -396,7 +397,7 @@ fn serve_with(config: &str, own: bool, visit: impl FnOnce(&mut Finger) + Send) -
     let setup = VisitorSetup::new(&config, &stock, clock.now_ns()).unwrap();
     let session = Arc::new(session::open(None, None).unwrap());
     let pose = session::standing(&session).unwrap()[0];
-    let dressed = dressed::mannequin_in(&stock.first, &pose).unwrap();
+    let dressed = stock.first.on_mannequin(&pose).unwrap();
     let (source, played, pictures) = source(&session, own, clock);
     let (pictures, switch) = pictures.unzip();
     let first = DressedScene::new(dressed, |frame| (FrameScene::new(frame), Worn::default()));
@@ -408,8 +409,6 @@ fn serve_with(config: &str, own: bool, visit: impl FnOnce(&mut Finger) + Send) -
         begun: Instant::now(),
         length: Some(5 * LONGEST),
         crash_after: None,
-        times: config.times(),
-        measure_ns: 1_000_000_000,
         health_ns: 0,
         played: played.clone(),
         memory_locked: false,
@@ -437,7 +436,7 @@ fn serve_with(config: &str, own: bool, visit: impl FnOnce(&mut Finger) + Send) -
             stop: &stop,
             print_line: &print_line,
             figures: None,
-            dresser: Dresser::new(stock.first.clone()),
+            first: stock.first.clone(),
             to_scene: Box::new(|frame| {
                 let worn = OwnPictureModel::of(frame.body(), frame.garments());
                 (FrameScene::new(frame), Some(worn))
@@ -445,8 +444,9 @@ fn serve_with(config: &str, own: bool, visit: impl FnOnce(&mut Finger) + Send) -
             pose,
             flight_recorder: None,
         };
-        let service = Service::new(live, SceneChanger::new(handover, true, None), options, environment);
-        let (_, _, record) = service.controlled_by(Box::new(visit_of(setup, window, played, switch))).run().unwrap();
+        let (changer, controller) = (SceneChanger::new(handover, true, None), visit_of(setup, window, played, switch));
+        let service = Service::new(live, changer, Box::new(controller), options, environment);
+        let (_, _, record) = service.run().unwrap();
         hand.join().expect("the visit goes through all pages");
         record.states
     })
@@ -457,7 +457,7 @@ fn visit_of(
     window: WindowChannels<'_, Worn>,
     played: Option<ShopperSource>,
     switch: Option<PictureSwitch>,
-) -> VisitController<'_, Worn> {
+) -> VisitController<'_> {
     setup.controller(window, played).switching(switch).taking_faces(None, WORN.clone())
 }
 

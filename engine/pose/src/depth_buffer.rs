@@ -118,11 +118,30 @@ impl DepthBuffer {
 
 #[cfg(test)]
 mod tests {
+    use glam::DMat3;
+    use toile_sensors::calibration::CameraParameters;
+
     use super::*;
+
+    /// A camera of 100 x 100 pixels, 1.5 m from the origin and a radian to the side.
+    fn camera() -> CalibratedCamera {
+        let from = 1.5 * DVec3::new(1f64.sin(), 0.0, 1f64.cos());
+        let ahead = -from.normalize();
+        let right = ahead.cross(DVec3::Y).normalize();
+        let rotation = DMat3::from_cols(right, ahead.cross(right), ahead).transpose();
+        let given = CameraParameters {
+            size: [100.0; 2],
+            matrix: [[140.0, 0.0, 49.5], [0.0, 140.0, 49.5], [0.0, 0.0, 1.0]],
+            distortion: Vec::new(),
+            rotation,
+            translation: -(rotation * from),
+        };
+        CalibratedCamera::new("c", &given).expect("a camera that looks at a place is one")
+    }
 
     #[test]
     fn what_lies_before_hides_what_lies_behind() {
-        let camera = crate::render::tests::camera([100, 100], 1.0);
+        let camera = camera();
         let square = |z: f64, half: f64| {
             [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| DVec3::new(x * half, y * half, z))
         };

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use glam::Vec3;
 use toile_assets::body::{BodyError, En, Readings, Wanted};
+use toile_base::body::{Body as BodyShape, Sex};
 use toile_assets::import::avatar::{self, ImportOptions};
 use toile_assets::sizes::Population;
-use toile_base::body::{Body as BodyShape, Sex};
-use toile_fitting::dress::{body as measured_body, measured};
+use toile_fitting::dress::measured;
 use toile_track::estimate::Estimate;
 use toile_track::fit::measuring::{FittedMeasure, MEASURES};
 use toile_track::measure::{Measurements, Source};
@@ -80,7 +80,7 @@ impl Body {
     pub fn open(path: impl AsRef<Path>, sex: Sex) -> Result<Self> {
         let options = ImportOptions { sex, ..ImportOptions::default() };
         let imported = avatar::read(path.as_ref(), &options).map_err(Error::input)?;
-        let known = measured_body::read_off(nothing_known(), &imported.body);
+        let known = measured::read_off(nothing_known(), &imported.body);
         Ok(Self::of_shape(imported.body, known, imported.report.notes))
     }
 

@@ -78,7 +78,7 @@ pub struct Recommendation {
 /// # Errors
 /// A garment that has no sizes, or cannot be laid on the body.
 pub fn recommend(body: &Body, garment: &Garment) -> Result<Recommendation> {
-    let judged = garment.choice().judge(garment.size(), body.known(), body.shape(), &[])?;
+    let judged = garment.source().judge(garment.size(), body.known(), body.shape(), &[])?;
     judged.map(Recommendation::of).ok_or_else(|| {
         Error::input(format!(
             "{} is a mesh without sizes, of which none can be recommended; give its sizes in a TOML file beside it \

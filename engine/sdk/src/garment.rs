@@ -3,12 +3,13 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use toile_base::body::{Measures, Sex};
 use toile_assets::draping::{AS_DRAFTED, TO_MEASURE};
+use toile_base::fabric::Fabric;
 use toile_assets::file::{self, FileKind};
 use toile_assets::{drafting, wardrobe};
-use toile_base::body::{Measures, Sex};
-use toile_base::fabric::Fabric;
-use toile_fitting::dress::choice::{Choice, ChoiceSource, ShopChoice};
+use toile_fitting::dress::garment_source::{GarmentSource, SourceKind};
+use toile_fitting::dress::try_on::RequestedGarment;
 
 use crate::error::{Error, Result};
 
@@ -23,7 +24,7 @@ const FABRIC_FILE: FileKind = FileKind {
 /// [`recommend`](crate::recommend); it can be put on many bodies.
 #[derive(Debug, Clone)]
 pub struct Garment {
-    choice: Arc<Choice>,
+    source: Arc<GarmentSource>,
     size: Option<String>,
 }
 
@@ -45,7 +46,7 @@ impl Garment {
     /// # Errors
     /// A name that is none of these, a file that cannot be used.
     pub fn open(name: &str) -> Result<Self> {
-        Ok(Self { choice: Arc::new(Choice::find(name)?), size: None })
+        Ok(Self { source: Arc::new(GarmentSource::find(name)?), size: None })
     }
 
     /// The same in a size, in place of the one that fits.
@@ -63,8 +64,8 @@ impl Garment {
                 false => format!("{name} is not made in size {size}; choose one of {}", sizes.join(", ")),
             }))
         };
-        let made = match &self.choice.source {
-            ChoiceSource::Pattern(package) => package.sized(size, &Measures::average(Sex::Female)).is_ok(),
+        let made = match &self.source.kind {
+            SourceKind::Pattern(package) => package.sized(size, &Measures::average(Sex::Female)).is_ok(),
             _ => self.sizes()?.iter().any(|code| code == size),
         };
         if made { Ok(Self { size: Some(size.to_owned()), ..self }) } else { refused() }
@@ -76,14 +77,13 @@ impl Garment {
     /// A fabric that there is not, a file that is none.
     pub fn in_fabric(self, fabric: &str) -> Result<Self> {
         let fabric = if fabric.ends_with(".toml") { read_fabric(Path::new(fabric))? } else { built_in(fabric)? };
-        let choice = self.choice.as_ref().clone();
-        let own = ShopChoice { fabric: Some(fabric), ..choice.own };
-        Ok(Self { choice: Arc::new(Choice { own, ..choice }), ..self })
+        let source = Arc::unwrap_or_clone(self.source).in_fabric(fabric);
+        Ok(Self { source: Arc::new(source), ..self })
     }
 
     /// What it was opened by.
     pub fn name(&self) -> &str {
-        &self.choice.name
+        &self.source.name
     }
 
     /// The size that was asked for; none is the one that fits.
@@ -97,10 +97,10 @@ impl Garment {
     /// Size tables that cannot be used.
     pub fn sizes(&self) -> Result<Vec<String>> {
         let owned = |codes: Vec<&str>| codes.into_iter().map(str::to_owned).collect();
-        Ok(match &self.choice.source {
-            ChoiceSource::Style(style) => owned(style.sizes().map_err(Error::input)?.codes()),
-            ChoiceSource::Mesh(own) => own.sizes.as_ref().map_or_else(Vec::new, |sizes| owned(sizes.table.codes())),
-            ChoiceSource::Pattern(package) => match package.graded().map_err(Error::input)? {
+        Ok(match &self.source.kind {
+            SourceKind::Style(style) => owned(style.sizes().map_err(Error::input)?.codes()),
+            SourceKind::Mesh(own) => own.sizes.as_ref().map_or_else(Vec::new, |sizes| owned(sizes.table.codes())),
+            SourceKind::Pattern(package) => match package.graded().map_err(Error::input)? {
                 Some(graded) => {
                     let made = graded.made().into_iter().map(|(code, _)| code);
                     made.chain([TO_MEASURE.to_owned()]).collect()
@@ -115,17 +115,21 @@ impl Garment {
     /// # Errors
     /// A fabric that there is not.
     pub fn fabric(&self) -> Result<String> {
-        Ok(self.choice.fabric()?.name)
+        Ok(self.source.fabric()?.name)
     }
 
-    pub(crate) fn choice(&self) -> &Choice {
-        &self.choice
+    pub(crate) fn source(&self) -> &GarmentSource {
+        &self.source
+    }
+
+    /// The garment as a request has it.
+    pub(crate) fn requested(&self) -> RequestedGarment {
+        RequestedGarment::of(self.source.clone(), self.size.clone())
     }
 }
 
 fn built_in(name: &str) -> Result<Fabric> {
-    toile_assets::fabric::built_in(name)
-        .map_err(|error| Error::input(format!("{error}; there are {}", toile_assets::fabric::names().join(", "))))
+    toile_assets::fabric::built_in(name).map_err(|error| Error::input(format!("{error}; there are {}", toile_assets::fabric::names().join(", "))))
 }
 
 fn read_fabric(path: &Path) -> Result<Fabric> {

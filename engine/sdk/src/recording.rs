@@ -2,12 +2,10 @@
 
 use std::path::Path;
 
-use toile_assets::sizes::Population;
 use toile_base::body::Sex;
-use toile_base::frame::{DepthFrame, Joints};
 use toile_fitting::dress::measured::{self, ShopperFacts};
-use toile_fitting::dress::wish;
-use toile_fitting::dress::{body as measured_body, session};
+use toile_fitting::dress::{garment_source, session};
+use toile_base::frame::{DepthFrame, Joints};
 use toile_sensors::source::Session;
 use toile_track::fit::measuring::FittedMeasures;
 use toile_track::measures::definition;
@@ -46,8 +44,6 @@ pub struct Shopper {
 #[derive(Debug, Clone)]
 pub struct Measured {
     pub(crate) inner: measured::Measured,
-    /// Whether the recording has joints of its own.
-    has_joints: bool,
     has_tape: bool,
 }
 
@@ -113,8 +109,7 @@ impl Recording {
     /// A recording that shows nobody who can be measured; a measure by tape that nobody has.
     pub fn measure(&self, shopper: &Shopper) -> Result<Measured> {
         let inner = measured::measure(&self.session, shopper.facts()?)?;
-        let (has_joints, has_tape) = (!self.session.joints.is_empty(), !shopper.by_tape_mm.is_empty());
-        Ok(Measured { inner, has_joints, has_tape })
+        Ok(Measured { inner, has_tape: !shopper.by_tape_mm.is_empty() })
     }
 
     /// The filtered joints from the moment on at which the person can be dressed; of depth alone, the body is followed through it.
@@ -122,12 +117,7 @@ impl Recording {
     /// # Errors
     /// A recording in which nobody can be followed.
     pub fn track(&self, measured: &Measured) -> Result<Vec<Joints>> {
-        if self.session.joints.is_empty() {
-            let mut followed = self.session.clone();
-            measured::add_joints(&mut followed, &measured.inner)?;
-            return Ok(session::standing(&followed)?);
-        }
-        Ok(session::standing(&self.session)?)
+        Ok(measured::track(&self.session, &measured.inner)?)
     }
 }
 
@@ -194,13 +184,8 @@ impl Measured {
     /// # Errors
     /// As [`Self::body`].
     pub fn body_for(&self, garments: &[Garment]) -> Result<Body> {
-        let known = self.inner.best.clone();
-        if let Some(fitted) = self.inner.fitted.as_ref().filter(|_| !self.has_joints && !self.has_tape) {
-            return Ok(Body::of_shape(fitted.body.body.clone(), known, Vec::new()));
-        }
-        let sex = self.inner.sex(wish::population(garments.iter().map(Garment::choice))?);
-        let (shape, note) = measured_body::build(sex, &known, Population::from(Some(sex)))?;
-        Ok(Body::of_shape(shape, known, note.into_iter().collect()))
+        let (shape, note) = self.inner.wearer(garment_source::population(garments.iter().map(Garment::source))?)?;
+        Ok(Body::of_shape(shape, self.inner.best.clone(), note.into_iter().collect()))
     }
 }
 

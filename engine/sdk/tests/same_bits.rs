@@ -3,10 +3,10 @@
 use toile_assets::scene_file::{SceneFile, SceneSource};
 use toile_engine::cloth::Settings;
 use toile_engine::frame::Frame;
-use toile_fitting::dress::choice::Choice;
+use toile_fitting::dress::garment_source::GarmentSource;
 use toile_fitting::dress::measured::{self, ShopperFacts};
 use toile_fitting::dress::player::Player;
-use toile_fitting::dress::{body, session, wish};
+use toile_fitting::dress::{garment_source, session};
 use toile_fitting::scene::Runner;
 use toile_sdk::glam::Vec3;
 use toile_sdk::{Body, DressOptions, Garment, Recording, Scene, Sex, TryOnOptions, recommend, try_on};
@@ -16,10 +16,10 @@ use toile_sdk::{Body, DressOptions, Garment, Recording, Scene, Sex, TryOnOptions
 fn a_try_on_is_the_programs_own() {
     let session = session::open(None, None).unwrap();
     let measured = measured::measure(&session, ShopperFacts::default()).unwrap();
-    let choice = Choice::find("t-shirt").unwrap();
-    let sex = measured.sex(wish::population([&choice]).unwrap());
-    let (body, _) = body::build(sex, &measured.best, Some(sex).into()).unwrap();
-    let worn = choice.put_on(None, &measured.best, &body, &[]).unwrap();
+    let source = GarmentSource::find("t-shirt").unwrap();
+    let sex = measured.sex(garment_source::population([&source]).unwrap());
+    let (body, _) = measured::build_body(sex, &measured.best, Some(sex).into()).unwrap();
+    let worn = source.put_on(None, &measured.best, &body, &[]).unwrap();
     let fit = worn.fit.clone().unwrap();
     let rig = toile_assets::rig::fit(&body);
     let (mut frame, mut reader) = Frame::new(body, &rig, worn.garments, Settings::default()).unwrap();

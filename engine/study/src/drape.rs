@@ -14,6 +14,7 @@ use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::triple_buffer::Reader;
 use toile_fitting::dress::player::Player;
 use toile_fitting::dress::session;
+use toile_fitting::dress::try_on::DressedBody;
 use toile_fitting::wearing::{self, CoveredZone, poses};
 use toile_base::frame::Joints;
 
@@ -95,7 +96,7 @@ impl WornFrame {
         (settings, settle): (Settings, usize),
     ) -> Result<Self> {
         let worn = garment.dress(size, body, start)?;
-        let made = Frame::new(body.clone(), rig, worn.garments, settings);
+        let made = DressedBody::new(rig.clone(), body.clone(), worn.garments).build(settings);
         let (mut frame, reader) = made.map_err(StudyError::input)?;
         frame.measure_every(0);
         let skeleton = &body.skeleton;

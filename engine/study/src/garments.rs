@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use toile_base::body::{Body, Measures, Sex};
 use toile_assets::draping::HungPattern;
 use toile_assets::sizes::{Girth, Population as MadeFor};
-use toile_fitting::dress::choice::{Choice, ShopChoice, Worn};
+use toile_fitting::dress::garment_source::{FittedGarment, GarmentSource};
 use toile_fitting::dress::offer::GarmentOffer;
 
 use crate::error::{Result, StudyError};
@@ -18,8 +18,8 @@ use crate::study_file::WantedGarment;
 pub struct TriedGarment {
     /// What the study names it by.
     pub name: String,
-    /// What is put on.
-    pub choice: Choice,
+    /// Where it comes from.
+    pub source: GarmentSource,
     /// All sizes that are made, and what is comfortable.
     pub offer: GarmentOffer,
     /// The sizes that are tried: indices into those of the offer, smallest first.
@@ -94,19 +94,17 @@ impl TriedGarment {
     pub fn open(wanted: &WantedGarment, folder: &Path) -> Result<Self> {
         let beside = folder.join(&wanted.name);
         let found = if beside.is_file() { beside.display().to_string() } else { wanted.name.clone() };
-        let mut choice = Choice::find(&found)?;
+        let mut source = GarmentSource::find(&found)?;
         if let Some(fabric) = &wanted.fabric {
-            let fabric = Some(
-                toile_assets::fabric::built_in(fabric)
-                    .map_err(|e| StudyError::Input(format!("{e}; there are {}", toile_assets::fabric::names().join(", "))))?,
-            );
-            choice = Choice { own: ShopChoice { fabric, ..choice.own.clone() }, ..choice };
+            let fabric = toile_assets::fabric::built_in(fabric)
+                .map_err(|e| StudyError::Input(format!("{e}; there are {}", toile_assets::fabric::names().join(", "))))?;
+            source = source.in_fabric(fabric);
         }
-        let made_for = choice.population()?;
+        let made_for = source.population()?;
         let sex = if made_for == MadeFor::Men { Sex::Male } else { Sex::Female };
         let body = toile_assets::body::build(sex, &Measures::average(sex)).map_err(StudyError::internal)?;
         let name = wanted.name.clone();
-        let offer = choice.offer(&body)?.filter(|offer| !offer.is_single()).ok_or_else(|| {
+        let offer = source.offer(&body)?.filter(|offer| !offer.is_single()).ok_or_else(|| {
             StudyError::Input(format!(
                 "{name} is made in no sizes, of which a study asks; give its sizes (docs/garments.md, docs/meshes.md) or leave it out"
             ))
@@ -124,7 +122,7 @@ impl TriedGarment {
         tried.sort_unstable();
         tried.dedup();
         let hung = offer.sizes.iter().map(|_| OnceLock::new()).collect();
-        Ok(Self { name, choice, offer, tried, made_for, hung })
+        Ok(Self { name, source, offer, tried, made_for, hung })
     }
 
     /// The garment in a size on a body: sewn up around it, or taken over from the body of its size (what that is depends on the
@@ -132,15 +130,15 @@ impl TriedGarment {
     ///
     /// # Errors
     /// A garment that cannot be laid on this body.
-    pub fn dress(&self, size: &str, body: &Body, start: DrapeStart) -> Result<Worn> {
+    pub fn dress(&self, size: &str, body: &Body, start: DrapeStart) -> Result<FittedGarment> {
         let at = self.offer.sizes.iter().position(|made| made.code == size);
         let hung = at.filter(|_| start == DrapeStart::Size).and_then(|at| {
             // What does not hang on its own body is sewn up around each.
-            self.hung[at].get_or_init(|| self.choice.hang(size).ok().flatten()).as_ref()
+            self.hung[at].get_or_init(|| self.source.hang(size).ok().flatten()).as_ref()
         });
         // So is what does not come over.
-        let carried = hung.and_then(|hung| self.choice.dress_from(hung, body).ok());
-        carried.map_or_else(|| Ok(self.choice.dress(Some(size), body)?), Ok)
+        let carried = hung.and_then(|hung| self.source.dress_from(hung, body).ok());
+        carried.map_or_else(|| Ok(self.source.dress(Some(size), body)?), Ok)
     }
 
     /// Whether it is made for somebody of a sex.

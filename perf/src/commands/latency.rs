@@ -6,14 +6,13 @@ use std::time::{Duration, Instant};
 
 use clap::value_parser;
 use serde::Serialize;
-use toile_base::body::Sex;
 use toile_engine::clock::RealClock;
 use toile_engine::frame_loop::governor::LADDER;
 use toile_engine::frame_loop::recording::{self, Entry};
 use toile_engine::frame_loop::threads;
 use toile_fitting::dress::measured;
-use toile_fitting::dress::recipe::Recipe;
 use toile_fitting::dress::session;
+use toile_fitting::dress::try_on::{DressedWorld, TryOn};
 use toile_fitting::live::report::Quantiles;
 use toile_perf::latency::{self, Goal, Latency, LatencyInputs, LatencyOptions, LatencySource, OwnPictureParts};
 use toile_sensors::source::live::CameraName;
@@ -106,7 +105,7 @@ impl LatencyArgs {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LatencyReport {
     /// The scene that was run.
-    pub scene: Recipe,
+    pub scene: TryOn,
     /// The figures that were measured.
     #[serde(flatten)]
     pub found: Latency,
@@ -130,13 +129,13 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
     let first = &track[0];
     // The loop's sensor thread filters the raw frames itself.
     let from = session.joints.len() - track.len();
-    let wish = args.worn.wish()?;
-    let measured = measured::measure(&session, wish.facts())?;
-    let recipe = Recipe::choose(&session.name, &measured, &wish)?;
-    let (frame, reader) = recipe.make(first)?;
+    let request = args.worn.request()?;
+    let measured = measured::measure(&session, request.facts())?;
+    let request = request.sized_for(&session.name, &measured)?;
+    let DressedWorld { frame, reader, request, .. } = request.build(first)?;
     // Only now: a helper with a real-time priority shares its core with nobody who waits for it.
     let clock = RealClock::default();
-    let sex = if recipe.sex == "male" { Sex::Male } else { Sex::Female };
+    let sex = frame.body().sex;
     let mut own = None;
     let source = match &args.camera {
         Some(name) => {
@@ -158,7 +157,7 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
     let (crew, worker) = threads::worker_pool(args.workers.count()).map_err(AppError::input)?;
     let options = args.options();
     words.print_line(&format!("running for {} s, with {} threads of load", options.seconds, options.load));
-    let mut bytes = recording::header(&serde_json::to_string(&recipe).map_err(AppError::internal)?);
+    let mut bytes = recording::header(&serde_json::to_string(&request).map_err(AppError::internal)?);
     let (flight_recorder, recording) = crash::record(bytes.clone(), crash_file);
     let dressed = Entry::Dressed(*first);
     flight_recorder.keep(&dressed);
@@ -186,7 +185,7 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
     }
     let machine = Machine::here();
     let machine = format!("{}, {} cores, {}", machine.cpu, machine.cores, machine.lanes);
-    out.write("latency.html", latency::page(&found, &machine, &recipe.words()).as_bytes())?;
+    out.write("latency.html", latency::page(&found, &machine, &request.words()).as_bytes())?;
     let mut files = out.commit()?;
     files.extend(args.record.clone());
     let missed: Vec<&Goal> = found.goals.iter().filter(|g| !g.pass).collect();
@@ -196,7 +195,7 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
             g.name, g.us, g.limit_us
         )
     });
-    let report = LatencyReport { scene: recipe, found, files };
+    let report = LatencyReport { scene: request, found, files };
     if args.printing.json {
         terminal::print_json(&Document::new("latency", report))?;
     } else {

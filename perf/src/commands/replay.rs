@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use toile_cli::exit::AppError;
 use toile_cli::replay::{self, ReplayArgs};
-use toile_fitting::dress::recipe::Recipe;
+use toile_fitting::dress::try_on::TryOn;
 
 use super::soak::{self, SoakRecipe};
 
@@ -14,7 +14,7 @@ enum PerfRecorded {
     /// Recorded by `toile soak`.
     Soak(SoakRecipe),
     /// Recorded by `toile latency`.
-    Session(Recipe),
+    Session(TryOn),
 }
 
 /// Runs `toile-perf replay`.
@@ -28,7 +28,7 @@ pub fn run(args: &ReplayArgs) -> Result<(), AppError> {
     let (version, again) = match &recorded {
         PerfRecorded::Soak(recipe) => (&recipe.version, soak::again(recipe.soak, &recording.entries, workers)?),
         PerfRecorded::Session(recipe) => {
-            (&recipe.version, replay::session(recipe, &recording.entries, workers).map_err(|e| args.bad(e))?)
+            (&recipe.version, replay::session(recipe.clone(), &recording.entries, workers).map_err(|e| args.bad(e))?)
         }
     };
     args.report(&recorded, version, &again)

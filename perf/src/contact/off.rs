@@ -97,7 +97,8 @@ impl LayeredSkirt {
     fn new(options: &SkirtOptions, asks: bool) -> Result<Self, ContactError> {
         let scene = SkirtScene::new(options, &HeapProbe::none())?;
         let layers = Layers::new(std::slice::from_ref(&scene.garment)).ok_or(ContactError::NoFaces)?;
-        let settings = Settings { layers: false, folds: false, ..*scene.settings() };
+        let mut settings = *scene.settings();
+        (settings.contact.layers, settings.contact.folds) = (0, 0);
         let (colliders, pool) = (scene.colliders().clone(), WorkerPool::new(options.threads)?);
         Ok(Self { scene, layers, colliders, settings, pool, asks })
     }
@@ -131,7 +132,7 @@ mod tests {
         }
         // What the other way would do is seen where a skirt of this many vertices folds.
         let mut folded = LayeredSkirt::new(&SkirtOptions { verts: 1_024, ..small }, true).unwrap();
-        folded.settings.folds = true;
+        folded.settings.contact.folds = 1;
         for _ in 0..240 {
             folded.step_ns();
         }

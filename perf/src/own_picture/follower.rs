@@ -5,15 +5,14 @@ use std::time::Instant;
 
 use toile_base::body::Measures;
 use toile_assets::scene::SHOPPER;
-use toile_engine::cloth::Quality;
+use toile_assets::sizes::Population;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::frame_loop::motion_input::MotionInput;
 use toile_engine::triple_buffer::Reader;
 use toile_fitting::FittingError;
 use toile_fitting::dress::measured::{self, Measured, ShopperFacts};
-use toile_fitting::dress::recipe::Recipe;
 use toile_fitting::dress::session;
-use toile_fitting::dress::wish::Wish;
+use toile_fitting::dress::try_on::{DressedWorld, RequestedGarment, TryOn};
 use toile_fitting::live::webcam::{WebcamJoints, WebcamOptions};
 use toile_base::clock::ticks_to_ns;
 use toile_sensors::colour_camera::ColourCamera;
@@ -120,9 +119,10 @@ impl MeasuredShopper {
     }
 
     /// The garment in the size that fits them.
-    pub fn garments(&self, garment: &str) -> Result<Vec<(String, String)>, FittingError> {
-        let wish = Wish { garments: vec![garment.to_owned()], sex: Some(SHOPPER.0), ..Wish::default() };
-        Ok(Recipe::choose("own picture", &self.measured, &wish)?.garments)
+    pub fn garments(&self, garment: &str) -> Result<Vec<RequestedGarment>, FittingError> {
+        let shopper = ShopperFacts { sex: Some(SHOPPER.0), ..ShopperFacts::default() };
+        let request = TryOn::of_shopper(&[garment.to_owned()], None, shopper);
+        Ok(request.sized_for("own picture", &self.measured)?.garments)
     }
 }
 
@@ -168,14 +168,15 @@ impl Follower {
     /// Somebody dressed in these garments and sizes, as they stood at the end of their first second.
     pub fn new(
         shopper: MeasuredShopper,
-        garments: &[(String, String)],
+        garments: &[RequestedGarment],
         standing: &[TruthMoment],
     ) -> Result<Self, OwnPictureError> {
         let MeasuredShopper { kind, mut sensor, measured } = shopper;
-        let recipe = Recipe::of("own picture", &measured.best, SHOPPER.0, garments.to_vec(), Quality::default())?;
+        let (body, _) = measured::build_body(SHOPPER.0, &measured.best, Population::from(Some(SHOPPER.0)))?;
+        let request = TryOn::of_body("own picture", SHOPPER.0, body.measures, garments.to_vec());
         let first = standing.iter().map(|m| sensor.look(m).joints).find(session::is_present);
         let first = first.ok_or_else(|| FittingError::Input("nobody is seen; see docs/own-picture.md".into()))?;
-        let (frame, reader) = recipe.make(&first)?;
+        let DressedWorld { frame, reader, .. } = request.build(&first)?;
         sensor.reset();
         Ok(Self {
             seer: kind,

@@ -3,11 +3,10 @@
 use glam::Vec3;
 use toile_base::numeric::random::SplitMix64;
 use toile_assets::scene::SHOPPER;
-use toile_engine::cloth::Quality;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::triple_buffer::Reader;
 use toile_fitting::FittingError;
-use toile_fitting::dress::recipe::Recipe;
+use toile_fitting::dress::try_on::{DressedWorld, RequestedGarment, TryOn};
 use toile_base::clock::ticks_to_ns;
 use toile_base::frame::{DepthFrame, Intrinsics};
 use toile_sensors::source::live::ColourImage;
@@ -54,12 +53,11 @@ fn appearance() -> Appearance {
 
 impl Actor {
     /// Dressed in garments of these names and sizes; none is nobody's.
-    pub fn new(motion: OwnMotion, garments: &[(String, String)]) -> Result<Self, FittingError> {
+    pub fn new(motion: OwnMotion, garments: &[RequestedGarment]) -> Result<Self, FittingError> {
         let (sex, measures) = SHOPPER;
-        let recipe = Recipe::of_body("truth", sex, &measures, garments.to_vec(), Quality::default());
-        let body = recipe.parts()?.body;
-        let first = motion.joints(&body.skeleton, 0.0, 0);
-        let (frame, reader) = recipe.make(&first)?;
+        let request = TryOn::of_body("truth", sex, measures, garments.to_vec());
+        let body = toile_assets::body::build(sex, &measures).map_err(FittingError::input)?;
+        let DressedWorld { frame, reader, .. } = request.build(&motion.joints(&body.skeleton, 0.0, 0))?;
         Ok(Self {
             motion,
             bare: DrawnFrame::of(frame.body(), &[], appearance()),

@@ -1,7 +1,7 @@
 //! What a run of the skirt is asked for, and the engine's settings for it: the one place that knows both.
 
 use toile_assets::scene::skirt::{self, Motion, Stretch};
-use toile_engine::cloth::{Quality, Settings, Wind};
+use toile_engine::cloth::{ContactRates, Quality, Settings, Wind};
 use toile_engine::lanes::Width;
 use toile_gpu::backend::Backend;
 
@@ -123,7 +123,7 @@ impl SkirtOptions {
                 Wind { velocity: velocity.into(), drag, lift }
             }),
             workers: self.threads,
-            folds: self.folds,
+            contact: ContactRates::on(self.folds, true, true),
             width: self.lanes.unwrap_or(default.width),
             ..default
         })

@@ -9,6 +9,7 @@ use toile_assets::wardrobe;
 use toile_engine::cloth::{Quality, Settings};
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::triple_buffer::Reader;
+use toile_fitting::dress::try_on::DressedBody;
 use toile_base::frame::Joints;
 
 use super::error::SoakError;
@@ -52,7 +53,7 @@ impl SceneMaker {
         let quality = if light { Quality::Draft } else { Quality::default() };
         let settings = Settings { quality, workers: 1, ..Settings::default() };
         let shown = if light { thinned(body) } else { body.clone() };
-        let (mut frame, reader) = Frame::new(shown, rig, vec![garment], settings)?;
+        let (mut frame, reader) = DressedBody::new(rig.clone(), shown, vec![garment]).build(settings)?;
         let at = scenario.visits[request.visit].joints(request.at_ns);
         frame.dress(&Joints::seen(request.at_ns, at));
         Ok((frame, reader))

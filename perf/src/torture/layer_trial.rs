@@ -7,7 +7,7 @@ use toile_bake::check::MeshError;
 use toile_base::garment::{Garment, Part};
 use toile_base::skeleton::BONES;
 use toile_engine::cloth::layers::Layers;
-use toile_engine::cloth::{Cloth, Settings, Step};
+use toile_engine::cloth::{Cloth, ContactRates, Settings, Step};
 use toile_engine::colliders::Colliders;
 use toile_engine::workers::WorkerPool;
 
@@ -61,7 +61,7 @@ impl LayerTrial {
             crossed: CrossedEdges::new(&faces),
             layers: Layers::new(&garments).expect("sheets have faces"),
             pool: WorkerPool::new(1).expect("one worker is the caller's thread"),
-            settings: Settings { layers: true, folds: true, ..*settings },
+            settings: Settings { contact: ContactRates { layers: 1, folds: 1, ..settings.contact }, ..*settings },
             seen: TrialFigures::default(),
             garments,
             cloths,

@@ -132,7 +132,7 @@ impl<'a> Trial<'a> {
         let layers = Layers::new(std::slice::from_ref(self.garment));
         let pool = WorkerPool::new(1).expect("one worker is the caller's thread");
         let crossed = CrossedEdges::new(&[&self.garment.triangles]);
-        self.settings.folds = true;
+        self.settings.contact.folds = 1;
         self.folds = layers.map(|layers| Folds { layers, pool, crossed });
         self
     }

@@ -48,7 +48,8 @@ impl LayeredSpecimen {
         let garments = baked.collect::<Result<Vec<Garment>, _>>()?;
         let colliders = surroundings.colliders()?;
         let most = garments.iter().max_by_key(|g| g.substeps).ok_or(SpecimenError::Apart)?;
-        let settings = Settings { layers: true, folds: false, ..level.settings(most) };
+        let mut settings = level.settings(most);
+        (settings.contact.layers, settings.contact.folds) = (1, 0);
         let layers = Layers::new(&garments).filter(|layers| layers.asked(&settings)).ok_or(SpecimenError::Apart)?;
         Ok(Self {
             cloths: garments.iter().map(|g| Cloth::new(g, &colliders)).collect(),

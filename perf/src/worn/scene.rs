@@ -15,7 +15,7 @@ use toile_engine::body_surface::BodySurface;
 use toile_engine::cloth::layers::{Layers, lay_outside};
 use toile_engine::cloth::measure;
 use toile_engine::cloth::program::METERED_STAGES;
-use toile_engine::cloth::{Cloth, Quality, Settings, Step};
+use toile_engine::cloth::{Cloth, ContactRates, Quality, Settings, Step};
 use toile_engine::colliders::Colliders;
 use toile_engine::lanes::Width;
 use toile_engine::skin::{Blend, Posed, SkinningJob};
@@ -76,9 +76,7 @@ impl WornOptions {
             quality: self.quality.unwrap_or(default.quality),
             substeps: self.substeps,
             workers: self.threads,
-            layers: self.layers,
-            skin: self.skin,
-            folds: self.folds,
+            contact: ContactRates::on(self.folds, self.layers, self.skin),
             width: self.lanes.unwrap_or(default.width),
             ..default
         })
@@ -137,12 +135,12 @@ impl WornScene {
             garments.push(garment);
             sizes.push(size);
         }
-        if settings.layers {
+        if settings.contact.layers > 0 {
             lay_outside(&mut garments);
         }
         let layers = Layers::new(&garments).filter(|layers| layers.asked(&settings));
         let parts: Vec<Part> = garments.iter().flat_map(|g| g.parts.iter().copied()).collect();
-        let colliders = match settings.skin {
+        let colliders = match settings.contact.skin > 0 {
             true => colliders.with_skin(BodySurface::new(body, &skinning.posed(), &parts)),
             false => colliders,
         };

@@ -13,8 +13,9 @@ use std::{env, fs};
 
 use garments::{GARMENTS, ShopGarment};
 use toile_assets::catalogue::package;
-use toile_fitting::dress::wish::Wish;
-use toile_fitting::dress::{dressed, session};
+use toile_fitting::dress::measured::ShopperFacts;
+use toile_fitting::dress::session;
+use toile_fitting::dress::try_on::TryOn;
 use toile_base::frame::Joints;
 use toile_view::drawn_frame::{self, DrawnFrame};
 use toile_view::figure::Appearance;
@@ -40,8 +41,8 @@ accent = [0.58, 0.20, 0.17]
 /// A garment on a body of its middle size, from the front, as PNG.
 fn photograph(garment: &ShopGarment, pose: &Joints) -> Result<Vec<u8>, String> {
     let name = format!("{}:{}", garment.draft, garment.fabric);
-    let wish = Wish { garments: vec![name], ..Wish::default() };
-    let mut dressed = dressed::mannequin(&wish, pose).map_err(|e| e.to_string())?;
+    let request = TryOn::of_shopper(&[name], None, ShopperFacts::default());
+    let mut dressed = request.on_mannequin(pose).map_err(|e| e.to_string())?;
     for _ in 0..SETTLING {
         dressed.frame.step(pose);
     }

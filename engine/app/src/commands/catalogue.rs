@@ -5,6 +5,7 @@
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use serde::Serialize;
 use toile_base::body::{Measures, Sex};
@@ -17,9 +18,9 @@ use toile_cli::document::Document;
 use toile_cli::exit::AppError;
 use toile_cli::output::{Inputs, OutputFile};
 use toile_cli::terminal::{self, Paint, Tone, Words};
-use toile_fitting::dress::choice::Choice;
-use toile_fitting::dress::wish::Wish;
-use toile_fitting::dress::{dressed, session};
+use toile_fitting::dress::garment_source::GarmentSource;
+use toile_fitting::dress::session;
+use toile_fitting::dress::try_on::{RequestedGarment, TryOn};
 use toile_base::frame::Joints;
 use toile_view::contact_sheet;
 use toile_view::drawn_frame::{self, DrawnFrame};
@@ -163,7 +164,7 @@ fn check(args: &CheckArgs) -> Result<(), AppError> {
 /// A catalogue with the garments that can be worn.
 struct Checked {
     report: CatalogueReport,
-    items: Vec<(CatalogueItem, Choice)>,
+    items: Vec<(CatalogueItem, Arc<GarmentSource>)>,
 }
 
 impl Checked {
@@ -183,9 +184,9 @@ impl Checked {
         for item in catalogue.items {
             let package = item.path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
             match opened(&item.path) {
-                Ok((choice, sizes)) => {
+                Ok((source, sizes)) => {
                     report.garments.push(garment(package, &item.manifest, sizes));
-                    items.push((item, choice));
+                    items.push((item, Arc::new(source)));
                 }
                 Err(why) => report.refused.push(RefusedReport { package, why: why.to_string() }),
             }
@@ -195,16 +196,16 @@ impl Checked {
 }
 
 /// The garment of a package and its sizes.
-fn opened(path: &Path) -> Result<(Choice, Vec<String>), AppError> {
-    let choice = Choice::open(path)?;
-    let sizes = sizes(&choice)?;
-    Ok((choice, sizes))
+fn opened(path: &Path) -> Result<(GarmentSource, Vec<String>), AppError> {
+    let source = GarmentSource::open(path)?;
+    let sizes = sizes(&source)?;
+    Ok((source, sizes))
 }
 
-fn sizes(choice: &Choice) -> Result<Vec<String>, AppError> {
+fn sizes(source: &GarmentSource) -> Result<Vec<String>, AppError> {
     let average = toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(AppError::internal)?;
-    choice.fabric()?;
-    let offer = choice.offer(&average)?;
+    source.fabric()?;
+    let offer = source.offer(&average)?;
     let unsized_code = || vec![own::UNKNOWN.to_owned()];
     Ok(offer.map_or_else(unsized_code, |o| o.sizes.into_iter().map(|s| s.code).collect()))
 }
@@ -238,14 +239,14 @@ fn sheet(args: &SheetArgs) -> Result<(), AppError> {
     let pose = session::standing(&embedded)?[0];
     let mut pictures = Vec::with_capacity(items.len());
     let mut captions = Vec::with_capacity(items.len());
-    for (item, choice) in &items {
-        match draw(&item.manifest, choice, &pose, args.look.appearance()) {
+    for (item, source) in &items {
+        match draw(&item.manifest, source, &pose, args.look.appearance()) {
             Ok(image) => {
                 let price = item.manifest.price.as_ref().map_or_else(String::new, |p| format!(", {p}"));
                 captions.push(format!("{}{price}", word(&item.manifest.names, "en")));
                 pictures.push(image);
             }
-            Err(why) => report.refused.push(RefusedReport { package: choice.name.clone(), why: why.to_string() }),
+            Err(why) => report.refused.push(RefusedReport { package: source.name.clone(), why: why.to_string() }),
         }
         bar.inc(1);
     }
@@ -266,14 +267,19 @@ fn sheet(args: &SheetArgs) -> Result<(), AppError> {
 }
 
 /// A garment on a body of its middle size, from the front.
-fn draw(manifest: &GarmentManifest, choice: &Choice, pose: &Joints, appearance: Appearance) -> Result<Image, AppError> {
-    let wish = Wish { garments: vec![choice.name.clone()], ..Wish::default() };
-    let mut dressed = dressed::mannequin(&wish, pose)?;
+fn draw(
+    manifest: &GarmentManifest,
+    source: &Arc<GarmentSource>,
+    pose: &Joints,
+    appearance: Appearance,
+) -> Result<Image, AppError> {
+    let request = TryOn { garments: vec![RequestedGarment::of(source.clone(), None)], ..TryOn::default() };
+    let mut dressed = request.on_mannequin(pose)?;
     for _ in 0..SETTLING {
         dressed.frame.step(pose);
     }
     let snapshot = dressed.reader.latest().clone();
-    let colour = manifest.colours.first().map_or(choice.fabric()?.colour, |c| c.srgb).map(linear);
+    let colour = manifest.colours.first().map_or(source.fabric()?.colour, |c| c.srgb).map(linear);
     let colours = vec![colour; dressed.frame.garments().len()];
     let drawn = DrawnFrame::new(&dressed.frame, appearance).coloured(&colours);
     Ok(drawn_frame::still(drawn, &snapshot, 0.0, PICTURE))
@@ -291,7 +297,7 @@ fn pack(args: &PackArgs) -> Result<(), AppError> {
     let (bytes, manifest) = package::pack(&args.folder).map_err(AppError::input)?;
     let shown = args.folder.display().to_string();
     let package = GarmentPackage::of_bytes(&shown, bytes.clone()).map_err(AppError::input)?;
-    let sizes = sizes(&Choice::of_package(package, &shown)?)?;
+    let sizes = sizes(&GarmentSource::of_package(package, &shown)?)?;
     let files = out.write(&bytes).map_err(AppError::input)?;
     let name = args.out.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let report = CatalogueReport {

@@ -14,14 +14,13 @@ use toile_cli::document::Document;
 use toile_cli::exit::AppError;
 use toile_cli::heap::counted;
 use toile_cli::terminal::{self, Paint};
-use toile_engine::cloth::Cloth;
+use toile_engine::cloth::{Cloth, Settings};
 use toile_engine::colliders::Colliders;
 use toile_engine::frame::Frame;
 use toile_engine::meter::CLOTH;
 use toile_fitting::dress::measured;
-use toile_fitting::dress::recipe::{Parts, Recipe};
 use toile_fitting::dress::session;
-use toile_fitting::dress::wish::Wish;
+use toile_fitting::dress::try_on::{DressedBody, TryOn};
 use toile_fitting::heap::HeapProbe;
 use toile_fitting::plan::calibrate;
 use toile_fitting::plan::cost::Costs;
@@ -40,7 +39,7 @@ pub enum PlanScene {
     /// A scene of `toile run`.
     Run(RunScene),
     /// A shopper of a session, or of the embedded one, dressed.
-    Worn(Option<PathBuf>, Wish),
+    Worn(Option<PathBuf>, TryOn),
 }
 
 /// What a shopper's scene is made of; a scene file has none of it.
@@ -93,7 +92,7 @@ impl PlanArgs {
     pub fn scene(&self) -> Result<PlanScene, AppError> {
         Ok(match RunScene::of(self.scene.as_ref(), self.example.as_ref()) {
             Some(scene) => PlanScene::Run(scene),
-            None => PlanScene::Worn(self.session.clone(), self.worn.wish()?),
+            None => PlanScene::Worn(self.session.clone(), self.worn.request()?),
         })
     }
 }
@@ -107,7 +106,7 @@ pub fn run(args: &PlanArgs) -> Result<(), AppError> {
     let workers = args.workers.count();
     let (scene, costs, memory) = match &args.scene()? {
         PlanScene::Run(scene) => file(scene, workers)?,
-        PlanScene::Worn(session, wish) => worn(session.as_deref(), wish, workers)?,
+        PlanScene::Worn(session, request) => worn(session.as_deref(), request, workers)?,
     };
     let priced = Priced::of(&scene, &costs, workers);
     let verdict = judge(&scene, &priced, &costs, workers);
@@ -167,25 +166,26 @@ fn file(scene: &RunScene, workers: usize) -> Result<(Scene, Costs, Vec<Memory>),
 /// Plans a dressed shopper.
 fn worn(
     session: Option<&std::path::Path>,
-    wish: &Wish,
+    request: &TryOn,
     workers: usize,
 ) -> Result<(Scene, Costs, Vec<Memory>), AppError> {
     let mut session = session::open(session, None)?;
-    let measured = measured::measure(&session, wish.facts())?;
+    let measured = measured::measure(&session, request.facts())?;
     measured::add_joints(&mut session, &measured)?;
     let track = session::standing(&session)?;
-    let recipe = Recipe::choose(&session.name, &measured, wish)?;
+    let request = request.sized_for(&session.name, &measured)?;
     let probe = HeapProbe::new(counted);
     let before = probe.read();
-    let parts = recipe.parts()?;
+    let dressed = request.dress()?;
     let made = probe.read();
-    let baked: usize = parts.garments.iter().map(toile_base::garment::Garment::bytes).sum();
+    let baked: usize = dressed.garments.iter().map(toile_base::garment::Garment::bytes).sum();
     let body = before.zip(made).map_or(0, |(a, b)| (b.live_bytes - a.live_bytes - baked as i64).max(0));
-    let costs = calibrate::measure(Some((&parts.body, &parts.rig, &track)), workers).map_err(AppError::internal)?;
-    let frame = frame_bytes(&parts, &probe)?;
-    let Parts { body: shape, rig, garments, settings } = parts;
+    let costs = calibrate::measure(Some((&dressed.body, &dressed.rig, &track)), workers).map_err(AppError::internal)?;
+    let frame = frame_bytes(&dressed, &request, &probe)?;
+    let DressedBody { body: shape, rig, garments, .. } = dressed;
+    let settings = Settings { workers: 1, ..request.settings() };
     let mut scene = Scene::worn(&shape, &rig, garments, settings, &track).map_err(AppError::input)?;
-    scene.name = recipe.words();
+    scene.name = request.words();
     let mut memory = vec![part("body", body as usize)];
     memory.extend(cloth_memory(&scene));
     memory.push(part("frame: skin, colliders, meters, three snapshots", frame));
@@ -193,10 +193,12 @@ fn worn(
 }
 
 /// What a frame holds beside the states of its garments (bytes), counted while one is made.
-fn frame_bytes(parts: &Parts, probe: &HeapProbe) -> Result<usize, AppError> {
-    let Parts { body, rig, garments, settings } = parts.clone();
+fn frame_bytes(dressed: &DressedBody, request: &TryOn, probe: &HeapProbe) -> Result<usize, AppError> {
+    let settings = Settings { workers: 1, ..request.settings() };
+    let DressedBody { body, rig, garments, .. } = dressed.clone();
+    let dressed = DressedBody::new(rig, body, garments);
     let before = probe.read();
-    let made = Frame::new(body, &rig, garments, settings).map_err(AppError::input)?;
+    let made = dressed.build(settings).map_err(AppError::input)?;
     let after = probe.read();
     let cloths: usize = made.0.cloths().iter().map(Cloth::bytes).sum();
     // Body and garments were there before and are the frame's now.

@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use serde::{Deserialize, Serialize};
 use toile_cli::exit::AppError;
 use toile_cli::replay::{self, ReplayArgs};
-use toile_fitting::dress::recipe::Recipe;
+use toile_fitting::dress::try_on::TryOn;
 use toile_fitting::live::recording::{self, KioskRecipe};
 
 use super::programs;
@@ -19,7 +19,7 @@ enum Recorded {
     /// By `toile kiosk`, which crashed.
     Kiosk(KioskRecipe),
     /// Recorded by `toile latency`.
-    Session(Recipe),
+    Session(TryOn),
 }
 
 /// The key by which a soak's recording is known.
@@ -42,7 +42,7 @@ pub fn run(args: &ReplayArgs) -> Result<(), AppError> {
             (&recipe.version, recording::again(&recording.notes, &recording.entries, workers).map_err(|e| args.bad(e)))
         }
         Recorded::Session(recipe) => {
-            (&recipe.version, replay::session(recipe, &recording.entries, workers).map_err(|e| args.bad(e)))
+            (&recipe.version, replay::session(recipe.clone(), &recording.entries, workers).map_err(|e| args.bad(e)))
         }
     };
     args.report(&recorded, version, &again?)

@@ -16,7 +16,7 @@ use toile_engine::cloth::Quality;
 use glam::Affine3A;
 use toile_assets::adapt::MeshReport;
 use toile_base::body::Body;
-use toile_assets::export::{self, DressedBody, glb};
+use toile_assets::export::{self, glb};
 use toile_assets::import::avatar::MovingBody;
 use toile_base::limits::STEP_SECONDS;
 use toile_base::skeleton::{BONES, Joint};
@@ -28,16 +28,14 @@ use toile_cli::output::Inputs;
 use toile_cli::output::OutputFolder;
 use toile_cli::terminal::{self, Paint, Progress, Words};
 use toile_engine::body::palette;
-use toile_engine::cloth::Settings;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::frame_loop::governor::LADDER;
 use toile_engine::lines::{CAPACITY, Kind, Lines};
 use toile_engine::triple_buffer::Reader;
-use toile_fitting::dress::choice::Choice;
-use toile_fitting::dress::measured::{self, Measured};
+use toile_fitting::dress::measured::{self, Measured, ShopperFacts};
 use toile_fitting::dress::motion::{self, SessionMotion};
-use toile_fitting::dress::wish::{self, Wish};
-use toile_fitting::dress::{body, session};
+use toile_fitting::dress::session;
+use toile_fitting::dress::try_on::TryOn;
 use toile_fitting::wearing;
 use toile_view::drawn_frame::DrawnFrame;
 use toile_view::figure::{Appearance, Figure};
@@ -47,7 +45,7 @@ use crate::arguments::{AppearanceArgs, ExportArgs};
 use crate::commands::crossings::CrossingCount;
 use crate::pictures::{FinalState, Pictures, ROWS, STILL_ROWS, WorstMoment};
 use crate::renderer::{PictureRenderer, RendererChoice};
-use crate::report::{self, Recommendation, TryOn, ZoneFitReport};
+use crate::report::{self, Recommendation, ZoneFitReport};
 use crate::session_export::DressedExport;
 use crate::summary;
 use crate::video::Video;
@@ -204,41 +202,36 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     films.into_iter().try_for_each(|film| inputs.check(&film))?;
     let mut out = OutputFolder::prepare(&args.out)?.sparing(inputs);
     out.check(&args.names())?;
-    let wish = wish(args)?;
-    let choices = wish.choices()?;
+    let request = request(args)?.open()?;
     let animation = args.animation.as_deref();
-    let moving = animation.map(|name| animated::body(args.body_file(), name, &choices)).transpose()?;
+    let moving = animation.map(|name| animated::body(args.body_file(), name, &request)).transpose()?;
     let mut session = match &moving {
         Some(moving) => motion::session_of(moving),
         None => session::open(args.session.as_deref(), None)?,
     };
     let still = moving.as_ref().map(motion::standing_still);
-    let mut measured = measured::measure(still.as_ref().unwrap_or(&session), wish.facts())?;
-    let has_joints = !session.joints.is_empty();
-    if !has_joints {
+    let mut measured = measured::measure(still.as_ref().unwrap_or(&session), request.facts())?;
+    if session.joints.is_empty() {
         words.print_line("there are no joints: the fitted body is followed through the depth");
     }
     measured::add_joints(&mut session, &measured)?;
     let track = session::standing(&session)?;
-    let (body, note) = worn_body(args, &mut measured, &choices, (has_joints, moving.as_ref()))?;
+    let (body, note) = worn_body(args, &mut measured, &request, moving.as_ref())?;
     let notes: Vec<String> = note.into_iter().chain(measured.best.notes.iter().cloned()).collect();
-    let outfit = worn::put_on(&choices, args.size.as_deref(), &args.tuck, &measured, &body)?;
-    let (recommendations, judged) = (worn::recommendations(&outfit.worn), outfit.judged());
-    let meshes: Vec<MeshReport> = outfit.worn.into_iter().filter_map(|worn| worn.mesh).collect();
+    let dressed = request.put_on(body, &measured.best)?;
+    let (recommendations, judged) = (worn::recommendations(&dressed.fitted), dressed.tightness());
+    let meshes: Vec<MeshReport> = dressed.fitted.iter().filter_map(|fitted| fitted.mesh.clone()).collect();
     meshes.iter().flat_map(MeshReport::lines).for_each(|line| words.print_line(&line));
-    let garments = outfit.garments;
-
-    let rig = toile_assets::rig::fit(&body);
-    let settings = LADDER[usize::from(args.rung)].of(&Settings { quality: args.quality, ..Settings::default() });
-    let poses = if args.poses { wearing::in_poses(&body, &rig, &garments, &settings)? } else { Vec::new() };
-    let (mut frame, mut reader) = Frame::new(body, &rig, garments, settings).map_err(AppError::internal)?;
+    let settings = LADDER[usize::from(args.rung)].of(&request.settings());
+    let poses = if args.poses { wearing::in_poses(&dressed, &settings)? } else { Vec::new() };
+    let (mut frame, mut reader) = dressed.build(settings).map_err(AppError::internal)?;
     let title = title(&recommendations);
     let motion =
         moving.as_ref().map_or_else(|| SessionMotion::of_joints(&track), |m| SessionMotion::of_poses(&m.poses));
     let played = play((args, &words, &title, &judged), &mut out, &mut renderer, (&mut frame, &mut reader), motion)?;
 
     if args.glb {
-        out.write("dressed.glb", &dressed(&frame, reader.latest()))?;
+        out.write("dressed.glb", &dressed_glb(&frame, reader.latest()))?;
     }
     // The report names itself as well.
     out.stage("report.json")?;
@@ -246,7 +239,7 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     let mut recommendations = recommendations.into_iter();
     let document = Document::new(
         "try-on",
-        TryOn {
+        report::TryOn {
             session: report::measures::session(&session, &notes),
             measurements: report::measures::measurements(&measured.best, measured.population),
             recommendation: recommendations.next().unwrap_or_default(),
@@ -274,34 +267,31 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     }
 }
 
-fn wish(args: &TryOnArgs) -> Result<Wish, AppError> {
+fn request(args: &TryOnArgs) -> Result<TryOn, AppError> {
     let sex = if let Some(Wearer::Ours(sex)) = args.body { Some(sex) } else { None };
-    let tape = args.tape.readings()?;
-    Ok(Wish { garments: args.garments.clone(), size: args.size.clone(), quality: args.quality, sex, child: None, tape })
+    let shopper = ShopperFacts { sex, tape: args.tape.readings()?, ..ShopperFacts::default() };
+    let request = TryOn::of_shopper(&args.garments, args.size.as_deref(), shopper).in_quality(args.quality);
+    Ok(TryOn { tuck: args.tuck.clone(), ..request })
 }
 
-/// The body to dress: a file's, whose measures then count; the one fitted to the depth, where there was nothing else; otherwise
-/// one built to the measures. Also gives what there is to say about it.
+/// The body to dress, and a sentence about it where there is one: the body of a file, whose measures then count, or the shopper's.
 fn worn_body(
     args: &TryOnArgs,
     measured: &mut Measured,
-    choices: &[Choice],
-    (has_joints, moving): (bool, Option<&MovingBody>),
+    request: &TryOn,
+    moving: Option<&MovingBody>,
 ) -> Result<(Body, Option<String>), AppError> {
-    let sex = measured.sex(wish::population(choices)?);
+    let made_for = request.population()?;
     if let Some(Wearer::File(file)) = &args.body {
         let shown = match moving {
             Some(moving) => moving.imported.body.clone(),
-            None => crate::commands::body::wearer(file, sex)?.body,
+            None => crate::commands::body::wearer(file, measured.sex(made_for))?.body,
         };
-        measured.best = body::read_off(measured.best.clone(), &shown);
+        measured.best = measured::read_off(measured.best.clone(), &shown);
         let note = format!("the body shown is {}, and the measures are read off it", file.display());
         return Ok((shown, Some(note)));
     }
-    match &measured.fitted {
-        Some(fitted) if !has_joints && args.tape.measures.is_empty() => Ok((fitted.body.body.clone(), None)),
-        _ => Ok(body::build(sex, &measured.best, Some(sex).into())?),
-    }
+    Ok(measured.wearer(made_for)?)
 }
 
 /// What playing a session left behind.
@@ -434,7 +424,7 @@ fn draw_lines(lines: &mut Lines, kinds: &[Kind], frame: &Frame) {
 }
 
 /// The dressed body as it is drawn last: the body on its skeleton in that pose, the garments as they lie.
-fn dressed(frame: &Frame, snapshot: &Snapshot) -> Vec<u8> {
+fn dressed_glb(frame: &Frame, snapshot: &Snapshot) -> Vec<u8> {
     let mut bones = [Affine3A::IDENTITY; BONES];
     palette(&frame.body().skeleton, frame.pose(), &mut bones);
     let worn = frame.garments().iter().zip(&snapshot.garments).map(|(garment, positions)| export::WornGarment {
@@ -444,7 +434,7 @@ fn dressed(frame: &Frame, snapshot: &Snapshot) -> Vec<u8> {
         srgb: garment.fabric.colour,
     });
     let worn: Vec<export::WornGarment<'_>> = worn.collect();
-    glb(&DressedBody { body: frame.body(), palette: Some(&bones), worn: &worn })
+    glb(&export::DressedBody { body: frame.body(), palette: Some(&bones), worn: &worn })
 }
 
 /// Words over the stills: the first garment and its size, then each zone.

@@ -48,17 +48,22 @@ impl FromStr for Quality {
 /// solved as it was, and was looked for as far ahead as that.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ContactRates {
-    /// Contact of a garment with itself.
+    /// Contact of a garment with itself. Without it the garment passes through itself.
     pub folds: u8,
-    /// Contact between garments.
+    /// Contact between garments that are worn together. Without it they pass through each other.
     pub layers: u8,
-    /// The nearest points of the skin.
+    /// The nearest points of the skin, where the colliders have one. Without them cloth lies on the cones.
     pub skin: u8,
 }
 
 impl ContactRates {
     /// All of it in every step.
     pub const EVERY_STEP: Self = Self { folds: 1, layers: 1, skin: 1 };
+
+    /// Each kind in every step or never.
+    pub const fn on(folds: bool, layers: bool, skin: bool) -> Self {
+        Self { folds: folds as u8, layers: layers as u8, skin: skin as u8 }
+    }
 
     /// The rarer of both, kind by kind; what one of them never looks for is never looked for.
     #[must_use]
@@ -102,17 +107,8 @@ pub struct Settings {
     /// Whether contact follows particles along their ways; without it, what is thin and fast passes through them. For
     /// telling what it is worth (`toile plan`).
     pub continuous: bool,
-    /// Whether cloth lies on the skin that is seen, where the colliders have one; without it, on their cones. For telling what
-    /// it is worth (`toile plan`), and given up by the governor.
-    pub skin: bool,
-    /// Whether garments that are worn together keep their order; without it, they pass through each other. For telling what
-    /// it is worth (`toile plan`), and given up by the governor.
-    pub layers: bool,
-    /// Whether a garment keeps from passing through itself. For telling what it is worth (`toile plan`), and given up by the
-    /// governor.
-    pub folds: bool,
-    /// How often those of the three that are on are looked for; given up by the governor before they are.
-    pub contact_every: ContactRates,
+    /// Rate of each kind of contact, which the governor lowers.
+    pub contact: ContactRates,
     /// Workers of a step, 1 or 2. A frame takes the nearest of them that it can have, which its own settings then name.
     pub workers: usize,
     /// Lanes that kernels run on.
@@ -150,12 +146,6 @@ impl Settings {
         ((whole * self.substep_share).ceil() as u32).clamp(1, MAX_SUBSTEPS)
     }
 
-    /// How often each kind of contact is looked for, those that are off never.
-    pub fn contact(&self) -> ContactRates {
-        let [folds, layers, skin] = [self.folds, self.layers, self.skin].map(u8::from);
-        self.contact_every.and(ContactRates { folds, layers, skin })
-    }
-
     /// The settings with every figure that no step can be made with replaced by its default, and without a wind whose
     /// figures cannot be used. Checked at the start of a step, so that a wrong figure costs a step its setting and not the
     /// garment. Settings with nothing wrong are returned unchanged.
@@ -185,10 +175,10 @@ impl Settings {
                 teleport: self.root.teleport,
             },
             static_friction: within(self.static_friction, 0.0, MOST, 1.0),
-            contact_every: ContactRates {
-                folds: self.contact_every.folds.min(MOST_APART),
-                layers: self.contact_every.layers.min(MOST_APART),
-                skin: self.contact_every.skin.min(MOST_APART),
+            contact: ContactRates {
+                folds: self.contact.folds.min(MOST_APART),
+                layers: self.contact.layers.min(MOST_APART),
+                skin: self.contact.skin.min(MOST_APART),
             },
             ..*self
         }
@@ -216,10 +206,7 @@ impl Default for Settings {
             tethers: false,
             static_friction: 1.0,
             continuous: true,
-            skin: true,
-            layers: true,
-            folds: true,
-            contact_every: ContactRates::EVERY_STEP,
+            contact: ContactRates::EVERY_STEP,
             workers: std::thread::available_parallelism().map_or(1, |n| n.get().min(SHARES)),
             width: Width::widest(),
             timed: false,
@@ -242,10 +229,9 @@ mod tests {
     }
 
     #[test]
-    fn contact_that_is_off_is_never_looked_for_and_else_as_rarely_as_asked() {
+    fn the_rarer_rate_counts_and_off_stays_off() {
         let rates = |folds, layers, skin| ContactRates { folds, layers, skin };
-        let asked = Settings { folds: false, contact_every: rates(2, 4, 1), ..Settings::default() };
-        assert_eq!(asked.contact(), rates(0, 4, 1));
+        assert_eq!(rates(2, 4, 1).and(ContactRates::on(false, true, true)), rates(0, 4, 1));
         assert_eq!(rates(1, 2, 4).and(rates(2, 1, 0)), rates(2, 2, 0));
     }
 
@@ -269,7 +255,7 @@ mod tests {
             assert_eq!(settings.sound(), default, "{bad}");
         }
         let [never, rare, rarest] = [0, 2, u8::MAX].map(|n| ContactRates { folds: n, layers: n, skin: n });
-        let sound = |contact_every| Settings { contact_every, ..default }.sound().contact_every;
+        let sound = |contact| Settings { contact, ..default }.sound().contact;
         assert_eq!((sound(never), sound(rare), sound(rarest).folds), (never, rare, MOST_APART));
         let endless = Settings { substeps: Some(u32::MAX), ..default };
         assert_eq!(endless.sound().substeps, Some(MAX_SUBSTEPS));

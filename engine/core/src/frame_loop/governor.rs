@@ -30,7 +30,7 @@ impl Rung {
         Settings {
             substep_share: self.substep_share,
             wind: whole.wind.filter(|_| self.wind),
-            contact_every: whole.contact_every.and(self.contact),
+            contact: whole.contact.and(self.contact),
             ..*whole
         }
     }
@@ -286,11 +286,11 @@ mod tests {
 
     #[test]
     fn what_is_off_or_rarer_in_whole_quality_stays_so_on_every_rung() {
-        let rarer = ContactRates { folds: 0, layers: 4, skin: 1 };
-        let whole = Settings { contact_every: rarer, skin: false, ..Settings::default() };
+        let rarer = ContactRates { folds: 0, layers: 4, skin: 0 };
+        let whole = Settings { contact: rarer, ..Settings::default() };
         for rung in &LADDER {
             let settings = rung.of(&whole);
-            let every = settings.contact();
+            let every = settings.contact;
             assert_eq!((every.folds, every.skin), (0, 0), "{}", rung.gives_up);
             assert!(every.layers == 4 || every.layers == 0, "{}", rung.gives_up);
         }

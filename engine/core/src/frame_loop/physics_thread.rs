@@ -1,7 +1,7 @@
 //! The physics thread: it steps the scene 120 times a second.
 
-use toile_base::frame::Joints;
 use toile_base::limits::STEP_HZ;
+use toile_base::frame::Joints;
 
 use super::ThreadLoop;
 use super::event::{CounterSource, Counters, Event, EventKind, Miss, SENSOR_LOST_NS};
@@ -77,7 +77,7 @@ impl Scene for FrameScene {
         let Self { frame, whole } = self;
         let settings = rung.of(whole);
         frame.set_quality(settings.substep_share, settings.wind);
-        frame.set_contact(settings.contact_every);
+        frame.set_contact(settings.contact);
     }
 
     fn measure(&mut self) {

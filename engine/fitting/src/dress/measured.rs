@@ -1,12 +1,14 @@
-//! The one way to measure a shopper: by the body fitted to their depth where one fits, by sections and proportions otherwise.
+//! The shopper measured, and a body of these measures. There is one way to measure: by the body fitted to their depth where one fits, by sections and proportions otherwise.
 //!
 //! Whose proportions apply is given by the caller, or found by the fit; what is worn does not decide it, so that the same session gives the
 //! same measures whatever is tried on.
 
+use serde::{Deserialize, Serialize};
+use toile_assets::body::BodyError;
+use toile_base::body::{Body, Measures as BodyMeasures, Sex};
 use toile_assets::sizes::Population;
-use toile_base::body::Sex;
-use toile_base::frame::Joints;
 use toile_base::skeleton::Joint;
+use toile_base::frame::Joints;
 use toile_sensors::source::Session;
 use toile_track::child::child_odds;
 use toile_track::estimate::Estimate;
@@ -25,8 +27,15 @@ const SURE_OF_SEX: f32 = 0.95;
 /// Said of a session without joints.
 pub const FROM_DEPTH: &str = "there are no joints: the body was fitted to the depth, and its joints are shown";
 
+/// Shares of the way from the measured body to an average one of the same stature that are tried in turn.
+const TOWARDS_AVERAGE: [f32; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
+
+/// How far a measure that is read off an imported mesh is believed (m): its levels are found, not felt.
+const READ_OFF: f32 = 0.01;
+
 /// What is known of a shopper before they are measured.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "FactsText", into = "FactsText")]
 pub struct ShopperFacts {
     /// Whose proportions apply, if it is known.
     pub sex: Option<Sex>,
@@ -48,6 +57,48 @@ impl Default for ShopperFacts {
     }
 }
 
+/// Facts of a shopper in words and numbers, as a request is written.
+#[derive(Serialize, Deserialize)]
+struct FactsText {
+    sex: Option<String>,
+    child: Option<bool>,
+    clothed: bool,
+    seated: bool,
+    tape_m: Vec<(String, f32)>,
+    until_ns: u64,
+}
+
+impl From<ShopperFacts> for FactsText {
+    fn from(facts: ShopperFacts) -> Self {
+        let ShopperFacts { sex, child, clothed, seated, tape, until_ns } = facts;
+        let tape_m = tape.given().map(|(index, metres)| (MEASURES[index].0.to_owned(), metres)).collect();
+        Self { sex: sex.map(|sex| sex.name().to_owned()), child, clothed, seated, tape_m, until_ns }
+    }
+}
+
+impl TryFrom<FactsText> for ShopperFacts {
+    type Error = String;
+
+    fn try_from(text: FactsText) -> Result<Self, String> {
+        let FactsText { sex, child, clothed, seated, tape_m, until_ns } = text;
+        let mut tape = TapeReadings::default();
+        for (name, metres) in &tape_m {
+            let index = MEASURES.iter().position(|measure| measure.0 == name);
+            let index = index.ok_or_else(|| format!("no measure is named {name}"))?;
+            tape = tape.with(index, *metres).map_err(|why| why.to_string())?;
+        }
+        Ok(Self { sex: sex.as_deref().map(sex_of).transpose()?, child, clothed, seated, tape, until_ns })
+    }
+}
+
+/// The sex of a name.
+///
+/// # Errors
+/// Any other name.
+pub(super) fn sex_of(name: &str) -> Result<Sex, String> {
+    Sex::ALL.into_iter().find(|sex| sex.name() == name).ok_or_else(|| format!("{name} is neither female nor male"))
+}
+
 /// What was measured of a shopper.
 #[derive(Debug, Clone)]
 pub struct Measured {
@@ -63,12 +114,27 @@ pub struct Measured {
     pub population: Population,
     /// How likely they are a child, 0 to 1; `None` without a stature.
     pub child: Option<f32>,
+    /// Whether all that is known of them comes from depth: there were no joints, and no measures by tape.
+    depth_alone: bool,
 }
 
 impl Measured {
     /// The sex of the body to show: as given or measured, otherwise whom the garments are made for, women for all others.
     pub fn sex(&self, garments: Population) -> Sex {
         sex(self.population, garments)
+    }
+
+    /// The body to dress, and a sentence about it where there is one: the body fitted to the depth where there was nothing else, otherwise one
+    /// that is built to the measures.
+    ///
+    /// # Errors
+    /// As [`build_body`].
+    pub fn wearer(&self, garments: Population) -> Result<(Body, Option<String>), FittingError> {
+        if let Some(fitted) = self.fitted.as_ref().filter(|_| self.depth_alone) {
+            return Ok((fitted.body.body.clone(), None));
+        }
+        let sex = self.sex(garments);
+        build_body(sex, &self.best, Population::from(Some(sex)))
     }
 }
 
@@ -94,7 +160,22 @@ pub fn measure(session: &Session, facts: ShopperFacts) -> Result<Measured, Fitti
     let mut best = with_tape(best, fitted.as_ref().map(|f| &f.all), population, &facts.tape);
     let child = child(&best, facts);
     best.notes.extend(child.filter(|odds| *odds >= 0.5).map(child_note));
-    Ok(Measured { best, sections, fitted, surface, population, child })
+    let depth_alone = session.joints.is_empty() && facts.tape.is_empty();
+    Ok(Measured { best, sections, fitted, surface, population, child, depth_alone })
+}
+
+/// The filtered joints of a session from the moment on at which the shopper can be dressed. Without joints the fitted body is followed
+/// through the depth.
+///
+/// # Errors
+/// A session in which nobody can be followed.
+pub fn track(session: &Session, measured: &Measured) -> Result<Vec<Joints>, FittingError> {
+    if !session.joints.is_empty() {
+        return session::standing(session);
+    }
+    let mut followed = session.clone();
+    add_joints(&mut followed, measured)?;
+    session::standing(&followed)
 }
 
 /// The joints of a session that has none: the fitted body is followed through its depth, and a note says so. Does nothing
@@ -125,7 +206,15 @@ fn seated(session: &Session, facts: ShopperFacts) -> Result<Measured, FittingErr
     (sections.measures.hip_girth, sections.measures.inseam) = (None, None);
     let surface = DepthSurface { frames: Vec::new(), after: Vec::new(), ground: None };
     let best = with_tape(sections.clone(), None, population, &facts.tape);
-    Ok(Measured { best, sections, fitted: None, surface, population, child: facts.child.map(f32::from) })
+    Ok(Measured {
+        best,
+        sections,
+        fitted: None,
+        surface,
+        population,
+        child: facts.child.map(f32::from),
+        depth_alone: false,
+    })
 }
 
 fn by_sections(session: &Session, population: Population) -> Result<Measurements, FittingError> {
@@ -215,4 +304,72 @@ fn above_the_chair(frame: &Joints) -> Joints {
         above.at_mut(joint).confidence = 0.0;
     }
     above
+}
+
+/// A body of the measured size. Where no body has the measures together (a sensor may err in one of them), the nearest
+/// one on the way to the average body of that stature is built, and a sentence says so. Measures that are missing are
+/// those of the average of `population`.
+///
+/// # Errors
+/// Measures that not even an average body of that stature has.
+pub fn build_body(
+    sex: Sex,
+    measured: &Measurements,
+    population: Population,
+) -> Result<(Body, Option<String>), FittingError> {
+    let wanted = BodyMeasures::from(measured.body(population));
+    let average = scaled(&BodyMeasures::average(sex), wanted.stature);
+    let mut refused = None;
+    for share in TOWARDS_AVERAGE {
+        match toile_assets::body::build(sex, &towards(&wanted, &average, share)) {
+            Ok(body) => {
+                let note = refused.map(|e: BodyError| {
+                    format!("the body shown is {:.0} % of the way to an average one, because {e}", share * 100.0)
+                });
+                return Ok((body, note));
+            }
+            Err(error) => refused = refused.or(Some(error)),
+        }
+    }
+    Err(match refused {
+        Some(error) => FittingError::input(error),
+        None => FittingError::internal("no body was tried"),
+    })
+}
+
+/// The measures of an imported body in place of the measured shopper's.
+pub fn read_off(measured: Measurements, body: &Body) -> Measurements {
+    let read = |value: f32| Some(Estimate::new(value, READ_OFF));
+    let m = &body.measures;
+    let measures = Measures {
+        stature: read(m.stature),
+        shoulder_breadth: read(m.shoulder_breadth),
+        chest_girth: read(m.chest_girth),
+        waist_girth: read(m.waist_girth),
+        hip_girth: read(m.hip_girth),
+        ..measured.measures
+    };
+    Measurements { measures, ..measured }
+}
+
+fn scaled(m: &BodyMeasures, stature: f32) -> BodyMeasures {
+    let k = stature / m.stature;
+    BodyMeasures {
+        stature,
+        shoulder_breadth: m.shoulder_breadth * k,
+        chest_girth: m.chest_girth * k,
+        waist_girth: m.waist_girth * k,
+        hip_girth: m.hip_girth * k,
+    }
+}
+
+fn towards(from: &BodyMeasures, to: &BodyMeasures, share: f32) -> BodyMeasures {
+    let mix = |a: f32, b: f32| a + (b - a) * share;
+    BodyMeasures {
+        stature: from.stature,
+        shoulder_breadth: mix(from.shoulder_breadth, to.shoulder_breadth),
+        chest_girth: mix(from.chest_girth, to.chest_girth),
+        waist_girth: mix(from.waist_girth, to.waist_girth),
+        hip_girth: mix(from.hip_girth, to.hip_girth),
+    }
 }

@@ -17,8 +17,7 @@ use toile_engine::workers::WorkerPool;
 use super::crash;
 use super::live_scene::LiveScene;
 use crate::FittingError;
-use crate::dress::dressed::Dressing;
-use crate::dress::recipe::Recipe;
+use crate::dress::try_on::{DressedWorld, TryOn};
 
 /// What a recording of the kiosk says of itself.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -41,18 +40,19 @@ pub enum SceneNaming {
 #[derive(Serialize, Deserialize)]
 struct DressingNote {
     still: bool,
-    recipe: Recipe,
+    recipe: TryOn,
 }
 
-impl Dressing {
-    /// The same for a recording, under this number.
+impl DressedWorld {
+    /// The note of a recording that makes the same world again, under this number.
     pub fn note(&self, number: u64) -> SceneNote {
-        let note = DressingNote { still: self.still, recipe: self.recipe.clone() };
+        let note = DressingNote { still: self.still, recipe: self.request.clone() };
         // Plain strings and numbers: it cannot fail, and a note without text is refused by the replay.
         let text = serde_json::to_string(&note).unwrap_or_default();
         SceneNote { number, first: self.first, text }
     }
 
+    /// The world of a note.
     fn read(note: &SceneNote) -> Result<Self, FittingError> {
         let DressingNote { still, recipe } = serde_json::from_str(&note.text).map_err(|e| {
             FittingError::Input(format!(
@@ -60,17 +60,17 @@ impl Dressing {
                 note.number
             ))
         })?;
-        Ok(Self { recipe, first: note.first, still })
+        Ok(Self { still, ..recipe.build(&note.first)? })
     }
 
-    /// Makes it again; with one worker, until another scene's are taken over.
-    fn scene(&self, crew: Option<WorkerPool>) -> Result<LiveScene<FrameScene>, FittingError> {
-        let (frame, _reader) = self.recipe.make(&self.first)?;
+    /// The world as the loop steps it; with one worker, until another scene's are taken over.
+    fn scene(self, crew: Option<WorkerPool>) -> LiveScene<FrameScene> {
+        let stands = self.stands();
         let frame = match crew {
-            Some(crew) => frame.with_workers(crew),
-            None => frame,
+            Some(crew) => self.frame.with_workers(crew),
+            None => self.frame,
         };
-        Ok(LiveScene::new(FrameScene::new(frame), self.stands()))
+        LiveScene::new(FrameScene::new(frame), stands)
     }
 }
 
@@ -79,7 +79,7 @@ impl Dressing {
 ///
 /// # Errors
 /// A header that cannot be written, which does not happen.
-pub fn keep(first: &Dressing, path: PathBuf) -> Result<(Arc<FlightRecorder>, Sender<Entry>), FittingError> {
+pub fn keep(first: &DressedWorld, path: PathBuf) -> Result<(Arc<FlightRecorder>, Sender<Entry>), FittingError> {
     let recipe = KioskRecipe { version: env!("CARGO_PKG_VERSION").to_owned(), kiosk: SceneNaming::Notes };
     let header = recording::header(&serde_json::to_string(&recipe).map_err(FittingError::internal)?);
     let (recorder, entries) = crash::record(header, path);
@@ -98,13 +98,13 @@ pub fn again(notes: &[SceneNote], entries: &[Entry], workers: usize) -> Result<(
     };
     let made = |number: u64| {
         let unknown = || FittingError::Input(format!("it does not say how scene {number} was made; record it again"));
-        notes.iter().find(|note| note.number == number).ok_or_else(unknown).and_then(Dressing::read)
+        notes.iter().find(|note| note.number == number).ok_or_else(unknown).and_then(DressedWorld::read)
     };
     let crew = WorkerPool::new(workers).map_err(FittingError::input)?;
-    let mut stepper = SceneStepper::new(made(*number)?.scene(Some(crew))?);
+    let mut stepper = SceneStepper::new(made(*number)?.scene(Some(crew)));
     let mut refused = None;
     let out = replay_changing(&mut stepper, entries, &SimClock::default(), |number| {
-        let stage = made(number).and_then(|made| made.scene(None));
+        let stage = made(number).map(|made| made.scene(None));
         stage.map_err(|e| refused = refused.take().or(Some(e))).ok()
     });
     match refused {

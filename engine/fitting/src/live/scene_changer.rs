@@ -3,7 +3,6 @@
 
 use std::sync::Arc;
 
-use toile_base::frame::Joints;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::frame_loop::flight_recorder::FlightRecorder;
 use toile_engine::frame_loop::handover::{HandoverSender, SceneChange};
@@ -11,9 +10,10 @@ use toile_engine::frame_loop::physics_thread::Scene;
 use toile_engine::frame_loop::recording::SceneNote;
 use toile_engine::frame_loop::render_thread::SceneView;
 use toile_engine::triple_buffer::Reader;
+use toile_base::frame::Joints;
 
 use super::live_scene::{LiveScene, SceneHandover};
-use crate::dress::dressed::Dressed;
+use crate::dress::try_on::DressedWorld;
 
 /// A dressed scene, with what is drawn of it.
 pub struct DressedScene<S, O> {
@@ -33,10 +33,10 @@ pub struct DressedScene<S, O> {
 
 impl<S, O> DressedScene<S, O> {
     /// Somebody dressed, as `stage` makes a scene of their frame.
-    pub fn new(dressed: Dressed, stage: impl FnOnce(Frame) -> (S, O)) -> Self {
-        let Dressed { frame, reader, dressing } = dressed;
-        let (scene, outfit) = stage(frame);
-        Self { scene, reader, outfit, still: dressing.stands(), note: Some(dressing.note(0)), number: None }
+    pub fn new(dressed: DressedWorld, stage: impl FnOnce(Frame) -> (S, O)) -> Self {
+        let (still, note) = (dressed.stands(), Some(dressed.note(0)));
+        let (scene, outfit) = stage(dressed.frame);
+        Self { scene, reader: dressed.reader, outfit, still, note, number: None }
     }
 }
 

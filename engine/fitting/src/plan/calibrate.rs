@@ -9,23 +9,23 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use glam::Vec3;
-use toile_assets::scene_file::{SceneFile, SceneSource};
 use toile_base::body::Body;
-use toile_base::frame::Joints;
 use toile_base::mesh::SkinWeights;
 use toile_base::numeric::statistics::quantile;
 use toile_base::rig::Rig;
+use toile_assets::scene_file::{SceneFile, SceneSource};
 use toile_base::skeleton::Joint;
 use toile_engine::cloth::{Settings, program};
-use toile_engine::frame::Frame;
 use toile_engine::meter::STAGES as STEP_STAGES;
 use toile_engine::workers::{SHARES, WorkerPool};
+use toile_base::frame::Joints;
 
 use super::PlanError;
 use super::cost::Costs;
 use super::fit::fit;
 use super::scene::{Playing, Scene};
 use super::work::{FirstStep, STAGES, Work, beside};
+use crate::dress::try_on::DressedBody;
 use crate::timing;
 
 /// Steps of each cloth that are not timed, and those that are.
@@ -121,7 +121,8 @@ fn skirt_on(other: &Scene, body: &Body, rig: &Rig, track: &[Joints]) -> Result<S
     let mut skirt = other.garments[0].clone();
     let (pelvis, _) = SkinWeights::strongest([(Joint::Pelvis.index() as u8, 1.0)]);
     skirt.fixed_weights.iter_mut().for_each(|w| *w = pelvis);
-    let settings = Settings { folds: false, ..other.settings[0] };
+    let mut settings = other.settings[0];
+    settings.contact.folds = 0;
     Scene::worn(body, rig, vec![skirt], settings, track)
 }
 
@@ -189,7 +190,7 @@ fn meeting_us(scene: &Scene, costs: &Costs) -> Result<f64, PlanError> {
 /// The stages of a frame in which nothing is worn (us).
 fn body_us(body: &Body, rig: &Rig, track: &[Joints], workers: usize) -> Result<[f64; STEP_STAGES.len()], PlanError> {
     let settings = Settings { workers, ..Settings::default() };
-    let (mut frame, _reader) = Frame::new(body.clone(), rig, Vec::new(), settings)?;
+    let (mut frame, _reader) = DressedBody::new(rig.clone(), body.clone(), Vec::new()).build(settings)?;
     frame.measure_every(0);
     for k in 0..EMPTY_STEPS {
         if let Some(joints) = track.get(k * track.len() / EMPTY_STEPS) {

@@ -137,12 +137,12 @@ fn variants(scene: &Scene) -> Vec<Variant> {
     add("damping by air", true, &|g| g.fabric.damping_per_s = 0.0, &alike);
     let [skin, layers, folds] = models(scene);
     if scene.skinning.is_some() {
-        add("the skin that is seen, in place of cones", skin, &same, &|s| s.skin = !skin);
+        add("the skin that is seen, in place of cones", skin, &same, &|s| s.contact.skin = u8::from(!skin));
     }
     if scene.garments.len() > 1 {
-        add("garments over one another", layers, &same, &|s| s.layers = !layers);
+        add("garments over one another", layers, &same, &|s| s.contact.layers = u8::from(!layers));
     }
-    add("a garment against itself", folds, &same, &|s| s.folds = !folds);
+    add("a garment against itself", folds, &same, &|s| s.contact.folds = u8::from(!folds));
     match wind {
         Some(_) => add("wind", true, &same, &|s| s.wind = None),
         None => add("still air on each triangle", false, &same, &|s| s.wind = Some(still())),
@@ -161,8 +161,8 @@ fn variants(scene: &Scene) -> Vec<Variant> {
 
 /// Whether a scene has skin, layers and folds.
 fn models(scene: &Scene) -> [bool; 3] {
-    let s = &scene.settings[0];
-    [s.skin && scene.skinning.is_some(), s.layers, s.folds]
+    let every = scene.settings[0].contact;
+    [every.skin > 0 && scene.skinning.is_some(), every.layers > 0, every.folds > 0]
 }
 
 /// Air that does not move.

@@ -136,7 +136,7 @@ impl Work {
         bends[3] = count.rubbing(&friction) * rubs;
         let touching = first.near / BLOCK * n;
         let beside = first.beside / count.lanes as f64;
-        let every = settings.contact();
+        let every = settings.contact;
         let rate = |every: u8, amount: f64| if every == 0 { 0.0 } else { amount / f64::from(every) };
         let meetings = when(every.folds > 0 || (every.layers > 0 && beside > 0.0), n);
         let counts = [

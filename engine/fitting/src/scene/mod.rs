@@ -16,16 +16,16 @@ use std::time::Instant;
 use glam::{Affine3A, Vec3, Vec4};
 use serde::Serialize;
 use thiserror::Error;
-use toile_assets::scene_file::{SceneFile, SceneGarment};
 use toile_bake::bake;
 use toile_bake::check::MeshError;
 use toile_base::garment::Garment;
 use toile_base::limits::MAX_SPHERES;
 use toile_base::numeric::hash;
+use toile_assets::scene_file::{SceneFile, SceneGarment};
 use toile_base::skeleton::BONES;
 use toile_engine::cloth::layers::{Layers, TuckError, tuck_in};
 use toile_engine::cloth::program::METERED_STAGES;
-use toile_engine::cloth::{Cloth, Quality, Settings, Step, Wind, measure};
+use toile_engine::cloth::{Cloth, ContactRates, Quality, Settings, Step, Wind, measure};
 use toile_engine::colliders::{ColliderError, Colliders, RestSphere, RoundCone};
 use toile_engine::lanes::Width;
 use toile_engine::workers::{WorkerPool, WorkerPoolError};
@@ -308,7 +308,7 @@ impl Runner {
 
     /// What of contact was full, one sentence each.
     pub fn warnings(&self) -> Vec<String> {
-        let asked = self.settings.first().is_some_and(|s| s.layers || s.folds);
+        let asked = self.settings.first().is_some_and(|s| s.contact.layers > 0 || s.contact.folds > 0);
         let mut all: Vec<String> =
             contact::too_many(self.garments.len(), self.layers()).filter(|_| asked).into_iter().collect();
         all.extend(self.layers().into_iter().flat_map(|l| contact::ContactReport::from(l.counts()).warnings()));
@@ -386,8 +386,7 @@ pub(crate) fn settings(scene: &SceneFile) -> Settings {
         stretch_damping_s: given.stretch_damping.unwrap_or(default.stretch_damping_s),
         wind: scene.wind.map(|w| Wind { velocity: w.velocity.into(), drag: w.drag, lift: w.lift }),
         width: width.unwrap_or(default.width),
-        layers: given.layers.unwrap_or(true),
-        folds: given.folds.unwrap_or(false),
+        contact: ContactRates::on(given.folds.unwrap_or(false), given.layers.unwrap_or(true), true),
         ..default
     }
 }

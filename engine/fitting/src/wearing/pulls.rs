@@ -2,15 +2,14 @@
 
 use glam::Vec3;
 use serde::Serialize;
-use toile_base::body::{Body, Levels};
+use toile_base::body::Levels;
 use toile_base::garment::{Garment, Part};
-use toile_base::rig::Rig;
 use toile_base::skeleton::{Joint, Pose, Skeleton};
 use toile_engine::cloth::{Cloth, Settings};
-use toile_engine::frame::Frame;
 
 use super::poses;
 use crate::FittingError;
+use crate::dress::try_on::DressedBody;
 
 /// Share of the edges of a zone that may be stretched more than what is told: single edges beside a seam say nothing.
 const BEYOND: f32 = 0.1;
@@ -124,15 +123,11 @@ const TRIED: [(&str, TakePose); 2] = [("raising the arms", poses::arms_raised), 
 ///
 /// # Errors
 /// Garments that no frame holds.
-pub fn in_poses(
-    body: &Body,
-    rig: &Rig,
-    garments: &[Garment],
-    settings: &Settings,
-) -> Result<Vec<PosePulls>, FittingError> {
-    let standing = look(body, rig, garments, settings, poses::arms_down)?;
+pub fn in_poses(dressed: &DressedBody, settings: &Settings) -> Result<Vec<PosePulls>, FittingError> {
+    let (body, garments) = (&dressed.body, &dressed.garments);
+    let standing = look(dressed, settings, poses::arms_down)?;
     let tried = |(name, pose): (&'static str, TakePose)| {
-        let now = look(body, rig, garments, settings, pose)?;
+        let now = look(dressed, settings, pose)?;
         let both = garments.iter().zip(standing.iter().zip(now));
         let garments = both.map(|(garment, (before, now))| compare(garment, &body.levels, before, &now)).collect();
         Ok(PosePulls { pose: name, garments })
@@ -148,15 +143,9 @@ struct Seen {
     hem: f32,
 }
 
-fn look(
-    body: &Body,
-    rig: &Rig,
-    garments: &[Garment],
-    settings: &Settings,
-    pose: TakePose,
-) -> Result<Vec<Seen>, FittingError> {
-    let made = Frame::new(body.clone(), rig, garments.to_vec(), *settings);
-    let (mut frame, _reader) = made.map_err(FittingError::input)?;
+fn look(dressed: &DressedBody, settings: &Settings, pose: TakePose) -> Result<Vec<Seen>, FittingError> {
+    let body = &dressed.body;
+    let (mut frame, _reader) = dressed.clone().build(*settings).map_err(FittingError::input)?;
     frame.dress(&poses::joints(&body.skeleton, &pose(&body.skeleton)));
     let now = frame.pose();
     let (root, turn) = (now.root, now.local[Joint::Pelvis.index()].inverse());
@@ -221,8 +210,9 @@ fn compare(garment: &Garment, levels: &Levels, before: &Seen, now: &Seen) -> Gar
 
 #[cfg(test)]
 mod tests {
-    use toile_assets::drafting;
     use toile_base::body::{Measures, Sex};
+    use toile_assets::drafting;
+    
 
     use super::*;
 
@@ -232,7 +222,7 @@ mod tests {
         let body = package.body_of(on).unwrap().unwrap();
         let garment = package.dress(size, &body).unwrap();
         let settings = Settings { workers: 1, ..Settings::default() };
-        in_poses(&body, &toile_assets::rig::fit(&body), &[garment], &settings).unwrap()
+        in_poses(&DressedBody::new(toile_assets::rig::fit(&body), body, vec![garment]), &settings).unwrap()
     }
 
     fn at(pulls: &PosePulls, zone: CoveredZone) -> ZonePull {
@@ -260,9 +250,8 @@ mod tests {
     #[test]
     fn a_body_that_wears_nothing_feels_nothing() {
         let body = toile_assets::body::build(Sex::Male, &Measures::average(Sex::Male)).unwrap();
-        let pulls =
-            in_poses(&body, &toile_assets::rig::fit(&body), &[], &Settings { workers: 1, ..Settings::default() })
-                .unwrap();
+        let bare = DressedBody::new(toile_assets::rig::fit(&body), body, Vec::new());
+        let pulls = in_poses(&bare, &Settings { workers: 1, ..Settings::default() }).unwrap();
         assert!(pulls.len() == 2 && pulls.iter().all(|p| p.garments.is_empty()));
     }
 }

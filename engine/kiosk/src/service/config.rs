@@ -5,8 +5,8 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
-use toile_assets::file::{self, FileKind};
 use toile_base::body::Sex;
+use toile_assets::file::{self, FileKind};
 use toile_engine::cloth::Quality;
 use toile_engine::workers::SHARES;
 
@@ -15,7 +15,7 @@ use super::picture_config::{OwnPictureUse, PictureConfig};
 use super::session::SessionTimes;
 use crate::error::KioskError;
 use toile_fitting::dress::measured::ShopperFacts;
-use toile_fitting::dress::wish::{Wish, shown_first};
+use toile_fitting::dress::try_on::{TryOn, shown_first};
 use toile_sensors::source::live::{CameraError, CameraName};
 use toile_track::tape_readings::TapeReadings;
 use toile_view::figure::{Appearance, Hair, SkinTone};
@@ -392,17 +392,11 @@ impl Config {
             .or_else(|| self.wear.quality.parse::<Quality>().err().map(|e| format!("wear.quality: {e}")))
     }
 
-    /// The garments and sizes asked for.
-    pub fn wish(&self) -> Wish {
-        let ShopperFacts { sex, child, tape, .. } = self.shopper.facts().unwrap_or_default();
-        Wish {
-            garments: self.wear.garments.clone(),
-            size: self.wear.size.clone(),
-            quality: self.wear.quality.parse().unwrap_or_default(),
-            sex,
-            child,
-            tape,
-        }
+    /// The request that everybody begins with, as it is configured.
+    pub fn request(&self) -> TryOn {
+        let shopper = self.shopper.facts().unwrap_or_default();
+        let request = TryOn::of_shopper(&self.wear.garments, self.wear.size.as_deref(), shopper);
+        request.in_quality(self.wear.quality.parse().unwrap_or_default())
     }
 
     /// The rules of a session.

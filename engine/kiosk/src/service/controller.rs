@@ -1,30 +1,18 @@
-//! The controller of a session: decides when to measure and dress whoever stands there. Without a window that is the state
-//! machine of the session alone.
+//! The service's side of the controller of a session: what the service asks of it, and the parts of the kiosk that it uses.
 
 use std::sync::Arc;
 
-use toile_base::frame::Joints;
 use toile_engine::frame::Frame;
 use toile_engine::frame_loop::physics_thread::Scene;
 use toile_engine::frame_loop::sensor_thread::ObservedFrame;
-use toile_fitting::dress::attire::Attire;
-use toile_fitting::dress::dressed::Dressed;
-use toile_fitting::dress::session;
-use toile_fitting::live::dresser::{DressJob, DressOutcome, Dresser, ShopperSource};
+use toile_fitting::dress::try_on::{DressedWorld, TryOn};
+use toile_fitting::live::background::{BackgroundJob, Finished};
 use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
+use toile_base::frame::Joints;
 
-use super::session::{SessionInput, SessionMachine, SessionState, SessionTimes, StateChange};
-use super::stock_watch::{StockChange, StockFigures, StockWatch};
+use super::session::{SessionState, StateChange};
+use super::stock_watch::StockFigures;
 use crate::error::KioskError;
-
-/// A sensor frame older than this says nothing about who is there at the moment (ns).
-pub const STALE_NS: u64 = 500_000_000;
-
-/// Most sensor frames that a shopper is measured from: the longest measuring at 60 Hz.
-pub const MOST_FRAMES: usize = 3600;
-
-/// Fewest frames that somebody can be measured from.
-pub const FEWEST_FRAMES: usize = 10;
 
 /// What a dressed frame becomes in the loop, and what the renderer has to know of it.
 pub type ToScene<S, O> = Box<dyn Fn(Frame) -> (S, O)>;
@@ -33,8 +21,10 @@ pub type ToScene<S, O> = Box<dyn Fn(Frame) -> (S, O)>;
 pub struct ControllerContext<S, O> {
     /// How scenes are changed.
     pub changer: SceneChanger<S, O>,
-    /// Dresses the mannequin, and shoppers where no window does.
-    pub dresser: Dresser,
+    /// The request that everybody begins with, the mannequin too.
+    pub first: Arc<TryOn>,
+    /// The mannequin that is being dressed.
+    pub dressing: BackgroundJob<Result<DressedWorld, KioskError>>,
     /// A dressed frame as a scene of the loop, and what the renderer has to know of it.
     pub to_scene: ToScene<S, O>,
     /// How the mannequin stands.
@@ -43,7 +33,7 @@ pub struct ControllerContext<S, O> {
 
 impl<S: Scene, O> ControllerContext<S, O> {
     /// Somebody dressed, as the loop takes them.
-    pub fn scene(&self, dressed: Dressed) -> DressedScene<S, O> {
+    pub fn scene(&self, dressed: DressedWorld) -> DressedScene<S, O> {
         DressedScene::new(dressed, &self.to_scene)
     }
 
@@ -52,20 +42,39 @@ impl<S: Scene, O> ControllerContext<S, O> {
     /// # Errors
     /// Where the system gives no thread.
     pub fn dress_mannequin(&mut self) -> Result<(), KioskError> {
-        if !self.changer.lacks_mannequin() || self.dresser.is_busy() {
+        if !self.changer.lacks_mannequin() || self.dressing.is_running() {
             return Ok(());
         }
-        self.dresser.begin(DressJob::Mannequin(Box::new(self.pose))).map_err(KioskError::internal)
+        let (first, pose) = (self.first.clone(), self.pose);
+        self.dressing.start("toile-dresser", move || first.on_mannequin(&pose)).map_err(KioskError::internal)
+    }
+
+    /// Keeps a mannequin that is dressed. One that could not be dressed is tried again.
+    ///
+    /// # Errors
+    /// Where its thread panicked.
+    pub fn take_mannequin(&mut self) -> Result<(), KioskError> {
+        match self.dressing.poll() {
+            Some(Finished::Done { value: Ok(mannequin), .. }) => {
+                let scene = self.scene(mannequin);
+                self.changer.stand_by(scene);
+                Ok(())
+            }
+            Some(Finished::Panicked) => {
+                Err(KioskError::Internal("the dresser's thread panicked; start the kiosk again".into()))
+            }
+            Some(Finished::Done { value: Err(_), .. }) | None => Ok(()),
+        }
     }
 
     /// Whether nobody is shown but the mannequin, and nobody is being dressed.
     pub fn is_at_rest(&self) -> bool {
-        self.changer.is_wiped() && !self.dresser.is_busy()
+        self.changer.is_wiped() && !self.dressing.is_running()
     }
 
     /// From now on everybody wears something else first, the mannequin too, where there is another one.
-    pub fn restock(&mut self, first: Arc<Attire>, mannequin: Option<Box<Dressed>>) {
-        self.dresser.change(first);
+    pub fn restock(&mut self, first: Arc<TryOn>, mannequin: Option<Box<DressedWorld>>) {
+        self.first = first;
         if let Some(mannequin) = mannequin {
             let scene = self.scene(*mannequin);
             self.changer.renew(scene);
@@ -81,9 +90,6 @@ pub trait SessionController<S, O> {
     /// Takes a frame of the sensor, as it came and filtered.
     fn frame(&mut self, frame: ObservedFrame);
 
-    /// Takes the result of a job that it gave; mannequins are not its own.
-    fn work(&mut self, work: DressOutcome);
-
     /// Decides, fifty times a second; returns the change of state, where there is one.
     ///
     /// # Errors
@@ -98,127 +104,5 @@ pub trait SessionController<S, O> {
     /// What the health line says of the stock, where it is watched.
     fn stock(&self) -> Option<&StockFigures> {
         None
-    }
-}
-
-/// The session alone: everybody who steps in is measured and dressed in the same.
-pub struct HeadlessController {
-    session: SessionMachine,
-    /// Time over which a shopper is measured (ns).
-    measure_ns: u64,
-    /// The recording that shoppers are measured from, where one is played.
-    played: Option<ShopperSource>,
-    /// When a frame last came, and whether somebody was seen in it.
-    seen: (u64, bool),
-    /// What the shopper is measured from, and who was made of it.
-    model: Vec<Joints>,
-    fitted: Option<Box<Dressed>>,
-    dressed: bool,
-    watch: Option<StockWatch<()>>,
-}
-
-impl HeadlessController {
-    /// Nobody is there, at this time (ns).
-    pub fn new(times: SessionTimes, measure_ns: u64, played: Option<ShopperSource>, now_ns: u64) -> Self {
-        let session = SessionMachine::new(times, now_ns);
-        Self {
-            session,
-            measure_ns,
-            played,
-            seen: (0, false),
-            model: Vec::new(),
-            fitted: None,
-            dressed: false,
-            watch: None,
-        }
-    }
-
-    /// The same with a stock that is watched.
-    #[must_use]
-    pub fn watching(self, watch: Option<StockWatch<()>>) -> Self {
-        Self { watch, ..self }
-    }
-
-    /// Takes a stock that was read again, when nobody is there.
-    fn restock<S: Scene, O>(&mut self, context: &mut ControllerContext<S, O>) {
-        let Some(watch) = &mut self.watch else { return };
-        watch.poll();
-        if self.session.state() == SessionState::Attract
-            && context.is_at_rest()
-            && let Some(StockChange { stock, mannequin, .. }) = watch.take()
-        {
-            context.restock(stock.first, mannequin);
-        }
-    }
-
-    /// What a change of state brings about.
-    fn change<S: Scene, O>(&mut self, change: StateChange, context: &mut ControllerContext<S, O>) {
-        match change.to {
-            SessionState::Measuring => {
-                self.model.clear();
-                self.played.iter().for_each(ShopperSource::begin);
-            }
-            SessionState::TryOn => {
-                self.model.clear();
-                if let Some(fitted) = self.fitted.take() {
-                    let act = context.scene(*fitted);
-                    context.changer.show(act, true);
-                }
-            }
-            SessionState::Left => {}
-            SessionState::Attract => {
-                self.model.clear();
-                (self.fitted, self.dressed) = (None, false);
-                context.dresser.forget();
-                self.played.iter().for_each(ShopperSource::forget);
-                context.changer.wipe();
-            }
-        }
-    }
-}
-
-impl<S: Scene, O> SessionController<S, O> for HeadlessController {
-    fn state(&self) -> SessionState {
-        self.session.state()
-    }
-
-    fn frame(&mut self, frame: ObservedFrame) {
-        let frame = frame.raw;
-        self.seen = (frame.time_ns, session::is_present(&frame));
-        if self.session.state() == SessionState::Measuring && self.seen.1 && self.model.len() < MOST_FRAMES {
-            self.model.push(frame);
-        }
-    }
-
-    fn work(&mut self, work: DressOutcome) {
-        match work {
-            DressOutcome::Done(dressed) => (self.fitted, self.dressed) = (Some(dressed), true),
-            DressOutcome::Failed | DressOutcome::Panicked => self.model.clear(),
-        }
-    }
-
-    fn poll(&mut self, now: u64, context: &mut ControllerContext<S, O>) -> Result<Option<StateChange>, KioskError> {
-        let shopper = self.seen.1 && now.saturating_sub(self.seen.0) < STALE_NS;
-        let change = self.session.update(now, SessionInput { shopper, dressed: self.dressed });
-        if let Some(change) = change {
-            self.change(change, context);
-        }
-        self.restock(context);
-        let enough = self.session.lasted_ns(now) >= self.measure_ns && self.model.len() >= FEWEST_FRAMES;
-        let wanted = self.session.state() == SessionState::Measuring && !self.dressed && !context.dresser.is_busy();
-        if enough && wanted {
-            let model = self.played.clone();
-            let model = model.unwrap_or_else(|| ShopperSource::Joints(std::mem::take(&mut self.model)));
-            context.dresser.begin(DressJob::Shopper(model)).map_err(KioskError::internal)?;
-        }
-        Ok(change)
-    }
-
-    fn lines(&mut self) -> Vec<String> {
-        self.watch.as_mut().map(StockWatch::lines).unwrap_or_default()
-    }
-
-    fn stock(&self) -> Option<&StockFigures> {
-        self.watch.as_ref().map(StockWatch::figures)
     }
 }

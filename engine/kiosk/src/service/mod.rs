@@ -29,38 +29,35 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use toile_base::frame::Joints;
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::frame::Frame;
 use toile_engine::frame_loop::physics_thread::FrameScene;
 use toile_engine::frame_loop::render_thread::Renderer;
 use toile_engine::frame_loop::threads;
 use toile_engine::triple_buffer::Writer;
-use toile_fitting::dress::dressed;
 use toile_fitting::dress::session as sessions;
-use toile_fitting::live::assembly::{HeadlessRenderer, LoopOptions, LoopParts};
-use toile_fitting::live::dresser::{Dresser, ShopperSource};
+use toile_fitting::live::assembly::{LoopOptions, LoopParts};
 use toile_fitting::live::lateness::ThreadAccount;
 use toile_fitting::live::live_loop::LiveLoop;
 use toile_fitting::live::own_picture::{PictureReceiver, PictureSwitch};
 use toile_fitting::live::report::ThreadPlacement;
 use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
+use toile_fitting::live::shopper_source::ShopperSource;
 use toile_fitting::live::source::{Feed, Visits};
 use toile_fitting::live::{crash, recording};
+use toile_base::frame::Joints;
 use toile_sensors::source::Session;
 
 use crate::error::KioskError;
 use camera::CameraFeeds;
 use config::{Config, SensorSource};
-use controller::{HeadlessController, SessionController, ToScene};
+use controller::{SessionController, ToScene};
 use health::HealthFigures;
 use instance::InstanceLock;
 use report::KioskReport;
 use runner::{Service, ServiceEnvironment, ServiceOptions};
 use service_manager::{StopSignal, Systemd};
-use session::SessionTimes;
 use stock::Stock;
-use stock_watch::{Hang, LOOK_EVERY, StockWatch, WatchStart};
 
 /// What is asked of a run, beside its configuration.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -86,16 +83,16 @@ pub struct KioskOptions {
 /// Prints a line for whoever looks after the kiosk.
 pub type PrintLine<'a> = &'a (dyn Fn(&str) + Sync);
 
-/// Runs a kiosk; with a window, by `windowed`.
+/// Runs a kiosk by `front`, with a window or without.
 ///
 /// # Errors
 /// A kiosk that already runs, a configuration, a session or a garment that cannot be used, a thread that ended while it ran; those
-/// of `windowed`.
+/// of `front`.
 pub fn run(
     options: &KioskOptions,
     begun: Instant,
     print_line: PrintLine<'_>,
-    windowed: fn(KioskRun<'_>) -> Result<KioskReport, KioskError>,
+    front: fn(KioskRun<'_>) -> Result<KioskReport, KioskError>,
 ) -> Result<KioskReport, KioskError> {
     let stop = StopSignal::listen().map_err(KioskError::internal)?;
     let mut config = Config::open(options.config.as_deref())?;
@@ -108,22 +105,7 @@ pub fn run(
     let stock = Stock::read(&config)?;
     let clock = RealClock::default();
     let run = KioskRun { options, config: &config, stock: &stock, begun, clock, stop: &stop, print_line, figures };
-    if options.headless {
-        stock.left_out.iter().for_each(|left| print_line(&stock_watch::line(left)));
-        let renderer = |_: &Frame, _: Option<PictureReceiver>| Ok(HeadlessRenderer::default());
-        let controller = |start: ControllerStart| -> Result<BoxedController<'_, ()>, KioskError> {
-            let ControllerStart { played, pose, times, measure_ns, now_ns, .. } = start;
-            let hang: Hang<()> = Box::new(|_, _| Ok(()));
-            let (config, stock) = (config.clone(), stock.clone());
-            let left_out = stock.left_out.clone();
-            let watch = StockWatch::start(WatchStart { config, stock, left_out, pose, every: LOOK_EVERY, hang })?;
-            Ok(Box::new(HeadlessController::new(times, measure_ns, played, now_ns).watching(watch)))
-        };
-        let frontend = Frontend { renderer, to_scene: Box::new(|frame| (FrameScene::new(frame), ())), controller };
-        Ok(serve(run, frontend)?.0)
-    } else {
-        windowed(run)
-    }
+    front(run)
 }
 
 /// Where no window was built in.
@@ -174,12 +156,6 @@ pub struct ControllerStart {
     pub portraits: Option<(PictureReceiver, PictureSwitch)>,
     /// How the mannequin stands.
     pub pose: Joints,
-    /// The session's times, and that of measuring (ns).
-    pub times: SessionTimes,
-    /// Time over which a shopper is measured (ns).
-    pub measure_ns: u64,
-    /// The loop's time (ns).
-    pub now_ns: u64,
 }
 
 /// A controller.
@@ -202,7 +178,7 @@ where
     let session = played_session(config)?;
     // The mannequin stands as somebody does in the recording: a pose, and no body.
     let pose = sessions::standing(&session)?[0];
-    let dressed = dressed::mannequin_in(&stock.first, &pose)?;
+    let dressed = stock.first.on_mannequin(&pose)?;
     let SensorFeeds { feed, played, pictures, switch, portraits } = feed(config, session, clock)?;
     let workers = config.machine.workers.unwrap_or_else(workers);
     let (crew, worker) = threads::worker_pool(workers).map_err(KioskError::input)?;
@@ -211,15 +187,13 @@ where
         begun,
         length: options.seconds.map(|s| Duration::from_secs(s.into())),
         crash_after: options.crash_after.map(Duration::from_secs),
-        times: config.times(),
-        measure_ns: config::ns(config.session.measure_s),
         health_ns: config::ns(config.health.every_s),
         played,
         memory_locked: config.machine.lock_memory && locked.is_ok(),
         warnings: locked.err().map(|e| e.to_string()).into_iter().collect(),
     };
     let (flight_recorder, recording) = match config.crash.recording.clone() {
-        Some(path) => recording::keep(&dressed.dressing, path)
+        Some(path) => recording::keep(&dressed, path)
             .map(|(flight_recorder, recording)| (Some(flight_recorder), Some(recording)))?,
         None => (None, None),
     };
@@ -234,22 +208,14 @@ where
         stop,
         print_line,
         figures,
-        dresser: Dresser::new(stock.first.clone()),
+        first: stock.first.clone(),
         to_scene: frontend.to_scene,
         pose,
         flight_recorder,
     };
-    let start = ControllerStart {
-        played: service_options.played.clone(),
-        switch,
-        portraits,
-        pose,
-        times: service_options.times,
-        measure_ns: service_options.measure_ns,
-        now_ns: clock.now_ns(),
-    };
+    let start = ControllerStart { played: service_options.played.clone(), switch, portraits, pose };
     let controller = (frontend.controller)(start)?;
-    let ran = Service::new(live, changer, service_options, environment).controlled_by(controller).run();
+    let ran = Service::new(live, changer, controller, service_options, environment).run();
     crash::forget();
     let (ended, capacities, mut record) = ran?;
     record.threads.extend(worker.map(ThreadPlacement::from));

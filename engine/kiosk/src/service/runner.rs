@@ -4,25 +4,27 @@ use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use toile_base::frame::Joints;
 use toile_engine::frame_loop::flight_recorder::FlightRecorder;
 use toile_engine::frame_loop::physics_thread::Scene;
 use toile_engine::frame_loop::queue::Capacity;
 use toile_engine::frame_loop::render_thread::Renderer;
 use toile_engine::triple_buffer::Writer;
+use toile_fitting::dress::try_on::TryOn;
+use toile_fitting::live::background::BackgroundJob;
 use toile_fitting::live::depth_camera::CameraHandle;
-use toile_fitting::live::dresser::{DressOutcome, Dresser, ShopperSource};
 use toile_fitting::live::live_loop::{EndedLive, LiveLoop};
 use toile_fitting::live::report::{Attributed, ThreadPlacement};
 use toile_fitting::live::scene_changer::SceneChanger;
+use toile_fitting::live::shopper_source::ShopperSource;
 use toile_fitting::live::source::Feed;
 use toile_fitting::live::watchdog::Watchdog;
+use toile_base::frame::Joints;
 
-use super::controller::{ControllerContext, HeadlessController, SessionController, ToScene};
+use super::controller::{ControllerContext, SessionController, ToScene};
 use super::health::{HealthCounter, HealthFigures};
 use super::report::RunRecord;
 use super::service_manager::{ServiceManager, ServiceStatus, StopSignal};
-use super::session::{SessionState, SessionTimes};
+use super::session::SessionState;
 use crate::error::KioskError;
 
 /// Time between two rounds: the queues hold seconds, and a signal to end waits for no longer.
@@ -39,10 +41,6 @@ pub struct ServiceOptions {
     pub length: Option<Duration>,
     /// When it panics, to see what a crash leaves.
     pub crash_after: Option<Duration>,
-    /// The session's times.
-    pub times: SessionTimes,
-    /// Time over which a shopper is measured (ns).
-    pub measure_ns: u64,
     /// Time between two health lines (ns); 0 is never.
     pub health_ns: u64,
     /// The recording that shoppers are measured from, where one is played.
@@ -63,8 +61,8 @@ pub struct ServiceEnvironment<'a, S, O> {
     pub print_line: &'a dyn Fn(&str),
     /// Receives the figures, where metrics are served.
     pub figures: Option<Writer<HealthFigures>>,
-    /// Dresses shoppers on a thread of its own.
-    pub dresser: Dresser,
+    /// The request that everybody begins with.
+    pub first: Arc<TryOn>,
     /// What a dressed frame becomes in the loop, and what the renderer has to know of it.
     pub to_scene: ToScene<S, O>,
     /// How the mannequin stands.
@@ -100,10 +98,11 @@ pub struct Service<'a, S: Scene, E: Renderer> {
 }
 
 impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
-    /// Over threads that have been started.
+    /// Over threads that have been started, with the controller that decides.
     pub fn new(
         live: LiveLoop<S, E, Feed>,
         changer: SceneChanger<S, E::Outfit>,
+        controller: Box<dyn SessionController<S, E::Outfit> + 'a>,
         options: ServiceOptions,
         environment: ServiceEnvironment<'a, S, E::Outfit>,
     ) -> Self {
@@ -119,13 +118,12 @@ impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
             memory_locked: options.memory_locked,
             warnings: options.warnings.clone(),
         };
-        let ServiceEnvironment { manager, stop, print_line, figures, dresser, to_scene, pose, flight_recorder } =
+        let ServiceEnvironment { manager, stop, print_line, figures, first, to_scene, pose, flight_recorder } =
             environment;
         let camera = options.played.as_ref().and_then(ShopperSource::camera).cloned();
-        let controller = Box::new(HeadlessController::new(options.times, options.measure_ns, options.played, now));
         Self {
             live,
-            context: ControllerContext { changer, dresser, to_scene, pose },
+            context: ControllerContext { changer, first, dressing: BackgroundJob::default(), to_scene, pose },
             controller,
             length: options.length,
             crash_after: options.crash_after,
@@ -143,12 +141,6 @@ impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
             health_ns: now + options.health_ns,
             record,
         }
-    }
-
-    /// The same with another controller: one with pages, for a window.
-    #[must_use]
-    pub fn controlled_by(self, controller: Box<dyn SessionController<S, E::Outfit> + 'a>) -> Self {
-        Self { controller, ..self }
     }
 
     /// Runs until it is asked to end or its time is over. Returns a record of the run, and of the loop's threads.
@@ -215,17 +207,7 @@ impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
         while let Some(frame) = self.live.queues.frames.pop() {
             self.controller.frame(frame);
         }
-        match self.context.dresser.poll() {
-            Some(DressOutcome::Done(mannequin)) if mannequin.dressing.still => {
-                let scene = self.context.scene(*mannequin);
-                self.context.changer.stand_by(scene);
-            }
-            Some(DressOutcome::Panicked) => {
-                return Err(KioskError::Internal("the dresser's thread panicked; start the kiosk again".into()));
-            }
-            Some(work) => self.controller.work(work),
-            None => {}
-        }
+        self.context.take_mannequin()?;
         if let Some(change) = self.controller.poll(now, &mut self.context)? {
             if self.record.states.len() < MOST_STATES {
                 self.record.states.push(change.to);

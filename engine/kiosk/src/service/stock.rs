@@ -5,9 +5,8 @@ use std::sync::Arc;
 
 use toile_assets::catalogue::{Catalogue, CatalogueItem};
 use toile_assets::file::{self, FileStamp};
-use toile_fitting::dress::attire::Attire;
-use toile_fitting::dress::choice::Choice;
-use toile_fitting::dress::wish::Wish;
+use toile_fitting::dress::garment_source::GarmentSource;
+use toile_fitting::dress::try_on::{RequestedGarment, TryOn};
 
 use super::config::Config;
 use crate::error::KioskError;
@@ -41,7 +40,7 @@ pub struct Stock {
     /// The shop's catalogue, where there is one.
     pub catalogue: Option<Arc<Catalogue>>,
     /// What everybody wears first, open.
-    pub first: Arc<Attire>,
+    pub first: Arc<TryOn>,
     /// What cannot be used.
     pub left_out: Vec<LeftOut>,
     /// The files as they were before they were read.
@@ -69,7 +68,7 @@ impl Stock {
 
     /// Whether everybody wears the same first as by another stock, of the same files.
     pub fn wears_the_same(&self, other: &Self) -> bool {
-        self.first.wish.garments == other.first.wish.garments && self.stamps == other.stamps
+        self.first.garments == other.first.garments && self.stamps == other.stamps
     }
 
     /// Whether there is anything that can change.
@@ -126,48 +125,49 @@ impl Reading<'_> {
         for refused in catalogue.iter().flat_map(|catalogue| &catalogue.refused) {
             self.left_out.push(LeftOut { name: refused.package.clone(), why: refused.why.clone() });
         }
-        let mut choices = self.named(catalogue.as_deref())?;
-        if choices.is_empty()
+        let mut sources = self.named(catalogue.as_deref())?;
+        if sources.is_empty()
             && let Some(catalogue) = &catalogue
         {
-            choices.push(self.first_of(catalogue)?);
+            sources.push(self.first_of(catalogue)?);
         }
-        if choices.is_empty() {
+        if sources.is_empty() {
             return Err(KioskError::Input("nothing that [wear] garments names can be used; name a garment".into()));
         }
-        let garments = choices.iter().map(|choice| choice.name.clone()).collect();
-        let stamps = choices.iter().map(|choice| file::stamp(Path::new(&choice.name))).collect();
-        let first = Arc::new(Attire { wish: Wish { garments, ..self.config.wish() }, choices });
+        let stamps = sources.iter().map(|source| file::stamp(Path::new(&source.name))).collect();
+        let size = &self.config.wear.size;
+        let garments = sources.into_iter().map(|source| RequestedGarment::of(source, size.clone())).collect();
+        let first = Arc::new(TryOn { garments, ..self.config.request() });
         Ok(Stock { catalogue, first, left_out: self.left_out, seen, stamps })
     }
 
     /// What the configuration names, article numbers by their packages; nothing where it leaves that to the catalogue.
-    fn named(&mut self, catalogue: Option<&Catalogue>) -> Result<Vec<Arc<Choice>>, KioskError> {
-        let wish = self.config.wish();
-        wish.check_count()?;
-        let mut choices = Vec::new();
+    fn named(&mut self, catalogue: Option<&Catalogue>) -> Result<Vec<Arc<GarmentSource>>, KioskError> {
+        let request = self.config.request();
+        request.check_count()?;
+        let mut sources = Vec::new();
         if catalogue.is_some() && !self.config.wear.is_named {
-            return Ok(choices);
+            return Ok(sources);
         }
-        for name in wish.garments {
+        for name in request.names() {
             let is_it = |item: &&CatalogueItem| item.manifest.article == name;
             let item = catalogue.and_then(|catalogue| catalogue.items.iter().find(is_it));
             let name = item.map_or(name, |item| item.path.display().to_string());
             match self.open(&name) {
-                Ok(choice) => choices.push(choice),
+                Ok(source) => sources.push(source),
                 Err(why) if self.before.is_some() => self.left_out.push(LeftOut::new(&name, &why)),
                 Err(why) => return Err(why),
             }
         }
-        Ok(choices)
+        Ok(sources)
     }
 
     /// The first garment of a catalogue that can be worn.
-    fn first_of(&mut self, catalogue: &Catalogue) -> Result<Arc<Choice>, KioskError> {
+    fn first_of(&mut self, catalogue: &Catalogue) -> Result<Arc<GarmentSource>, KioskError> {
         for item in &catalogue.items {
             let name = item.path.display().to_string();
             match self.open(&name) {
-                Ok(choice) => return Ok(choice),
+                Ok(source) => return Ok(source),
                 Err(why) => self.left_out.push(LeftOut::new(&name, &why)),
             }
         }
@@ -176,14 +176,14 @@ impl Reading<'_> {
     }
 
     /// A garment, as it was open before where its file is still the same.
-    fn open(&self, name: &str) -> Result<Arc<Choice>, KioskError> {
+    fn open(&self, name: &str) -> Result<Arc<GarmentSource>, KioskError> {
         let stamp = file::stamp(Path::new(name));
         if let Some(before) = self.before {
-            let mut open = before.first.choices.iter().zip(&before.stamps);
-            if let Some((choice, _)) = open.find(|(choice, was)| choice.name == name && **was == stamp) {
-                return Ok(choice.clone());
+            let mut open = before.first.garments.iter().zip(&before.stamps);
+            if let Some((garment, _)) = open.find(|(garment, was)| garment.name == name && **was == stamp) {
+                return garment.source();
             }
         }
-        Choice::find(name).map(Arc::new)
+        GarmentSource::find(name).map(Arc::new)
     }
 }

@@ -9,8 +9,8 @@ use std::thread;
 use std::time::Duration;
 
 use toile_assets::catalogue::Catalogue;
+use toile_fitting::dress::try_on::DressedWorld;
 use toile_base::frame::Joints;
-use toile_fitting::dress::dressed::{self, Dressed};
 
 use super::config::Config;
 use super::stock::{self, FilesSeen, LeftOut, Stock};
@@ -32,7 +32,7 @@ pub struct StockChange<H> {
     /// What hangs of it.
     pub hung: H,
     /// A mannequin in what is worn first, where that has changed.
-    pub mannequin: Option<Box<Dressed>>,
+    pub mannequin: Option<Box<DressedWorld>>,
 }
 
 /// What the health line says of the stock.
@@ -243,7 +243,7 @@ impl<H> Watcher<H> {
         let mannequin = if stock.wears_the_same(&self.stock) {
             None
         } else {
-            Some(Box::new(dressed::mannequin_in(&stock.first, &self.pose)?))
+            Some(Box::new(stock.first.on_mannequin(&self.pose)?))
         };
         Ok(StockChange { stock, hung, mannequin })
     }

@@ -3,52 +3,62 @@
 use std::sync::Arc;
 
 use toile_assets::sizes::Population;
-use toile_base::frame::Joints;
-use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::frame_loop::physics_thread::Scene;
-use toile_engine::frame_loop::queue::Sender;
 use toile_engine::frame_loop::sensor_thread::ObservedFrame;
-use toile_engine::triple_buffer::Writer;
 use toile_fitting::dress::measured;
 use toile_fitting::dress::session;
-use toile_fitting::live::dresser::{DressOutcome, ShopperSource};
 use toile_fitting::live::own_picture::PictureSwitch;
+use toile_fitting::live::shopper_source::ShopperSource;
+use toile_base::frame::Joints;
 use toile_track::gesture::Gestures;
 
-use super::dressing_worker::{DressingContext, DressingJob, DressingWorker, JobResult, MeasuredVisitor, MeasuringJob};
+use super::dressing_worker::{
+    DrapedFrame, DressingContext, DressingJob, DressingWorker, JobResult, MeasuredVisitor, MeasuringJob,
+};
 use super::face_camera::FaceCamera;
 use super::model::{Effect, Input, VisitModel};
 use super::own_face::{Portrait, WornFace};
-use super::photographs::Photographs;
 use super::presence::{Presence, PresenceTracker};
-use super::reach::DisplayMount;
-use super::screen::Screen;
-use super::texts::Texts;
 use super::wardrobe::{Outfit, Wardrobe};
 use crate::error::KioskError;
-use crate::service::controller::{ControllerContext, FEWEST_FRAMES, MOST_FRAMES, STALE_NS, SessionController};
+use crate::service::controller::{ControllerContext, SessionController};
 use crate::service::session::{SessionState, StateChange};
 use crate::service::stock_watch::{StockChange, StockFigures, StockWatch};
 
-/// Two outfits, draped, as the renderer draws them: left and right.
-pub type OutfitPair<O> = Box<[O; 2]>;
+/// A sensor frame older than this says nothing about who is there at the moment (ns).
+const STALE_NS: u64 = 500_000_000;
 
-/// The next input from the display since the last poll, if any.
-pub type NextInput<'a> = Box<dyn FnMut() -> Option<Input> + 'a>;
+/// Most sensor frames that a shopper is measured from: the longest measuring at 60 Hz.
+const MOST_FRAMES: usize = 3600;
 
-/// What the renderer has to know of a frame as it lies in a snapshot.
-pub type ToOutfit<O> = Box<dyn Fn(&Frame, &Snapshot) -> O>;
+/// Fewest frames that somebody can be measured from.
+const FEWEST_FRAMES: usize = 10;
 
-/// The ends of the window's channels.
-pub struct WindowChannels<'a, O> {
-    /// Where screens go: the latest is shown.
-    pub screens: Writer<Screen>,
-    /// What is asked for at the display: the end of a bounded queue.
-    pub next_input: NextInput<'a>,
-    /// Where two outfits go, and none when they are to be seen no more.
-    pub pairs: Sender<Option<OutfitPair<O>>>,
-    /// What the renderer has to know of a frame as it lies in a snapshot.
-    pub draped: ToOutfit<O>,
+/// A window, as the controller has it.
+pub trait VisitWindow {
+    /// The next input from the display since the last poll, if any.
+    fn next_input(&mut self) -> Option<Input>;
+
+    /// Shows the model's page; returns a line for whoever looks after the kiosk, where there is one.
+    fn show(&mut self, model: &VisitModel) -> Option<String>;
+
+    /// Shows two outfits beside each other, or none any more.
+    fn show_two(&mut self, two: Option<&[DrapedFrame; 2]>);
+}
+
+/// A window that shows nothing: that of a kiosk without a display.
+pub struct NoWindow;
+
+impl VisitWindow for NoWindow {
+    fn next_input(&mut self) -> Option<Input> {
+        None
+    }
+
+    fn show(&mut self, _model: &VisitModel) -> Option<String> {
+        None
+    }
+
+    fn show_two(&mut self, _two: Option<&[DrapedFrame; 2]>) {}
 }
 
 /// Measuring that takes longer than this many times its own time has found nobody.
@@ -73,11 +83,9 @@ struct OngoingMeasurement {
 }
 
 /// The controller of a visit.
-pub struct VisitController<'a, O> {
+pub struct VisitController<'a> {
     model: VisitModel,
-    texts: Texts,
-    mount: DisplayMount,
-    window: WindowChannels<'a, O>,
+    window: Box<dyn VisitWindow + 'a>,
     worker: DressingWorker,
     /// The recording that shoppers are measured from, where one is played.
     played: Option<ShopperSource>,
@@ -95,7 +103,6 @@ pub struct VisitController<'a, O> {
     jobs: PendingJobs,
     /// Whether the next who is dressed is another one than is shown.
     afresh: bool,
-    shown: Option<Screen>,
     /// Whether the camera's pictures are handed to the renderer, where shoppers may see themselves.
     switch: Option<PictureSwitch>,
     /// Takes pictures for faces, where shoppers may have theirs taken, and what they wear while one is taken.
@@ -103,25 +110,22 @@ pub struct VisitController<'a, O> {
     portrayed: Outfit,
     /// The face that their figure wears.
     worn_face: WornFace,
-    photographs: Photographs,
     watch: Option<StockWatch<Arc<Wardrobe>>>,
     /// Lines for whoever looks after the kiosk.
     lines: Vec<String>,
 }
 
-impl<'a, O> VisitController<'a, O> {
+impl<'a> VisitController<'a> {
     /// Nobody is there. `mark` is the mark's place on the floor (x, z in the sensor's world, m), if that is known.
     pub fn new(
-        (model, texts, mount): (VisitModel, Texts, DisplayMount),
-        window: WindowChannels<'a, O>,
+        model: VisitModel,
+        window: Box<dyn VisitWindow + 'a>,
         context: DressingContext,
         played: Option<ShopperSource>,
         mark: Option<[f32; 2]>,
     ) -> Self {
         Self {
             model,
-            texts,
-            mount,
             window,
             worker: DressingWorker::new(context),
             played,
@@ -135,12 +139,10 @@ impl<'a, O> VisitController<'a, O> {
             measuring: None,
             jobs: PendingJobs::default(),
             afresh: true,
-            shown: None,
             switch: None,
             faces: None,
             portrayed: Outfit::new(),
             worn_face: WornFace::default(),
-            photographs: Photographs::default(),
             watch: None,
             lines: Vec::new(),
         }
@@ -170,7 +172,7 @@ impl<'a, O> VisitController<'a, O> {
     }
 
     /// Takes a stock that was read again, when nobody is there: a visitor keeps what they see.
-    fn restock<S: Scene>(&mut self, context: &mut ControllerContext<S, O>) {
+    fn restock<S: Scene, O>(&mut self, context: &mut ControllerContext<S, O>) {
         let Some(watch) = &mut self.watch else { return };
         watch.poll();
         if self.model.is_idle()
@@ -178,20 +180,20 @@ impl<'a, O> VisitController<'a, O> {
             && context.is_at_rest()
             && let Some(StockChange { stock, hung, mannequin }) = watch.take()
         {
-            self.model.restock(hung.clone(), stock.first.wish.garments.clone());
+            self.model.restock(hung.clone(), stock.first.names());
             self.worker.restock(hung, stock.first.clone());
             context.restock(stock.first, mannequin);
         }
     }
 
     /// Updates the model with an input and carries out its effects.
-    fn update<S: Scene>(&mut self, now: u64, input: Input, context: &mut ControllerContext<S, O>) {
+    fn update<S: Scene, O>(&mut self, now: u64, input: Input, context: &mut ControllerContext<S, O>) {
         for effect in self.model.update(now, input) {
             self.run(now, effect, context);
         }
     }
 
-    fn run<S: Scene>(&mut self, now: u64, effect: Effect, context: &mut ControllerContext<S, O>) {
+    fn run<S: Scene, O>(&mut self, now: u64, effect: Effect, context: &mut ControllerContext<S, O>) {
         match effect {
             Effect::Measure { number, seated } => {
                 self.played.iter().for_each(ShopperSource::begin);
@@ -227,18 +229,18 @@ impl<'a, O> VisitController<'a, O> {
     }
 
     /// Nothing of the shopper is to be seen any more, and no work for them goes on.
-    fn clear<S: Scene>(&mut self, context: &mut ControllerContext<S, O>) {
+    fn clear<S: Scene, O>(&mut self, context: &mut ControllerContext<S, O>) {
         self.worker.forget();
         self.worn_face.take_away();
         self.faces.iter_mut().for_each(FaceCamera::cancel);
         self.portrayed.clear();
         (self.jobs, self.measuring, self.afresh) = (PendingJobs::default(), None, true);
         context.changer.wipe();
-        self.window.pairs.push(None);
+        self.window.show_two(None);
     }
 
     /// Takes what the worker has done.
-    fn done<S: Scene>(&mut self, now: u64, number: u32, done: JobResult, context: &mut ControllerContext<S, O>) {
+    fn done<S: Scene, O>(&mut self, now: u64, number: u32, done: JobResult, context: &mut ControllerContext<S, O>) {
         let input = match done {
             JobResult::Measured(known) => {
                 let sex = measured::sex(known.population, Population::Women);
@@ -257,8 +259,7 @@ impl<'a, O> VisitController<'a, O> {
                 Input::Dressed(number)
             }
             JobResult::Two(two) => {
-                let [left, right] = two.each_ref().map(|(frame, snapshot)| (self.window.draped)(frame, snapshot));
-                self.window.pairs.push(Some(Box::new([left, right])));
+                self.window.show_two(Some(&*two));
                 Input::Draped(number)
             }
             JobResult::Picture(offered) => Input::PictureTaken(number, offered),
@@ -272,7 +273,7 @@ impl<'a, O> VisitController<'a, O> {
     }
 
     /// Gives the worker the picture that was asked for, or says that there is none.
-    fn take_face<S: Scene>(&mut self, now: u64, context: &mut ControllerContext<S, O>) {
+    fn take_face<S: Scene, O>(&mut self, now: u64, context: &mut ControllerContext<S, O>) {
         let taken = self.faces.as_mut().and_then(|faces| faces.poll(now));
         match taken {
             Some((number, Ok(portrait))) => self.jobs.face = Some((number, self.portrayed.clone(), portrait)),
@@ -282,7 +283,7 @@ impl<'a, O> VisitController<'a, O> {
     }
 
     /// Ends measuring when enough was seen, or when too little came for too long.
-    fn measure<S: Scene>(&mut self, now: u64, context: &mut ControllerContext<S, O>) {
+    fn measure<S: Scene, O>(&mut self, now: u64, context: &mut ControllerContext<S, O>) {
         let Some(measuring) = &self.measuring else { return };
         let (lasted, whole) = (now.saturating_sub(measuring.since_ns), self.model.times().measure_ns);
         let enough = measuring.frames.len() >= FEWEST_FRAMES;
@@ -325,17 +326,11 @@ impl<'a, O> VisitController<'a, O> {
 
     /// Shows what has changed.
     fn show(&mut self) {
-        let mut screen = Screen::of(&self.model, &self.texts, &self.mount);
-        let failed = self.photographs.show(&mut screen, self.model.wardrobe());
-        self.lines.extend(failed.map(|left| format!("a photograph is not shown: {}", left.why)));
-        if self.shown.as_ref() != Some(&screen) {
-            self.window.screens.publish(screen.clone());
-            self.shown = Some(screen);
-        }
+        self.lines.extend(self.window.show(&self.model));
     }
 }
 
-impl<S: Scene, O> SessionController<S, O> for VisitController<'_, O> {
+impl<S: Scene, O> SessionController<S, O> for VisitController<'_> {
     fn state(&self) -> SessionState {
         self.model.state()
     }
@@ -364,8 +359,6 @@ impl<S: Scene, O> SessionController<S, O> for VisitController<'_, O> {
         }
     }
 
-    fn work(&mut self, _work: DressOutcome) {}
-
     fn poll(&mut self, now: u64, context: &mut ControllerContext<S, O>) -> Result<Option<StateChange>, KioskError> {
         let from = self.model.state();
         let stale = now.saturating_sub(self.seen.0) >= STALE_NS;
@@ -378,7 +371,7 @@ impl<S: Scene, O> SessionController<S, O> for VisitController<'_, O> {
         if let Some(outcome) = self.switch.as_ref().map(PictureSwitch::outcome) {
             self.update(now, Input::OwnPicture(outcome), context);
         }
-        while let Some(input) = (self.window.next_input)() {
+        while let Some(input) = self.window.next_input() {
             self.update(now, input, context);
         }
         for gesture in std::mem::take(&mut self.made) {

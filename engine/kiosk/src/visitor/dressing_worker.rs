@@ -5,26 +5,24 @@ use std::net::SocketAddr;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use toile_base::body::Sex;
 use toile_assets::file;
 use toile_assets::sizes::Population;
-use toile_base::body::Sex;
-use toile_base::frame::Joints;
 use toile_engine::cloth::Quality;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_fitting::FittingError;
-use toile_fitting::dress::attire::Attire;
-use toile_fitting::dress::choice::Choice;
-use toile_fitting::dress::dressed::Dressed;
+use toile_fitting::dress::garment_source::GarmentSource;
 use toile_fitting::dress::measured::{self, ShopperFacts};
-use toile_fitting::dress::recipe::Recipe;
+use toile_fitting::dress::try_on::{DressedWorld, RequestedGarment, TryOn};
 use toile_fitting::live::background::{BackgroundJob, Finished};
-use toile_fitting::live::dresser::ShopperSource;
+use toile_fitting::live::shopper_source::ShopperSource;
+use toile_base::frame::Joints;
 use toile_track::tape_readings;
 use toile_view::drawn_frame::{self, DrawnFrame};
 use toile_view::figure::{Appearance, OwnHead};
 use toile_view::image::{Size, linear};
 
-use super::own_face::{FaceMaker, FaceTrouble, Portrait};
+use super::own_face::{FaceTrouble, MakeHeads, Portrait};
 use super::picture::{self, RgbImage};
 use super::picture_link::PictureServer;
 use super::picture_store::{OfferedPicture, PictureLink};
@@ -85,7 +83,7 @@ pub enum JobResult {
     /// The measures of somebody.
     Measured(Box<VisitorMeasures>),
     /// The dressed body of somebody.
-    Dressed(Box<Dressed>),
+    Dressed(Box<DressedWorld>),
     /// Both outfits are draped.
     Two(Box<[DrapedFrame; 2]>),
     /// The picture, by its codes.
@@ -97,12 +95,11 @@ pub enum JobResult {
 }
 
 /// What every job needs.
-#[derive(Debug)]
 pub struct DressingContext {
     /// The garments that can be chosen.
     pub wardrobe: Arc<Wardrobe>,
     /// What everybody wears first, open.
-    first: Arc<Attire>,
+    first: Arc<TryOn>,
     /// How their cloth is stepped.
     quality: Quality,
     /// What is known of every shopper.
@@ -112,9 +109,9 @@ pub struct DressingContext {
     /// Where pictures are served, if they are.
     served: PictureConfig,
     /// Makes heads of faces, where shoppers may have theirs taken.
-    faces: Option<Arc<Mutex<FaceMaker>>>,
+    faces: Option<MakeHeads>,
     /// What this shopper has put on, open, the last one last: they keep it, whatever becomes of its file.
-    worn: Mutex<Vec<Arc<Choice>>>,
+    worn: Mutex<Vec<Arc<GarmentSource>>>,
 }
 
 /// Runs one job at a time on a thread of its own, beside the live loop.
@@ -155,7 +152,7 @@ impl DressingWorker {
     }
 
     /// Other garments hang from now on.
-    pub fn restock(&mut self, wardrobe: Arc<Wardrobe>, first: Arc<Attire>) {
+    pub fn restock(&mut self, wardrobe: Arc<Wardrobe>, first: Arc<TryOn>) {
         self.context = Arc::new(DressingContext { wardrobe, first, ..self.context.anew() });
     }
 
@@ -180,7 +177,7 @@ impl DressingContext {
     /// Nobody has worn anything yet.
     pub fn new(
         wardrobe: Arc<Wardrobe>,
-        first: Arc<Attire>,
+        first: Arc<TryOn>,
         quality: Quality,
         facts: ShopperFacts,
         appearance: Appearance,
@@ -197,7 +194,7 @@ impl DressingContext {
 
     /// The same, which makes heads of faces.
     #[must_use]
-    pub fn making_faces(self, faces: Option<Arc<Mutex<FaceMaker>>>) -> Self {
+    pub fn making_faces(self, faces: Option<MakeHeads>) -> Self {
         Self { faces, ..self }
     }
 
@@ -209,15 +206,15 @@ impl DressingContext {
     }
 
     /// A garment as it hangs: one whose file is another one by now is not what the shopper has seen.
-    fn find(&self, name: &str) -> Result<Arc<Choice>, FittingError> {
-        if let Some(first) = self.first.choices.iter().find(|choice| choice.name == name) {
-            return Ok(first.clone());
+    fn find(&self, name: &str) -> Result<Arc<GarmentSource>, FittingError> {
+        if let Some(first) = self.first.garments.iter().find(|garment| garment.name == name) {
+            return first.source();
         }
         let mut worn = self.worn.lock().unwrap_or_else(PoisonError::into_inner);
-        let found = match worn.iter().position(|choice| choice.name == name) {
+        let found = match worn.iter().position(|source| source.name == name) {
             Some(place) => worn.remove(place),
             None => {
-                let found = Choice::find(name).map(Arc::new)?;
+                let found = GarmentSource::find(name).map(Arc::new)?;
                 let hung = self.wardrobe.items.iter().find(|item| item.name == name).and_then(|item| item.stamp);
                 if hung.is_some() && hung != file::stamp(Path::new(name)) {
                     return Err(FittingError::Input(format!(
@@ -257,7 +254,7 @@ impl DressingContext {
         Ok(known.with_fit(measured.population, measured.fitted.map(|fit| fit.all)))
     }
 
-    fn recipe(&self, client: &MeasuredVisitor, worn: &Outfit) -> Result<Recipe, KioskError> {
+    fn request(&self, client: &MeasuredVisitor, worn: &Outfit) -> Result<TryOn, KioskError> {
         let mut garments = Vec::with_capacity(worn.len());
         for w in worn {
             let item = self
@@ -266,9 +263,11 @@ impl DressingContext {
                 .get(w.item)
                 .ok_or_else(|| KioskError::internal("a garment is not in the wardrobe"))?;
             let size = item.sizes.get(w.size).ok_or_else(|| KioskError::internal("a size is not made"))?;
-            garments.push((item.name.clone(), size.clone()));
+            garments.push(RequestedGarment::of(self.find(&item.name)?, Some(size.clone())));
         }
-        Recipe::of("shopper", &client.known.measured, self.sex(client, worn), garments, self.quality)
+        let sex = self.sex(client, worn);
+        let (body, _) = measured::build_body(sex, &client.known.measured, Population::from(Some(sex)))?;
+        Ok(TryOn::of_body("shopper", sex, body.measures, garments).in_quality(self.quality))
     }
 
     /// The sex of the body that is shown of somebody in an outfit: that of the innermost garment that is made for one, where it was not measured.
@@ -289,15 +288,15 @@ impl DressingContext {
         let sex = self.sex(client, worn);
         // Whose sex is not known changes the drawing with the garment.
         let either: Vec<Sex> = if client.known.population == Population::Mixed { Sex::ALL.into() } else { vec![sex] };
-        Ok(faces.lock().unwrap_or_else(PoisonError::into_inner).make(portrait, &either))
+        Ok(faces(portrait, &either))
     }
 
-    fn dressed(&self, client: &MeasuredVisitor, worn: &Outfit) -> Result<Dressed, KioskError> {
-        Dressed::make_of(self.recipe(client, worn)?, &client.pose, false, &|name| self.find(name))
+    fn dressed(&self, client: &MeasuredVisitor, worn: &Outfit) -> Result<DressedWorld, KioskError> {
+        self.request(client, worn)?.build(&client.pose)
     }
 
     fn draped(&self, client: &MeasuredVisitor, worn: &Outfit) -> Result<DrapedFrame, KioskError> {
-        let Dressed { mut frame, mut reader, .. } = self.dressed(client, worn)?;
+        let DressedWorld { mut frame, mut reader, .. } = self.dressed(client, worn)?;
         frame.step(&client.pose);
         let snapshot = reader.latest().clone();
         Ok((frame, snapshot))
@@ -336,12 +335,11 @@ mod tests {
     use crate::visitor::wardrobe::WornItem;
     use toile_assets::sizes::Girth;
     use toile_fitting::dress::session;
-    use toile_fitting::dress::wish::Wish;
     use toile_sensors::source::Session;
     use toile_track::measures::Measures;
 
     fn context() -> DressingContext {
-        let first = Attire { wish: Wish::default(), choices: Vec::new() };
+        let first = TryOn { garments: Vec::new(), ..TryOn::default() };
         let facts = ShopperFacts::default();
         DressingContext::new(
             Arc::new(Wardrobe::stock().unwrap()),
@@ -426,7 +424,7 @@ mod tests {
         let code = offered.own.unwrap();
         assert!(code.side >= 101 && code.dark.len() == code.side * code.side, "{code:?}");
         let JobResult::Dressed(dressed) = done(9, DressingJob::Dress(client.clone(), outfit(2, 3))) else { panic!() };
-        assert_eq!(dressed.dressing.recipe.garments, [("tee".to_owned(), "36".to_owned())]);
+        assert_eq!(dressed.request.garments, [RequestedGarment::named("tee", Some("36".to_owned()))]);
         let JobResult::Failed = done(10, DressingJob::Dress(client.clone(), outfit(99, 0))) else { panic!() };
         // Who has left gets nothing.
         worker.begin(11, DressingJob::Dress(client, outfit(2, 3))).unwrap();

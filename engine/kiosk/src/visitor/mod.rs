@@ -14,6 +14,8 @@ pub mod controller;
 pub mod dressing_worker;
 mod face;
 pub mod face_camera;
+#[cfg(any(test, feature = "window"))]
+pub mod face_maker;
 pub mod measure_entry;
 mod measuring;
 mod message;
@@ -21,7 +23,11 @@ pub mod model;
 mod navigation;
 pub mod own_face;
 mod own_measures;
+#[cfg(any(test, feature = "window"))]
+pub mod page_window;
+#[cfg(any(test, feature = "window"))]
 pub mod pages;
+#[cfg(any(test, feature = "window"))]
 pub mod photographs;
 pub mod picture;
 pub mod picture_link;
@@ -36,5 +42,7 @@ pub mod size_fit;
 pub(crate) mod tests;
 mod text_keys;
 pub mod texts;
+#[cfg(any(test, feature = "window"))]
+mod translation;
 mod visit;
 pub mod wardrobe;

@@ -76,28 +76,6 @@ impl VisitModel {
         }
     }
 
-    /// Whether a page shows the shopper's body, or themselves.
-    pub(super) fn shows_body(&self, page: Page) -> bool {
-        let is_of_body = matches!(
-            page,
-            Page::Fitting
-                | Page::Garments
-                | Page::Compare
-                | Page::Picture
-                | Page::Face
-                | Page::Settings
-                | Page::Unmeasured
-                | Page::OwnMeasures
-                | Page::MeasureEntry
-        );
-        is_of_body && self.visit.dressed && !self.visit.hidden
-    }
-
-    /// Whether they see themselves on the pages that show the body: as they chose, where the camera's picture can be shown.
-    pub(super) fn sees_themselves(&self) -> bool {
-        self.own_picture.is_some() && self.visit.own_picture
-    }
-
     /// The garment in hand as it was judged; none while another body than the one it was judged on is shown.
     fn judged(&self) -> Option<JudgedGarment> {
         let visit = &self.visit;

@@ -1,23 +1,26 @@
 //! Setup: the visitor's parts as the configuration of the kiosk has them.
 
-use std::path::Path;
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
-use super::controller::{VisitController, WindowChannels};
+use super::controller::{NoWindow, VisitController};
 use super::dressing_worker::DressingContext;
 use super::model::{VisitDefaults, VisitModel, VisitTimes};
-use super::own_face::FaceMaker;
+#[cfg(any(test, feature = "window"))]
+use super::page_window::{PageWindow, WindowChannels};
 use super::reach::DisplayMount;
+#[cfg(any(test, feature = "window"))]
 use super::screen::Screen;
-use super::texts::{Language, Texts};
+use super::texts::Language;
+#[cfg(any(test, feature = "window"))]
+use super::texts::Texts;
 use super::wardrobe::Wardrobe;
 use crate::error::KioskError;
 use crate::service::config::{self, Config};
 use crate::service::picture_config::OwnPictureUse;
 use crate::service::stock::{LeftOut, Stock};
-use crate::service::stock_watch::Hang;
-use toile_fitting::live::dresser::ShopperSource;
-use toile_pose::files;
+use crate::service::stock_watch::{Hang, LOOK_EVERY, StockWatch, WatchStart};
+use toile_fitting::live::shopper_source::ShopperSource;
+use toile_base::frame::Joints;
 
 /// A minute (s).
 const MINUTE_S: f64 = 60.0;
@@ -25,7 +28,9 @@ const MINUTE_S: f64 = 60.0;
 /// Everything that is made before there is a window.
 pub struct VisitorSetup {
     model: VisitModel,
+    #[cfg(any(test, feature = "window"))]
     texts: Texts,
+    #[cfg(any(test, feature = "window"))]
     mount: DisplayMount,
     context: DressingContext,
     mark: Option<[f32; 2]>,
@@ -54,32 +59,74 @@ impl VisitorSetup {
             times: VisitTimes::usual(config.times(), measure_ns, config::ns(display.picture_minutes * MINUTE_S)),
             language: Language::of(&display.language).unwrap_or_default(),
             large: display.large_type,
-            wear: stock.first.wish.garments.clone(),
+            wear: stock.first.names(),
             size: config.wear.size.clone(),
             tape,
             motion: display.motion,
             own_picture: display.own_picture == OwnPictureUse::First,
         };
         let first = stock.first.clone();
-        let (quality, appearance) = (config.wish().quality, display.appearance());
+        let (quality, appearance) = (stock.first.quality, display.appearance());
         let context = DressingContext::new(wardrobe.clone(), first, quality, facts, appearance);
-        let context = context.serving(config.picture.clone()).making_faces(faces(config, &files::folder())?);
+        let context = context.serving(config.picture.clone());
         let model = VisitModel::new(defaults, wardrobe, now_ns);
-        Ok(Self { model, texts: Texts::load()?, mount, context, mark: display.mark_m, left_out })
+        Ok(Self {
+            model,
+            #[cfg(any(test, feature = "window"))]
+            texts: Texts::load()?,
+            #[cfg(any(test, feature = "window"))]
+            mount,
+            context,
+            mark: display.mark_m,
+            left_out,
+        })
+    }
+
+    /// The same, which makes heads of faces.
+    #[cfg(any(test, feature = "window"))]
+    #[must_use]
+    pub fn making_faces(self, faces: Option<super::own_face::MakeHeads>) -> Self {
+        Self { context: self.context.making_faces(faces), ..self }
     }
 
     /// The screen that is shown first.
+    #[cfg(any(test, feature = "window"))]
     pub fn first(&self) -> Screen {
         Screen::of(&self.model, &self.texts, &self.mount)
     }
 
     /// At work behind a window. `played` is the recording that shoppers are measured from, where one is played.
-    pub fn controller<O>(self, window: WindowChannels<'_, O>, played: Option<ShopperSource>) -> VisitController<'_, O> {
-        VisitController::new((self.model, self.texts, self.mount), window, self.context, played, self.mark)
+    #[cfg(any(test, feature = "window"))]
+    pub fn controller<'a, O: 'a>(
+        self,
+        channels: WindowChannels<'a, O>,
+        played: Option<ShopperSource>,
+    ) -> VisitController<'a> {
+        let window = PageWindow::new(self.texts, self.mount, channels);
+        VisitController::new(self.model, Box::new(window), self.context, played, self.mark)
+    }
+
+    /// At work behind a window that shows nothing.
+    pub fn headless(self, played: Option<ShopperSource>) -> VisitController<'static> {
+        VisitController::new(self.model, Box::new(NoWindow), self.context, played, self.mark)
+    }
+
+    /// Watches the files of the stock; nothing where none can change. `pose` is the mannequin's.
+    ///
+    /// # Errors
+    /// Where the system gives no thread.
+    pub fn watch(
+        &self,
+        config: Config,
+        stock: Stock,
+        pose: Joints,
+    ) -> Result<Option<StockWatch<Arc<Wardrobe>>>, KioskError> {
+        let (left_out, hang) = (self.left_out.clone(), self.hang());
+        StockWatch::start(WatchStart { config, stock, left_out, pose, every: LOOK_EVERY, hang })
     }
 
     /// What hangs of a stock that is read again, beginning with what hangs now.
-    pub fn hang(&self) -> Hang<Arc<Wardrobe>> {
+    fn hang(&self) -> Hang<Arc<Wardrobe>> {
         let mut before = self.context.wardrobe.clone();
         Box::new(move |stock, left_out| {
             before = Arc::new(Wardrobe::of(stock, Some(&before), left_out)?);
@@ -88,22 +135,12 @@ impl VisitorSetup {
     }
 }
 
-/// What makes heads of faces, where shoppers may have theirs taken and there is a camera.
-///
-/// # Errors
-/// The network's file is missing, or another one.
-fn faces(config: &Config, folder: &Path) -> Result<Option<Arc<Mutex<FaceMaker>>>, KioskError> {
-    let has_camera = config.sensor.camera().map_err(KioskError::input)?.is_some();
-    if !config.display.face || !has_camera {
-        return Ok(None);
-    }
-    let maker = FaceMaker::load(folder).map_err(|why| KioskError::Device(why.to_string()))?;
-    Ok(Some(Arc::new(Mutex::new(maker))))
-}
-
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use super::*;
+    use crate::visitor::face_maker::FaceMaker;
     use crate::visitor::screen::Page;
 
     fn set_up(text: &str) -> Result<VisitorSetup, KioskError> {
@@ -125,7 +162,7 @@ mod tests {
     #[test]
     fn faces_are_off_by_default_and_refused_without_their_network() {
         let none = Path::new("no/such");
-        let made = |text: &str| faces(&Config::parse("k.toml", text).unwrap(), none);
+        let made = |text: &str| FaceMaker::configured(&Config::parse("k.toml", text).unwrap(), none);
         assert!(!config::DisplayConfig::default().face);
         assert!(made("[sensor]\ncamera = \"webcam\"\n").unwrap().is_none());
         assert!(made("[display]\nface = true\n").unwrap().is_none(), "without a camera there is no face to take");

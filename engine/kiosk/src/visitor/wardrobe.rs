@@ -6,14 +6,13 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
+use toile_base::body::{Body, Measures, Sex};
 use toile_assets::catalogue::{CatalogueItem, ManifestColour, Price, ShopTheme, Words, word};
 use toile_assets::drafting::{self, DraftStyle};
 use toile_assets::file::{self, FileStamp};
 use toile_assets::sizes::{GarmentKind, Population};
 use toile_assets::wardrobe::own;
-use toile_base::body::{Body, Measures, Sex};
-use toile_fitting::dress::attire;
-use toile_fitting::dress::choice::{Choice, ChoiceSource};
+use toile_fitting::dress::garment_source::{GarmentSource, SourceKind};
 use toile_fitting::dress::offer::GarmentOffer;
 
 use super::colours::{Colour, palette};
@@ -175,7 +174,7 @@ impl WardrobeItem {
     /// # Errors
     /// A garment that there is not, a file, sizes or a fabric that cannot be used.
     pub fn new(name: &str) -> Result<Self, KioskError> {
-        Self::of(&Choice::find(name)?, &average()?)
+        Self::of(&GarmentSource::find(name)?, &average()?)
     }
 
     /// A garment of a shop's catalogue, as it is judged on `average`.
@@ -183,9 +182,9 @@ impl WardrobeItem {
     /// # Errors
     /// As [`Self::new`].
     pub fn of_package(item: &CatalogueItem, average: &Body) -> Result<Self, KioskError> {
-        let choice = Choice::open(&item.path)?;
+        let source = GarmentSource::open(&item.path)?;
         let manifest = &item.manifest;
-        let mut hung = Self::of(&choice, average)?;
+        let mut hung = Self::of(&source, average)?;
         let own = |c: &ManifestColour| Colour { word: TextKey::ColourOwn, words: Some(c.name.clone()), srgb: c.srgb };
         if !manifest.colours.is_empty() {
             hung.colours = manifest.colours.iter().map(own).collect();
@@ -199,29 +198,29 @@ impl WardrobeItem {
         Ok(hung)
     }
 
-    fn of(choice: &Choice, average: &Body) -> Result<Self, KioskError> {
-        let offer = choice.offer(average)?;
-        let kind = match &choice.source {
-            ChoiceSource::Mesh(own) => own.measures.kind,
-            ChoiceSource::Style(_) | ChoiceSource::Pattern(_) => offer.as_ref().map(|offer| offer.kind),
+    fn of(source: &GarmentSource, average: &Body) -> Result<Self, KioskError> {
+        let offer = source.offer(average)?;
+        let kind = match &source.kind {
+            SourceKind::Mesh(own) => own.measures.kind,
+            SourceKind::Style(_) | SourceKind::Pattern(_) => offer.as_ref().map(|offer| offer.kind),
         };
         let unsized_code = || vec![own::UNKNOWN.to_owned()];
         let sizes = offer.as_ref().map_or_else(unsized_code, |o| o.sizes.iter().map(|s| s.code.clone()).collect());
         let WornPlace { layer, place, held, covers } = WornPlace::of(kind);
-        let layer = match &choice.source {
-            ChoiceSource::Pattern(package) => package.layer.map_or(layer, Layer::of),
-            ChoiceSource::Style(_) | ChoiceSource::Mesh(_) => layer,
+        let layer = match &source.kind {
+            SourceKind::Pattern(package) => package.layer.map_or(layer, Layer::of),
+            SourceKind::Style(_) | SourceKind::Mesh(_) => layer,
         };
-        let colours = palette(kind.unwrap_or(GarmentKind::Dress), choice.fabric()?.colour);
+        let colours = palette(kind.unwrap_or(GarmentKind::Dress), source.fabric()?.colour);
         Ok(Self {
-            name: choice.name.clone(),
+            name: source.name.clone(),
             article: None,
             price: None,
             photograph: None,
-            stamp: file::stamp(Path::new(&choice.name)),
-            title: title(choice),
+            stamp: file::stamp(Path::new(&source.name)),
+            title: title(source),
             offer,
-            population: choice.population()?,
+            population: source.population()?,
             sizes,
             colours,
             layer,
@@ -264,18 +263,18 @@ fn average() -> Result<Body, KioskError> {
     toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(KioskError::internal)
 }
 
-fn title(choice: &Choice) -> ItemName {
-    let key = STOCK.iter().find(|(name, _)| *name == choice.name).map(|(_, key)| *key);
-    match (key, &choice.source) {
+fn title(source: &GarmentSource) -> ItemName {
+    let key = STOCK.iter().find(|(name, _)| *name == source.name).map(|(_, key)| *key);
+    match (key, &source.kind) {
         (Some(key), _) => ItemName::Word(key),
-        (None, ChoiceSource::Style(style)) => ItemName::Title(style.title.clone()),
-        (None, ChoiceSource::Pattern(package)) => {
+        (None, SourceKind::Style(style)) => ItemName::Title(style.title.clone()),
+        (None, SourceKind::Pattern(package)) => {
             let drafted = drafting::style(&package.name).map(DraftStyle::title);
             ItemName::Title(drafted.unwrap_or_else(|| package.name.clone()))
         }
-        (None, ChoiceSource::Mesh(own)) => {
-            let file = Path::new(&choice.name).file_stem().map(|stem| stem.to_string_lossy().into_owned());
-            ItemName::Title(own.measures.name.clone().or(file).unwrap_or_else(|| choice.name.clone()))
+        (None, SourceKind::Mesh(own)) => {
+            let file = Path::new(&source.name).file_stem().map(|stem| stem.to_string_lossy().into_owned());
+            ItemName::Title(own.measures.name.clone().or(file).unwrap_or_else(|| source.name.clone()))
         }
     }
 }
@@ -310,7 +309,7 @@ impl Wardrobe {
     /// A garment whose file, sizes or fabric cannot be used.
     pub fn stock() -> Result<Self, KioskError> {
         let average = average()?;
-        let hung = |(name, _): &(&str, TextKey)| WardrobeItem::of(&*attire::find_now(name)?, &average);
+        let hung = |(name, _): &(&str, TextKey)| WardrobeItem::of(&GarmentSource::find(name)?, &average);
         Ok(Self::hung(STOCK.iter().map(hung).collect::<Result<_, KioskError>>()?, None))
     }
 
@@ -337,9 +336,9 @@ impl Wardrobe {
             }
             None => items = Self::stock()?.items,
         }
-        for choice in &stock.first.choices {
-            if !items.iter().any(|item| item.is(&choice.name)) {
-                items.push(WardrobeItem::of(choice, &average)?);
+        for garment in &stock.first.garments {
+            if !items.iter().any(|item| item.is(&garment.name)) {
+                items.push(WardrobeItem::of(&*garment.source()?, &average)?);
             }
         }
         Ok(Self::hung(items, stock.catalogue.as_ref().and_then(|catalogue| catalogue.theme.clone())))
@@ -416,7 +415,7 @@ mod tests {
         for item in wardrobe().items {
             assert!(item.word().is_some() && item.sizes.len() >= 3, "{}", item.name);
             assert!((4..=5).contains(&item.colours.len()));
-            let fabric = Choice::find(&item.name).unwrap().fabric().unwrap();
+            let fabric = GarmentSource::find(&item.name).unwrap().fabric().unwrap();
             assert_eq!(item.colours[0].srgb, fabric.colour, "the first is the fabric's");
             // Only a colour that is none of ours has no name of its own.
             let woven = usize::from(item.colours[0].word == TextKey::ColourOwn);

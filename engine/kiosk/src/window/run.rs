@@ -4,6 +4,7 @@ use toile_engine::clock::Clock;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::frame_loop::physics_thread::FrameScene;
 use toile_fitting::live::own_picture::PictureReceiver;
+use toile_pose::files;
 use toile_view::figure::Appearance;
 
 use super::body_model::BodyModel;
@@ -13,12 +14,13 @@ use super::{UserEvent, WindowRenderer};
 use crate::error::KioskError;
 use crate::service::controller::ToScene;
 use crate::service::report::KioskReport;
-use crate::service::stock_watch::{self, LOOK_EVERY, StockWatch, WatchStart};
+use crate::service::stock_watch;
 use crate::service::{BoxedController, ControllerStart, Frontend, KioskRun, serve};
-use crate::visitor::controller;
 use crate::visitor::face_camera::FaceCamera;
+use crate::visitor::face_maker::FaceMaker;
 use crate::visitor::model::Input;
 use crate::visitor::own_face::WornFace;
+use crate::visitor::page_window::WindowChannels;
 use crate::visitor::setup::VisitorSetup;
 
 /// Runs `toile kiosk` at a window.
@@ -27,7 +29,8 @@ use crate::visitor::setup::VisitorSetup;
 /// As without a window; where there is no display, or nothing that can draw on it.
 pub fn run(kiosk: KioskRun<'_>) -> Result<KioskReport, KioskError> {
     let display = &kiosk.config.display;
-    let setup = VisitorSetup::new(kiosk.config, kiosk.stock, kiosk.clock.now_ns())?;
+    let setup = VisitorSetup::new(kiosk.config, kiosk.stock, kiosk.clock.now_ns())?
+        .making_faces(FaceMaker::configured(kiosk.config, &files::folder())?);
     setup.left_out.iter().for_each(|left| (kiosk.print_line)(&stock_watch::line(left)));
     let (config, stock) = (kiosk.config.clone(), kiosk.stock.clone());
     let options = WindowOptions {
@@ -47,10 +50,9 @@ pub fn run(kiosk: KioskRun<'_>) -> Result<KioskReport, KioskError> {
         let draped = Box::new(move |frame: &Frame, snapshot: &Snapshot| {
             BodyModel::draped(frame, snapshot, appearance, face.of(frame.body().sex).as_deref())
         });
-        let channels = controller::WindowChannels { screens, next_input, pairs, draped };
+        let channels = WindowChannels { screens, next_input, pairs, draped };
         let controller = move |start: ControllerStart| -> Result<BoxedController<'_, BodyModel>, KioskError> {
-            let (left_out, hang, pose) = (setup.left_out.clone(), setup.hang(), start.pose);
-            let watch = StockWatch::start(WatchStart { config, stock, left_out, pose, every: LOOK_EVERY, hang })?;
+            let watch = setup.watch(config, stock, start.pose)?;
             let faces = start.portraits.map(|(pictures, switch)| FaceCamera::new(pictures, switch));
             let visit = setup.controller(channels, start.played).switching(start.switch).taking_faces(faces, worn);
             Ok(Box::new(visit.watching(watch)))

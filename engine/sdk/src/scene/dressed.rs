@@ -4,15 +4,15 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 use toile_base::body::Body as BodyShape;
-use toile_base::frame::Joints;
 use toile_base::garment::Garment as BakedGarment;
 use toile_base::skeleton::Joint;
 use toile_engine::cloth::measure;
 use toile_engine::frame::{Frame, Snapshot as FrameSnapshot};
 use toile_engine::triple_buffer::Reader;
-use toile_fitting::dress::choice::{ChoiceSource, Worn};
-use toile_fitting::dress::outfit::Outfit;
+use toile_fitting::dress::garment_source::{FittedGarment, SourceKind};
 use toile_fitting::dress::player::Player;
+use toile_fitting::dress::try_on::{DressedBody, TryOn};
+use toile_base::frame::Joints;
 use toile_view::drawn_frame::DrawnFrame;
 use toile_view::figure::Appearance;
 use toile_view::fit_map::{self, JudgedTightness};
@@ -54,25 +54,24 @@ impl DressedScene {
         check_count(garments.len())?;
         let settings = options.settings()?;
         let first = first_joints(&options.motion, &body.shape().skeleton)?;
-        let choices = garments.iter().map(|garment| (garment.choice(), garment.size()));
-        let mut outfit = Outfit::put_on(choices, body.known(), body.shape())?;
-        options.tuck.iter().try_for_each(|name| outfit.tuck(name))?;
-        let judged = outfit.judged();
-        let Outfit { worn, garments: baked, choice_of } = outfit;
+        let requested = garments.iter().map(Garment::requested).collect();
+        let request = TryOn::of_body("", body.sex(), body.shape().measures, requested);
+        let request = TryOn { tuck: options.tuck.clone(), ..request };
+        let dressed = request.put_on(body.shape().clone(), body.known())?;
+        let judged = dressed.tightness();
+        let DressedBody { garments: baked, fitted, fitted_of, .. } = &dressed;
         let mut cloths = Vec::with_capacity(garments.len());
         for number in 0..garments.len() {
-            let begin = choice_of.partition_point(|of| *of < number);
-            cloths.push(begin..choice_of.partition_point(|of| *of <= number));
+            let begin = fitted_of.partition_point(|of| *of < number);
+            cloths.push(begin..fitted_of.partition_point(|of| *of <= number));
         }
-        let orders = garments.iter().zip(&worn).zip(&cloths);
-        let orders: Vec<VertexOrder> = orders.map(|((garment, worn), of)| order(garment, worn, &baked, of)).collect();
-        let described_all = garments.iter().zip(worn).zip(orders.iter().zip(&cloths));
+        let orders = garments.iter().zip(fitted).zip(&cloths);
+        let orders: Vec<VertexOrder> = orders.map(|((garment, worn), of)| order(garment, worn, baked, of)).collect();
+        let described_all = garments.iter().zip(fitted).zip(orders.iter().zip(&cloths));
         let worn = described_all
             .map(|((garment, worn), (order, of))| described(garment, worn, &baked[of.clone()], order))
             .collect();
-        let rig = toile_assets::rig::fit(body.shape());
-        let made = Frame::new(body.shape().clone(), &rig, baked, settings);
-        let (mut frame, reader) = made.map_err(Error::input)?;
+        let (mut frame, reader) = dressed.build(settings).map_err(Error::input)?;
         frame.dress_and_show(&first);
         let (mover, wanted) = match &options.motion {
             Motion::Track(track) => {
@@ -194,16 +193,16 @@ impl DressedScene {
     }
 }
 
-fn order(garment: &Garment, worn: &Worn, baked: &[BakedGarment], of: &std::ops::Range<usize>) -> VertexOrder {
-    match &garment.choice().source {
-        ChoiceSource::Mesh(own) => {
+fn order(garment: &Garment, worn: &FittedGarment, baked: &[BakedGarment], of: &std::ops::Range<usize>) -> VertexOrder {
+    match &garment.source().kind {
+        SourceKind::Mesh(own) => {
             VertexOrder::of_file(&own.file_order, &baked[of.clone()], &worn.mesh_vertices, of.start)
         }
         _ => VertexOrder::drafted(&baked[of.start], of.start),
     }
 }
 
-fn described(garment: &Garment, worn: Worn, baked: &[BakedGarment], order: &VertexOrder) -> WornGarment {
+fn described(garment: &Garment, worn: &FittedGarment, baked: &[BakedGarment], order: &VertexOrder) -> WornGarment {
     let first = baked.first();
     WornGarment {
         name: garment.name().to_owned(),
@@ -212,7 +211,7 @@ fn described(garment: &Garment, worn: Worn, baked: &[BakedGarment], order: &Vert
         vertices: order.vertices(),
         faces: order.triangles.len(),
         layers: baked.len(),
-        fit: worn.fit.map(Recommendation::of),
+        fit: worn.fit.clone().map(Recommendation::of),
         notes: worn.mesh.iter().flat_map(|report| report.lines()).collect(),
     }
 }

@@ -5,8 +5,8 @@ use std::path::Path;
 use toile_assets::import::avatar::{ImportOptions, MovingBody, read_moving};
 use toile_assets::sizes::Population;
 use toile_cli::exit::AppError;
-use toile_fitting::dress::choice::Choice;
-use toile_fitting::dress::{measured, motion, wish};
+use toile_fitting::dress::try_on::TryOn;
+use toile_fitting::dress::{measured, motion};
 
 use crate::report::AnimationReport;
 
@@ -14,12 +14,12 @@ use crate::report::AnimationReport;
 ///
 /// # Errors
 /// A file that is no such body or lacks the animation, and an animation of no file.
-pub fn body(file: Option<&Path>, name: &str, choices: &[Choice]) -> Result<MovingBody, AppError> {
+pub fn body(file: Option<&Path>, name: &str, request: &TryOn) -> Result<MovingBody, AppError> {
     let Some(file) = file.filter(|file| !file.is_dir()) else {
         let cure = "name it too, as in --body walker.glb";
         return Err(AppError::Usage(format!("--animation {name} belongs to a .glb, .gltf or .vrm file; {cure}")));
     };
-    let sex = measured::sex(Population::Mixed, wish::population(choices)?);
+    let sex = measured::sex(Population::Mixed, request.population()?);
     let options = ImportOptions { sex, ..ImportOptions::default() };
     read_moving(file, name, &options).map_err(AppError::input)
 }

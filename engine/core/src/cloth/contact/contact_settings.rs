@@ -31,7 +31,7 @@ impl ContactSettings {
             friction_kinetic: fabric.friction,
             step_seconds: settings.step_seconds,
             continuous: settings.continuous,
-            skin_every: settings.contact().skin,
+            skin_every: settings.contact.skin,
         }
     }
 

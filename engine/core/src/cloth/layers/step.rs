@@ -12,7 +12,7 @@ use crate::workers::{SharePanicked, WorkerPool};
 impl Layers {
     /// Whether these settings ask for any of it.
     pub fn asked(&self, settings: &Settings) -> bool {
-        let every = settings.contact();
+        let every = settings.contact;
         self.pairs.iter().any(|p| p.every(every) > 0)
     }
 
@@ -47,7 +47,7 @@ impl Layers {
         let substeps = asked as usize;
         let Self { surfaces, motions, pairs, paces, shares, touching, bearing, worker, turns, tick, .. } = self;
         for (place, (pair, pace)) in pairs.iter().zip(paces.iter_mut()).enumerate() {
-            pace.decide(pair.every(settings.contact()), *tick, place);
+            pace.decide(pair.every(settings.contact), *tick, place);
         }
         let parts = LayerParts { surfaces, pairs, paces, worker, turns: *turns, motions, shares, touching, bearing };
         let work = LayerWork::new(&works, parts, substeps);

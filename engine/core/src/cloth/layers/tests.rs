@@ -1,8 +1,8 @@
 //! Laws of layers: order, weight, equal bits, and that a fault stays where it is.
 
 use glam::{Affine3A, Vec3, Vec3A};
-use toile_bake::Shape;
 use toile_bake::bake;
+use toile_bake::Shape;
 use toile_base::garment::Garment;
 use toile_base::mesh::Influences;
 use toile_base::skeleton::BONES;
@@ -61,7 +61,7 @@ impl Scene {
 
     /// Looks for folds and layers every so many steps.
     fn rates(&mut self, folds: u8, layers: u8) {
-        self.settings.contact_every = ContactRates { folds, layers, skin: 1 };
+        self.settings.contact = ContactRates { folds, layers, skin: 1 };
         if !self.layers.asked(&self.settings) {
             self.layers.forget();
         }
@@ -314,7 +314,7 @@ fn folded(p: Vec3) -> Vec3A {
 fn a_fold_keeps_as_far_from_itself_as_the_edges_ask_for() {
     let least = |folds: bool, higher: f32| {
         let mut scene = Scene::new(vec![sheet(14, Vec3::ZERO, 1)], 1, Width::widest());
-        scene.settings.folds = folds;
+        scene.settings.contact.folds = u8::from(folds);
         let start = scene.garments[0].start.clone();
         start
             .iter()

@@ -242,7 +242,7 @@ impl<'a> LayerWork<'a> {
         }
         // SAFETY: written in this phase by the garment's worker, read in the next.
         let motion = unsafe { self.motions.own(garment) };
-        let meets = self.works.len() > 1 && self.works[0].step.settings.contact().layers > 0;
+        let meets = self.works.len() > 1 && self.works[0].step.settings.contact.layers > 0;
         motion.take(&self.surfaces[garment], self.particles(garment), self.width(), meets);
     }
 

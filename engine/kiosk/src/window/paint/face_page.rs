@@ -14,11 +14,12 @@ use std::sync::Arc;
 use glam::{Affine3A, Vec2};
 use painted_face::{PaintedHead, Shot};
 use toile_base::body::Sex;
-use toile_base::frame::Joints;
 use toile_engine::frame::{Frame, Snapshot};
-use toile_fitting::dress::{dressed, session};
+use toile_fitting::dress::session;
+use toile_fitting::dress::try_on::DressedWorld;
 use toile_pose::files::{self, NetworkPackage};
 use toile_sensors::colour_camera::ColourCamera;
+use toile_base::frame::Joints;
 use toile_view::figure::{Appearance, OwnHead};
 use toile_view::image::{Image, Size};
 use toile_view::raster::{AdapterChoice, Gpu, Offscreen};
@@ -26,7 +27,8 @@ use toile_view::raster::{AdapterChoice, Gpu, Offscreen};
 use super::*;
 use crate::service::config::Config;
 use crate::service::stock::Stock;
-use crate::visitor::own_face::{FaceMaker, Portrait};
+use crate::visitor::face_maker::FaceMaker;
+use crate::visitor::own_face::Portrait;
 use crate::visitor::screen::{Action, Page};
 use crate::visitor::tests::Play;
 use crate::window::body_model::BodyModel;
@@ -57,7 +59,7 @@ fn face(folder: &Path) -> Arc<OwnHead> {
 fn hanging() -> (Frame, Snapshot) {
     let stock = Stock::read(&Config::parse("k.toml", "[wear]\ngarments = [\"strap-dress\"]\n").unwrap()).unwrap();
     let pose: Joints = session::standing(&session::open(None, None).unwrap()).unwrap()[0];
-    let dressed::Dressed { mut frame, mut reader, .. } = dressed::mannequin_in(&stock.first, &pose).unwrap();
+    let DressedWorld { mut frame, mut reader, .. } = stock.first.on_mannequin(&pose).unwrap();
     (0..STEPS).for_each(|_| {
         frame.step(&pose);
     });

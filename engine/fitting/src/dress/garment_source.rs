@@ -5,49 +5,42 @@ use std::path::Path;
 use std::sync::Arc;
 
 use toile_assets::adapt::{AdaptError, MeshReport, OwnMesh, source};
+use toile_base::body::{Body, Measures, Sex};
 use toile_assets::catalogue::limits::{MAX_PACKAGE_BYTES, MAX_TOML_BYTES};
 use toile_assets::catalogue::package::ENDING;
 use toile_assets::catalogue::{GarmentPackage, GarmentPhotographs, word};
 use toile_assets::drafting;
 use toile_assets::draping::{self, AS_DRAFTED, HungPattern, PatternPackage, TO_MEASURE};
+use toile_base::fabric::Fabric;
+use toile_base::garment::Garment;
 use toile_assets::sizes::{Population, SizeTable};
 use toile_assets::wardrobe::own;
 use toile_assets::wardrobe::style::Style;
 use toile_assets::wardrobe::{self, WardrobeError};
-use toile_base::body::{Body, Measures, Sex};
-use toile_base::fabric::Fabric;
-use toile_base::garment::Garment;
 use toile_track::measure::Measurements;
 use toile_track::recommend::Recommendation;
 
 use super::offer::GarmentOffer;
 use crate::FittingError;
 
-/// A garment to wear.
+/// Where a garment comes from: opened and checked, in all of its sizes. It can be put on many bodies.
 #[derive(Debug, Clone)]
-pub struct Choice {
-    /// What it was asked for by: a name of the wardrobe, or a path. A recipe finds it again by this.
+pub struct GarmentSource {
+    /// The name that it was found by: one of the wardrobe, or a path. A request finds it again by this name.
     pub name: String,
     /// What it is made from.
-    pub source: ChoiceSource,
-    /// What a shop has its own way: fabric and layer.
-    pub own: ShopChoice,
-}
-
-/// What a shop says of a garment besides how it is cut; what is left out is as its source has it.
-#[derive(Debug, Clone, Default)]
-pub struct ShopChoice {
-    /// The fabric that it is made of.
+    pub kind: SourceKind,
+    /// A fabric in place of its own.
     pub fabric: Option<Fabric>,
-    /// The layer in which it is worn.
+    /// The layer in which a shop has it worn, in place of its own.
     pub layer: Option<u8>,
-    /// Photographs that are laid on its cloth.
+    /// Photographs that a shop lays on its cloth.
     pub photographs: Option<Arc<GarmentPhotographs>>,
 }
 
 /// What a garment is made from.
 #[derive(Debug, Clone)]
-pub enum ChoiceSource {
+pub enum SourceKind {
     /// A garment of the wardrobe.
     Style(Box<Style>),
     /// A mesh of the user's own.
@@ -56,7 +49,7 @@ pub enum ChoiceSource {
     Pattern(Box<PatternPackage>),
 }
 
-impl ChoiceSource {
+impl SourceKind {
     /// A garment that is built in, of the wardrobe or drafted; none where no such garment has this name.
     fn built_in(name: &str) -> Option<Result<Self, FittingError>> {
         if wardrobe::names().contains(&name) {
@@ -82,7 +75,7 @@ fn unknown(name: &str) -> WardrobeError {
 
 /// A garment on the body, and how its size fits; a mesh may have no sizes.
 #[derive(Debug, Clone)]
-pub struct Worn {
+pub struct FittedGarment {
     /// The garment, baked; a mesh of several layers becomes one for each, the innermost first.
     pub garments: Vec<Garment>,
     /// Of a mesh of the user's own: the vertex of the repaired mesh that each vertex of a garment's shape is `[garments][vertices]`.
@@ -93,7 +86,21 @@ pub struct Worn {
     pub mesh: Option<MeshReport>,
 }
 
-impl Choice {
+/// The people whom these garments are made for: the first garment that is not made for everybody decides.
+///
+/// # Errors
+/// A garment whose size table cannot be used.
+pub fn population<'a>(sources: impl IntoIterator<Item = &'a GarmentSource>) -> Result<Population, FittingError> {
+    for source in sources {
+        let population = source.population()?;
+        if population != Population::Mixed {
+            return Ok(population);
+        }
+    }
+    Ok(Population::Mixed)
+}
+
+impl GarmentSource {
     /// The garment of a name: one of the wardrobe, one that is drafted, a pattern by its ending, or else a mesh, where a file of that name
     /// exists. Behind a colon its fabric may stand, one that is built in: `shirt:lawn-gingham`.
     ///
@@ -103,22 +110,28 @@ impl Choice {
         let path = Path::new(name);
         if let Some((garment, fabric)) = in_fabric(name) {
             let found = Self::find(garment)?;
-            let fabric = Some(toile_assets::fabric::built_in(fabric).map_err(FittingError::input)?);
-            return Ok(Self { name: name.to_owned(), own: ShopChoice { fabric, ..found.own }, ..found });
+            let fabric = toile_assets::fabric::built_in(fabric).map_err(FittingError::input)?;
+            return Ok(Self { name: name.to_owned(), ..found.in_fabric(fabric) });
         }
         if name.ends_with(ENDING) {
             return Self::open(path);
         }
-        let source = if let Some(found) = ChoiceSource::built_in(name) {
+        let kind = if let Some(found) = SourceKind::built_in(name) {
             found?
         } else if draping::is_pattern(name) {
-            ChoiceSource::Pattern(Box::new(draping::read_package(path, None).map_err(FittingError::input)?))
+            SourceKind::Pattern(Box::new(draping::read_package(path, None).map_err(FittingError::input)?))
         } else if path.exists() || source::is_mesh(name) {
-            ChoiceSource::Mesh(Box::new(OwnMesh::read(path).map_err(FittingError::input)?))
+            SourceKind::Mesh(Box::new(OwnMesh::read(path).map_err(FittingError::input)?))
         } else {
             return Err(FittingError::input(unknown(name)));
         };
-        Ok(Self { name: name.to_owned(), source, own: ShopChoice::default() })
+        Ok(Self { name: name.to_owned(), kind, fabric: None, layer: None, photographs: None })
+    }
+
+    /// The same garment in another fabric.
+    #[must_use]
+    pub fn in_fabric(self, fabric: Fabric) -> Self {
+        Self { fabric: Some(fabric), ..self }
     }
 
     /// The garment of a package.
@@ -137,7 +150,7 @@ impl Choice {
     pub fn of_package(mut package: GarmentPackage, shown: &str) -> Result<Self, FittingError> {
         let manifest = package.manifest().map_err(FittingError::input)?;
         let inside = |e: &dyn Display| FittingError::Input(format!("{shown}: {e}"));
-        let source = if let Some(found) = ChoiceSource::built_in(&manifest.garment) {
+        let kind = if let Some(found) = SourceKind::built_in(&manifest.garment) {
             found?
         } else if manifest.is_pattern() {
             let text = package.text(&manifest.garment, MAX_PACKAGE_BYTES).map_err(FittingError::input)?;
@@ -147,7 +160,7 @@ impl Choice {
             pattern.name.clone_from(&manifest.garment);
             pattern.parse().map_err(|e| inside(&e))?;
             pattern.name = word(&manifest.names, "en").to_owned();
-            ChoiceSource::Pattern(Box::new(pattern))
+            SourceKind::Pattern(Box::new(pattern))
         } else {
             let unpacked = package.unpack().map_err(FittingError::input)?;
             // Where it was unpacked says nothing to whoever packed it.
@@ -155,7 +168,7 @@ impl Choice {
             let named = |e: AdaptError| FittingError::Input(format!("{shown}: {}", e.to_string().replace(&folder, "")));
             let mut mesh = OwnMesh::read(&unpacked.path.join(&manifest.garment)).map_err(named)?;
             mesh.measures.name.get_or_insert_with(|| word(&manifest.names, "en").to_owned());
-            ChoiceSource::Mesh(Box::new(mesh))
+            SourceKind::Mesh(Box::new(mesh))
         };
         let fabric = manifest.fabric.as_deref().map(|fabric| match fabric.ends_with(".toml") {
             true => {
@@ -170,8 +183,8 @@ impl Choice {
         let fabric = fabric.transpose()?;
         let picture = |name: &str| package.bytes(name, MAX_PACKAGE_BYTES).map_err(|e| e.to_string());
         let photographs = manifest.image.as_ref().map(|image| image.read(picture).map(Arc::new)).transpose();
-        let own = ShopChoice { fabric, layer: manifest.layer, photographs: photographs.map_err(|e| inside(&e))? };
-        Ok(Self { name: shown.to_owned(), source, own })
+        let photographs = photographs.map_err(|e| inside(&e))?;
+        Ok(Self { name: shown.to_owned(), kind, fabric, layer: manifest.layer, photographs })
     }
 
     /// Whose bodies it is made for; what does not say is made for everybody.
@@ -179,10 +192,10 @@ impl Choice {
     /// # Errors
     /// A size table that cannot be used.
     pub fn population(&self) -> Result<Population, FittingError> {
-        match &self.source {
-            ChoiceSource::Style(style) => Ok(style.sizes().map_err(FittingError::input)?.population),
-            ChoiceSource::Mesh(own) => Ok(own.sex.into()),
-            ChoiceSource::Pattern(package) => package.population().map_err(FittingError::input),
+        match &self.kind {
+            SourceKind::Style(style) => Ok(style.sizes().map_err(FittingError::input)?.population),
+            SourceKind::Mesh(own) => Ok(own.sex.into()),
+            SourceKind::Pattern(package) => package.population().map_err(FittingError::input),
         }
     }
 
@@ -191,11 +204,11 @@ impl Choice {
     /// # Errors
     /// A fabric that there is not.
     pub fn fabric(&self) -> Result<Fabric, FittingError> {
-        let named = match (&self.own.fabric, &self.source) {
+        let named = match (&self.fabric, &self.kind) {
             (Some(fabric), _) => return Ok(fabric.clone()),
-            (None, ChoiceSource::Style(style)) => &style.fabric,
-            (None, ChoiceSource::Mesh(own)) => own.measures.fabric.as_deref().unwrap_or(draping::FABRIC),
-            (None, ChoiceSource::Pattern(package)) => &package.fabric,
+            (None, SourceKind::Style(style)) => &style.fabric,
+            (None, SourceKind::Mesh(own)) => own.measures.fabric.as_deref().unwrap_or(draping::FABRIC),
+            (None, SourceKind::Pattern(package)) => &package.fabric,
         };
         toile_assets::fabric::built_in(named).map_err(FittingError::input)
     }
@@ -205,10 +218,10 @@ impl Choice {
     /// # Errors
     /// Sizes that cannot be used, a pattern that cannot be laid around a body.
     pub fn offer(&self, wearer: &Body) -> Result<Option<GarmentOffer>, FittingError> {
-        let offer = match &self.source {
-            ChoiceSource::Style(style) => GarmentOffer::of_style(style).map(Some),
-            ChoiceSource::Mesh(own) => GarmentOffer::of_mesh(own),
-            ChoiceSource::Pattern(package) => GarmentOffer::of_pattern(package, wearer).map(Some),
+        let offer = match &self.kind {
+            SourceKind::Style(style) => GarmentOffer::of_style(style).map(Some),
+            SourceKind::Mesh(own) => GarmentOffer::of_mesh(own),
+            SourceKind::Pattern(package) => GarmentOffer::of_pattern(package, wearer).map(Some),
         };
         let thickness_m = self.fabric()?.thickness_mm * 1e-3;
         Ok(offer?.map(|offer| GarmentOffer { thickness_m, ..offer }))
@@ -226,16 +239,16 @@ impl Choice {
             Ok((sex, measures, code.to_owned()))
         };
         let middle = |codes: &[&str]| codes.get(codes.len() / 2).map_or_else(String::new, |code| (*code).to_owned());
-        match &self.source {
-            ChoiceSource::Style(style) => {
+        match &self.kind {
+            SourceKind::Style(style) => {
                 let table = style.sizes().map_err(FittingError::input)?;
                 of_size(&table, &middle(&table.codes()))
             }
-            ChoiceSource::Mesh(own) => match &own.sizes {
+            SourceKind::Mesh(own) => match &own.sizes {
                 Some(sizes) => of_size(&sizes.table, &middle(&sizes.table.codes())),
                 None => Ok((own.made_for.body.sex, own.made_for.body.measures, own::UNKNOWN.to_owned())),
             },
-            ChoiceSource::Pattern(package) => match package.graded().map_err(FittingError::input)? {
+            SourceKind::Pattern(package) => match package.graded().map_err(FittingError::input)? {
                 Some(graded) => {
                     let made = graded.made();
                     let codes: Vec<&str> = made.iter().map(|(code, _)| code.as_str()).collect();
@@ -256,10 +269,10 @@ impl Choice {
     /// # Errors
     /// A size that is not made.
     pub fn body_of(&self, size: &str) -> Result<Option<Measures>, FittingError> {
-        let table = match &self.source {
-            ChoiceSource::Style(style) => Some(style.sizes().map_err(FittingError::input)?),
-            ChoiceSource::Mesh(own) => own.sizes.as_ref().map(|sizes| sizes.table.clone()),
-            ChoiceSource::Pattern(package) => {
+        let table = match &self.kind {
+            SourceKind::Style(style) => Some(style.sizes().map_err(FittingError::input)?),
+            SourceKind::Mesh(own) => own.sizes.as_ref().map(|sizes| sizes.table.clone()),
+            SourceKind::Pattern(package) => {
                 return Ok(package.body_of(size).map_err(FittingError::input)?.map(|body| body.measures));
             }
         };
@@ -277,8 +290,8 @@ impl Choice {
         wearer: &Body,
         beneath: &[GarmentOffer],
     ) -> Result<Option<Recommendation>, FittingError> {
-        let offer = match (&self.source, size) {
-            (ChoiceSource::Pattern(package), Some(TO_MEASURE)) => Some(GarmentOffer::made_to_measure(package, wearer)?),
+        let offer = match (&self.kind, size) {
+            (SourceKind::Pattern(package), Some(TO_MEASURE)) => Some(GarmentOffer::made_to_measure(package, wearer)?),
             _ => self.offer(wearer)?,
         };
         offer.map(|offer| offer.over(beneath).judge(size, measured)).transpose()
@@ -288,27 +301,27 @@ impl Choice {
     ///
     /// # Errors
     /// A size that is not made, a mesh or pattern that cannot be laid on the body.
-    pub fn dress(&self, size: Option<&str>, wearer: &Body) -> Result<Worn, FittingError> {
-        let mut worn = Worn { garments: Vec::new(), mesh_vertices: Vec::new(), fit: None, mesh: None };
-        match &self.source {
-            ChoiceSource::Style(style) => {
+    pub fn dress(&self, size: Option<&str>, wearer: &Body) -> Result<FittedGarment, FittingError> {
+        let mut worn = FittedGarment { garments: Vec::new(), mesh_vertices: Vec::new(), fit: None, mesh: None };
+        match &self.kind {
+            SourceKind::Style(style) => {
                 let size = size.ok_or_else(|| FittingError::Internal(format!("{} has no size", self.name)))?;
-                let dressed = match &self.own.fabric {
+                let dressed = match &self.fabric {
                     Some(fabric) => style.dress_in(fabric, size, wearer),
                     None => style.dress(size, wearer),
                 };
                 worn.garments.push(dressed.map_err(FittingError::input)?);
             }
-            ChoiceSource::Mesh(mesh) => {
+            SourceKind::Mesh(mesh) => {
                 let size = size.filter(|size| *size != own::UNKNOWN);
-                let dressed = own::dress_in(mesh, self.own.fabric.as_ref(), size, wearer);
+                let dressed = own::dress_in(mesh, self.fabric.as_ref(), size, wearer);
                 let dressed = dressed.map_err(FittingError::input)?;
                 worn.mesh_vertices = dressed.vertices;
                 (worn.garments, worn.mesh) = (dressed.garments, Some(dressed.report));
             }
-            ChoiceSource::Pattern(package) => {
+            SourceKind::Pattern(package) => {
                 let size = size.unwrap_or_else(|| package.own_size());
-                let dressed = match &self.own.fabric {
+                let dressed = match &self.fabric {
                     Some(fabric) => package.dress_in(fabric, size, wearer),
                     None => package.dress(size, wearer),
                 };
@@ -324,9 +337,9 @@ impl Choice {
     /// # Errors
     /// A pattern that cannot be laid on that body.
     pub fn hang(&self, size: &str) -> Result<Option<HungPattern>, FittingError> {
-        match &self.source {
-            ChoiceSource::Pattern(package) => package.hang(self.own.fabric.as_ref(), size).map_err(FittingError::input),
-            ChoiceSource::Style(_) | ChoiceSource::Mesh(_) => Ok(None),
+        match &self.kind {
+            SourceKind::Pattern(package) => package.hang(self.fabric.as_ref(), size).map_err(FittingError::input),
+            SourceKind::Style(_) | SourceKind::Mesh(_) => Ok(None),
         }
     }
 
@@ -334,19 +347,22 @@ impl Choice {
     ///
     /// # Errors
     /// A pattern that cannot be laid on the body; one that hangs and is not this garment's.
-    pub fn dress_from(&self, hung: &HungPattern, wearer: &Body) -> Result<Worn, FittingError> {
-        let ChoiceSource::Pattern(package) = &self.source else {
+    pub fn dress_from(&self, hung: &HungPattern, wearer: &Body) -> Result<FittedGarment, FittingError> {
+        let SourceKind::Pattern(package) = &self.kind else {
             return Err(FittingError::Internal(format!("{} is not sewn", self.name)));
         };
         let garment = package.dress_from(hung, wearer).map_err(FittingError::input)?;
-        self.finished(Worn { garments: vec![garment], mesh_vertices: Vec::new(), fit: None, mesh: None }, wearer)
+        self.finished(
+            FittedGarment { garments: vec![garment], mesh_vertices: Vec::new(), fit: None, mesh: None },
+            wearer,
+        )
     }
 
     /// Garments in the shop's layer and with its photographs.
-    fn finished(&self, mut worn: Worn, wearer: &Body) -> Result<Worn, FittingError> {
+    fn finished(&self, mut worn: FittedGarment, wearer: &Body) -> Result<FittedGarment, FittingError> {
         for garment in &mut worn.garments {
-            garment.layer = self.own.layer.unwrap_or(garment.layer);
-            if let Some(photographs) = &self.own.photographs {
+            garment.layer = self.layer.unwrap_or(garment.layer);
+            if let Some(photographs) = &self.photographs {
                 photographs.lay_on(garment, wearer).map_err(|e| FittingError::Input(format!("{}: {e}", self.name)))?;
             }
         }
@@ -363,13 +379,13 @@ impl Choice {
         measured: &Measurements,
         wearer: &Body,
         beneath: &[GarmentOffer],
-    ) -> Result<Worn, FittingError> {
-        if let Some(photographs) = &self.own.photographs {
+    ) -> Result<FittedGarment, FittingError> {
+        if let Some(photographs) = &self.photographs {
             let refused = |e| FittingError::Input(format!("{} cannot be worn: {e}; choose another garment", self.name));
             photographs.manifest().worn_by(&wearer.measures).map_err(refused)?;
         }
         let fit = self.judge(size, measured, wearer, beneath)?;
         let worn = self.dress(fit.as_ref().map(|fit| fit.size.as_str()).or(size), wearer)?;
-        Ok(Worn { fit, ..worn })
+        Ok(FittedGarment { fit, ..worn })
     }
 }
