@@ -24,6 +24,7 @@ pub const FLOORS: &[(&str, &str)] = &[
     ("perf", "toile-perf"),
     ("engine/app", "toile"),
     ("tests/models", "toile-models"),
+    ("tests/platforms", "toile-platforms"),
     ("tests", "toile-tests"),
 ];
 
