@@ -6,25 +6,17 @@
 
 // Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
 #[macro_use]
-mod named;
 mod put_line;
 
-pub mod cone;
 pub mod file;
-pub mod limits;
-pub mod numeric;
-pub mod skeleton;
 pub mod texture;
 pub mod toml_keys;
 
 pub mod fabric;
-pub mod mesh;
 pub mod pattern;
 
 pub mod body;
-pub mod garment;
 
-pub mod bake;
 pub mod export;
 pub mod import;
 pub mod rig;

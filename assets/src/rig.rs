@@ -10,7 +10,7 @@
 //! the picture shows the body, and the worst place is what is seen. Points above the skin keep the union from standing
 //! out where no skin is near.
 
-mod fit;
+mod fitting;
 mod plan;
 mod report;
 mod shell;
@@ -21,72 +21,34 @@ mod zones;
 
 use glam::Vec3;
 
-use crate::body::Body;
-use crate::limits::{MAX_CAPSULES, MAX_SPHERES};
-use crate::skeleton::Joint;
-pub use plan::SPHERES;
 use plan::{CAPSULES, PAIRS, PLAN};
 pub use report::{MEAN_GOAL_MM, P95_GOAL_MM, RigReport, ZoneReport};
 pub use shell::CapsuleSurface;
-use union::nearest;
+use toile_base::body::Body;
+use toile_base::rig::{Rig, SPHERES, Sphere};
+use toile_base::skeleton::Joint;
 pub use zones::Zone;
 
-const _: () = assert!(SPHERES <= MAX_SPHERES);
-
-/// A collision sphere that a bone carries.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sphere {
-    /// The bone, an index below [`crate::skeleton::BONES`].
-    pub bone: u8,
-    /// Centre, from the bone's rest origin, in the rest frame (m).
-    pub offset: Vec3,
-    /// Radius (m).
-    pub radius: f32,
+/// Fits the spheres to a body in its rest pose. The same body gives the same bits.
+pub fn fit(body: &Body) -> Rig {
+    let placed = fitting::spheres(body);
+    let mut spheres = [Sphere { bone: 0, offset: Vec3::ZERO, radius: 0.0 }; SPHERES];
+    for (i, sphere) in spheres.iter_mut().enumerate() {
+        let joint = carrier(i);
+        let (centre, radius) = placed[i];
+        *sphere = Sphere { bone: joint.index() as u8, offset: centre - body.skeleton.at(joint), radius };
+    }
+    Rig { spheres, capsules: CAPSULES }
 }
 
-/// The collision body of one body.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Rig {
-    /// The spheres: each left one is followed by its mirror image, those of the middle come last.
-    pub spheres: [Sphere; SPHERES],
-    /// The pairs of spheres that span a capsule.
-    pub capsules: [[u8; 2]; MAX_CAPSULES],
+/// How closely the union follows the skin of the body that the rig was fitted to, in its rest pose.
+pub fn report(rig: &Rig, body: &Body) -> RigReport {
+    RigReport::new(body, &rig.placed(body))
 }
 
-impl Rig {
-    /// Fits the spheres to a body in its rest pose. The same body gives the same bits.
-    pub fn fit(body: &Body) -> Self {
-        let placed = fit::spheres(body);
-        let mut spheres = [Sphere { bone: 0, offset: Vec3::ZERO, radius: 0.0 }; SPHERES];
-        for (i, sphere) in spheres.iter_mut().enumerate() {
-            let joint = carrier(i);
-            let (centre, radius) = placed[i];
-            *sphere = Sphere { bone: joint.index() as u8, offset: centre - body.skeleton.at(joint), radius };
-        }
-        Self { spheres, capsules: CAPSULES }
-    }
-
-    /// Spheres in the rest pose of the body that the rig was fitted to: centre and radius, world (m).
-    pub fn placed(&self, body: &Body) -> [(Vec3, f32); SPHERES] {
-        let origins = body.skeleton.bone_origins();
-        self.spheres.map(|s| (origins[usize::from(s.bone)] + s.offset, s.radius))
-    }
-
-    /// Signed distance from a point to the union of the capsules in the body's rest pose (m), negative inside, where it
-    /// is the way out of the one capsule that is deepest.
-    pub fn distance(&self, body: &Body, p: Vec3) -> f32 {
-        nearest(&self.placed(body), p).0
-    }
-
-    /// How closely the union follows the skin of the body that the rig was fitted to, in its rest pose.
-    pub fn report(&self, body: &Body) -> RigReport {
-        RigReport::new(body, &self.placed(body))
-    }
-
-    /// The capsules as surfaces to look at, in the rest pose of the body that the rig was fitted to.
-    pub fn shell(&self, body: &Body) -> CapsuleSurface {
-        CapsuleSurface::new(&self.placed(body))
-    }
+/// The capsules as surfaces to look at, in the rest pose of the body that the rig was fitted to.
+pub fn shell(rig: &Rig, body: &Body) -> CapsuleSurface {
+    CapsuleSurface::new(&rig.placed(body))
 }
 
 /// The joint that carries a sphere.

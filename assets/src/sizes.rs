@@ -7,9 +7,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::body::{Measures, Sex};
+use toile_base::body::{Measures, Sex};
 
-named! {
+toile_base::named! {
     /// What a garment is, as far as sizing is concerned (EN 13402-2).
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize, Serialize)]
     pub enum GarmentKind {
@@ -31,7 +31,7 @@ named! {
     }
 }
 
-named! {
+toile_base::named! {
     /// A girth of the body that designates sizes (EN 13402-1), from the top down.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize)]
     #[serde(rename_all = "lowercase")]

@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use image::imageops::{self, FilterType};
 use image::{ImageReader, Limits, RgbaImage};
+use toile_base::texture::Texture;
 
 /// Most pixels along a side of a picture that is read.
 pub const MAX_PIXELS: u32 = 8_192;
@@ -18,71 +19,42 @@ pub const MOST_SIDE: u32 = 1_024;
 /// Most bytes that reading one picture may take: an RGBA picture of [`MAX_PIXELS`] along both sides.
 const MAX_DECODED_BYTES: u64 = 4 * (MAX_PIXELS as u64) * (MAX_PIXELS as u64);
 
-/// A picture that repeats in both directions, or lies once on a mesh. Its sides are powers of two, so that each level of
-/// detail halves them.
-#[derive(Clone, PartialEq, Eq)]
-pub struct Texture {
-    /// Texels along a row.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
-    /// Red, green, blue in sRGB, and how much of the surface's own colour they cover (0 nothing, 255 all), rows from the
-    /// top `[width x height]`.
-    pub texels: Vec<[u8; 4]>,
+/// Reads a PNG or JPEG picture and brings it to sides that are powers of two, [`MOST_SIDE`] at most.
+///
+/// # Errors
+/// What is wrong with it and the cure, to stand behind the file's name.
+pub fn decode(bytes: &[u8]) -> Result<Texture, String> {
+    let unreadable = |e: &dyn std::fmt::Display| format!("it is no picture in PNG or JPEG ({e}); save it again");
+    let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| unreadable(&e))?;
+    let mut limits = Limits::default();
+    (limits.max_image_width, limits.max_image_height) = (Some(MAX_PIXELS), Some(MAX_PIXELS));
+    limits.max_alloc = Some(MAX_DECODED_BYTES);
+    reader.limits(limits);
+    let picture = reader.decode().map_err(|e| match e {
+        image::ImageError::Limits(_) => {
+            format!("it has more than {MAX_PIXELS} pixels along a side; make it smaller")
+        }
+        other => unreadable(&other),
+    })?;
+    Ok(fitting(&picture.into_rgba8(), MOST_SIDE))
 }
 
-impl std::fmt::Debug for Texture {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "Texture({} x {})", self.width, self.height)
-    }
+/// A picture with sides that are powers of two, `most` at most.
+fn fitting(picture: &RgbaImage, most: u32) -> Texture {
+    let side = |n: u32| n.next_power_of_two().min(most);
+    let (width, height) = (side(picture.width()), side(picture.height()));
+    let fitting = if (width, height) == picture.dimensions() {
+        picture.clone()
+    } else {
+        imageops::resize(picture, width, height, FilterType::Triangle)
+    };
+    Texture { width, height, texels: fitting.pixels().map(|p| p.0).collect() }
 }
 
-impl Texture {
-    /// A picture of one colour, sRGB.
-    pub fn plain(colour: [u8; 3]) -> Self {
-        let [r, g, b] = colour;
-        Self { width: 1, height: 1, texels: vec![[r, g, b, 255]] }
-    }
-
-    /// Reads a PNG or JPEG picture and brings it to sides that are powers of two, [`MOST_SIDE`] at most.
-    ///
-    /// # Errors
-    /// What is wrong with it and the cure, to stand behind the file's name.
-    pub fn decode(bytes: &[u8]) -> Result<Self, String> {
-        let unreadable = |e: &dyn std::fmt::Display| format!("it is no picture in PNG or JPEG ({e}); save it again");
-        let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| unreadable(&e))?;
-        let mut limits = Limits::default();
-        (limits.max_image_width, limits.max_image_height) = (Some(MAX_PIXELS), Some(MAX_PIXELS));
-        limits.max_alloc = Some(MAX_DECODED_BYTES);
-        reader.limits(limits);
-        let picture = reader.decode().map_err(|e| match e {
-            image::ImageError::Limits(_) => {
-                format!("it has more than {MAX_PIXELS} pixels along a side; make it smaller")
-            }
-            other => unreadable(&other),
-        })?;
-        Ok(Self::of(&picture.into_rgba8(), MOST_SIDE))
-    }
-
-    fn of(picture: &RgbaImage, most: u32) -> Self {
-        let side = |n: u32| n.next_power_of_two().min(most);
-        let (width, height) = (side(picture.width()), side(picture.height()));
-        let fitting = if (width, height) == picture.dimensions() {
-            picture.clone()
-        } else {
-            imageops::resize(picture, width, height, FilterType::Triangle)
-        };
-        Self { width, height, texels: fitting.pixels().map(|p| p.0).collect() }
-    }
-
-    fn picture(&self) -> RgbaImage {
-        RgbaImage::from_fn(self.width, self.height, |x, y| image::Rgba(self.texels[(y * self.width + x) as usize]))
-    }
-
-    /// Bytes of its texels.
-    pub fn bytes(&self) -> usize {
-        size_of_val(&*self.texels)
-    }
+fn picture_of(texture: &Texture) -> RgbaImage {
+    RgbaImage::from_fn(texture.width, texture.height, |x, y| {
+        image::Rgba(texture.texels[(y * texture.width + x) as usize])
+    })
 }
 
 /// Several pictures in one, each in its cell.
@@ -107,7 +79,7 @@ impl Atlas {
         let mut whole = RgbaImage::new(side * cells, side * cells);
         for (i, picture) in (0..).zip(pictures) {
             let inner =
-                imageops::resize(&picture.picture(), side - 2 * MARGIN, side - 2 * MARGIN, FilterType::Triangle);
+                imageops::resize(&picture_of(picture), side - 2 * MARGIN, side - 2 * MARGIN, FilterType::Triangle);
             let (left, top) = (i % cells * side, i / cells * side);
             // The margin repeats the border, so that a coarser level of detail mixes nothing of a neighbour in.
             for (x, y) in (0..side).flat_map(|y| (0..side).map(move |x| (x, y))) {
@@ -115,7 +87,7 @@ impl Atlas {
                 whole.put_pixel(left + x, top + y, *inner.get_pixel(clamp(x), clamp(y)));
             }
         }
-        Some(Self { texture: Arc::new(Texture::of(&whole, 2 * MOST_SIDE)), cells })
+        Some(Self { texture: Arc::new(fitting(&whole, 2 * MOST_SIDE)), cells })
     }
 
     /// Where a face's texture points (0 to 1 across its own picture, v upwards) lie in the atlas. Faces that lie in a
@@ -155,23 +127,23 @@ mod tests {
 
     #[test]
     fn pictures_come_to_powers_of_two() {
-        let read = Texture::decode(&png(100, 64)).unwrap();
+        let read = decode(&png(100, 64)).unwrap();
         assert_eq!((read.width, read.height, read.texels.len()), (128, 64, 128 * 64));
         assert!(read.texels.iter().all(|t| t[3] == 255));
-        assert_eq!(Texture::decode(&png(16, 8)).unwrap().texels[17], [1, 1, 7, 255]);
+        assert_eq!(decode(&png(16, 8)).unwrap().texels[17], [1, 1, 7, 255]);
     }
 
     #[test]
     fn broken_and_huge_pictures_are_told() {
         let whole = png(40, 30);
         for end in [0, 1, 8, 20, 40, whole.len() / 2] {
-            assert!(Texture::decode(&whole[..end]).unwrap_err().contains("save it again"), "{end}");
+            assert!(decode(&whole[..end]).unwrap_err().contains("save it again"), "{end}");
         }
         let mut huge = whole.clone();
         // The width of a PNG stands in its header, bytes 16 to 19, and its checksum behind.
         huge[16..20].copy_from_slice(&100_000_u32.to_be_bytes());
-        assert!(Texture::decode(&huge).is_err());
-        assert!(Texture::decode(b"GIF89a, but not really").is_err());
+        assert!(decode(&huge).is_err());
+        assert!(decode(b"GIF89a, but not really").is_err());
     }
 
     #[test]

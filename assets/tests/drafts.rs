@@ -1,11 +1,10 @@
 //! Garments that we draft ourselves, sewn up around the bodies of their sizes: that they hang as what they are.
 
 use glam::Vec3;
-use toile_assets::body::Body;
 use toile_assets::drafting;
 use toile_assets::draping::{DrapedPattern, PatternPackage};
-use toile_assets::fabric::Fabric;
-use toile_assets::skeleton::Joint;
+use toile_base::body::Body;
+use toile_base::skeleton::Joint;
 
 /// Strain of all but one in a hundred edges (1): trousers reach it at the crotch.
 const STRAIN_P99: f32 = 0.06;
@@ -17,7 +16,7 @@ fn hung(name: &str, size: &str) -> (PatternPackage, Body, DrapedPattern) {
     let package = drafting::style(name).unwrap().package().unwrap();
     let body = package.body_of(size).unwrap().unwrap();
     let pattern = package.sized(size, &body.measures).unwrap();
-    let draped = package.drape(&pattern, &body, &Fabric::built_in(&package.fabric).unwrap()).unwrap();
+    let draped = package.drape(&pattern, &body, &toile_assets::fabric::built_in(&package.fabric).unwrap()).unwrap();
     let quality = draped.quality;
     assert!(quality.strain_p99 < STRAIN_P99.into() && quality.strain_mean < 0.01, "{name} {size}: {quality:?}");
     // An edge or two of the largest scarf lie in the neck's hollow.

@@ -6,27 +6,27 @@ mod recordings;
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
-use toile_assets::bake::bake;
-use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::drafting;
 use toile_assets::draping::{self, DrapeError, DrapedPattern, SkinField, drape, ease, read_package};
-use toile_assets::fabric::Fabric;
-use toile_assets::garment::{Garment, Part};
 use toile_assets::import::pattern::{parse, read};
 use toile_assets::pattern::{Panel, Pattern};
 use toile_assets::sizes::{Girth, SizeTable};
-use toile_assets::skeleton::Joint;
+use toile_bake::bake;
+use toile_base::body::{Body, Measures, Sex};
+use toile_base::fabric::Fabric;
+use toile_base::garment::{Garment, Part};
+use toile_base::skeleton::Joint;
 
 /// Spacing at which the laws are looked at (m): coarse, so that a test takes seconds.
 const SPACING: f64 = 0.03;
 
 fn women(size: &str) -> Body {
     let table = SizeTable::embedded("women").unwrap();
-    Body::build(Sex::Female, &Measures::from(table.size_body(size).unwrap())).unwrap()
+    toile_assets::body::build(Sex::Female, &Measures::from(table.size_body(size).unwrap())).unwrap()
 }
 
 fn lawn() -> Fabric {
-    Fabric::built_in("cotton-lawn").unwrap()
+    toile_assets::fabric::built_in("cotton-lawn").unwrap()
 }
 
 fn aaron() -> Option<Pattern> {

@@ -10,13 +10,12 @@ use std::time::{Duration, Instant};
 use proptest::prelude::*;
 use toile_assets::adapt::report::Behaviour;
 use toile_assets::adapt::{AdaptError, OwnMesh};
-use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::draping;
-use toile_assets::fabric::Fabric;
-use toile_assets::garment::check::check;
 use toile_assets::import;
 use toile_assets::sizes::SizeTable;
 use toile_assets::wardrobe::own;
+use toile_bake::check::check;
+use toile_base::body::{Body, Measures, Sex};
 
 const OUTFITS: [&str; 3] = ["female_elegantsuit01", "female_sportsuit01", "male_casualsuit04"];
 
@@ -52,7 +51,7 @@ fn outfit(name: &str) -> Option<PathBuf> {
 fn shopper(sex: Sex) -> Body {
     let measures =
         Measures { stature: 1.698, shoulder_breadth: 0.372, chest_girth: 0.902, waist_girth: 0.745, hip_girth: 0.978 };
-    Body::build(sex, &measures).unwrap()
+    toile_assets::body::build(sex, &measures).unwrap()
 }
 
 const COLUMNS: usize = 32;
@@ -363,8 +362,9 @@ fn draped_patterns_are_read_in_the_unit_and_height_that_they_are_written_in() {
         let pattern = data.join(format!("patterns/garment-pattern-generator/{name}.json"));
         let pattern = import::pattern::read(&pattern, None).unwrap();
         let size = draping::fitting_size(&pattern, &table, Sex::Female).unwrap();
-        let body = Body::build(Sex::Female, &Measures::from(table.size_body(&size).unwrap())).unwrap();
-        let draped = draping::drape(&pattern, &body, &Fabric::built_in("cotton-lawn").unwrap(), 0.03).unwrap();
+        let body = toile_assets::body::build(Sex::Female, &Measures::from(table.size_body(&size).unwrap())).unwrap();
+        let draped =
+            draping::drape(&pattern, &body, &toile_assets::fabric::built_in("cotton-lawn").unwrap(), 0.03).unwrap();
         for (unit, unit_name) in
             [(10.0, "decimetres"), (100.0, "centimetres"), (1000.0, "millimetres"), (39.37, "inches")]
         {

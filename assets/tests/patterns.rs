@@ -9,11 +9,11 @@ use std::path::{Path, PathBuf};
 
 use glam::Vec3;
 use proptest::prelude::*;
-use toile_assets::garment::check::check;
 use toile_assets::import::pattern::{PatternError, parse, read};
-use toile_assets::numeric::random::SplitMix64;
 use toile_assets::pattern::Pattern;
 use toile_assets::tailor::{SewnMesh, TailorError, sew};
+use toile_bake::check::check;
+use toile_base::numeric::random::SplitMix64;
 
 /// Spacings at which the promises are held (m).
 const SPACINGS: [f64; 2] = [0.015, 0.025];

@@ -17,12 +17,13 @@
 //! | hip girth | -5.2 | 27.9 | 21.2 | 53.9 | 27.6 | 69 %, 98 % |
 
 use glam::{Affine3A, Quat, Vec3};
-use toile_assets::body::{Body, BodyError, Measures, Region, Sex, tape};
-use toile_assets::numeric::random::SplitMix64;
-use toile_assets::numeric::statistics::quantile;
+use toile_assets::body::{BodyError, tape};
 use toile_assets::sizes::Population;
-use toile_sensors::frame::DepthFrame;
-use toile_sensors::frame::Intrinsics;
+use toile_base::body::{Body, Measures, Region, Sex};
+use toile_base::frame::DepthFrame;
+use toile_base::frame::Intrinsics;
+use toile_base::numeric::random::SplitMix64;
+use toile_base::numeric::statistics::quantile;
 use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera};
 use toile_track::estimate::Estimate;
 use toile_track::measure::{Measurements, measure};
@@ -107,7 +108,7 @@ pub fn draw(sex: Sex, rng: &mut SplitMix64) -> Measures {
 impl Mannequin {
     /// A random subject with a shape of their own.
     pub fn new(sex: Sex, rng: &mut SplitMix64) -> Result<Self, BodyError> {
-        let mut body = Body::build(sex, &draw(sex, rng))?;
+        let mut body = toile_assets::body::build(sex, &draw(sex, rng))?;
         let mut three = |sd: [f32; 3]| -> [f32; 3] { std::array::from_fn(|i| sd[i] * rng.gaussian()) };
         let z = three([1.0; 3]);
         let aspect: [f32; 3] =

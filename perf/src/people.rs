@@ -1,7 +1,8 @@
 //! Bodies on which fits are judged: sizes of EN 13402-3, and strangers drawn at random.
 
-use toile_assets::body::{Body, BodyError, En, Sex, Wanted};
-use toile_assets::numeric::random::SplitMix64;
+use toile_assets::body::{BodyError, En, Wanted};
+use toile_base::body::{Body, Sex};
+use toile_base::numeric::random::SplitMix64;
 
 /// One of them: what it is called, its sex, and stature, bust or chest, waist and hip girth (m).
 #[derive(Debug, Clone, PartialEq)]
@@ -53,7 +54,7 @@ impl SizedPerson {
     pub fn body(&self) -> Result<Body, BodyError> {
         let measures = [En::Stature, En::BustGirth, En::WaistGirth, En::HipGirth];
         let wanted = measures.into_iter().zip(self.size).fold(Wanted::new(), |w, (m, value)| w.with(m, value));
-        match Body::fitted(self.sex, &wanted) {
+        match toile_assets::body::fitted(self.sex, &wanted) {
             Ok(fitted) => Ok(fitted.body),
             Err(BodyError::Unreachable { nearest, .. }) => Ok(nearest.body),
             Err(error) => Err(error),

@@ -1,8 +1,8 @@
 //! Random numbers of a case and a seed: other cases get other numbers from the same seed, on every machine the same.
 
 use glam::Vec3;
-use toile_assets::numeric::hash;
-use toile_assets::numeric::random::SplitMix64;
+use toile_base::numeric::hash;
+use toile_base::numeric::random::SplitMix64;
 
 /// The random numbers of one seed of one case.
 #[derive(Debug, Clone)]

@@ -1,7 +1,8 @@
 //! How closely the collision body follows the skin of people of many sizes.
 
-use toile_assets::body::{Ansur, Body, Sex, Wanted};
-use toile_assets::rig::{MEAN_GOAL_MM, P95_GOAL_MM, Rig, Zone};
+use toile_assets::body::{Ansur, Wanted};
+use toile_assets::rig::{MEAN_GOAL_MM, P95_GOAL_MM, Zone};
+use toile_base::body::{Body, Sex};
 use toile_perf::people;
 
 /// The 5th, 50th and 95th percentile of ANSUR II (m): stature, neck, chest, waist at the navel, buttocks, crotch height,
@@ -34,7 +35,7 @@ fn people() -> Vec<(String, Body)> {
         let lengths = [CrotchHeight, SleeveLengthSpineWrist, BiacromialBreadth];
         let measures = [Stature].into_iter().chain(girths).chain(lengths);
         let wanted = measures.zip(row).fold(Wanted::new(), |w, (m, value)| w.with(m, value));
-        (format!("{sex:?} {row:?}"), Body::fitted(sex, &wanted).unwrap().body)
+        (format!("{sex:?} {row:?}"), toile_assets::body::fitted(sex, &wanted).unwrap().body)
     });
     sized.chain(surveyed).collect()
 }
@@ -42,7 +43,7 @@ fn people() -> Vec<(String, Body)> {
 #[test]
 fn trunk_and_thighs_keep_to_the_goal() {
     for (name, body) in people() {
-        let report = Rig::fit(&body).report(&body);
+        let report = toile_assets::rig::report(&toile_assets::rig::fit(&body), &body);
         let missed: Vec<_> = report.missed().into_iter().map(|zone| (zone, report.of(zone))).collect();
         assert!(missed.is_empty(), "{name}: {missed:?}");
         assert!(report.trunk.meets(), "{name}: trunk {:?}", report.trunk);
@@ -54,7 +55,7 @@ fn trunk_and_thighs_keep_to_the_goal() {
 #[test]
 fn every_sample_of_the_skin_is_within_bounds() {
     for (name, body) in people() {
-        let report = Rig::fit(&body).report(&body);
+        let report = toile_assets::rig::report(&toile_assets::rig::fit(&body), &body);
         for (zone, r) in Zone::ALL.into_iter().zip(report.zones) {
             // Mean, 95th percentile, deepest skin above the union, union above the skin (mm).
             let bounds = match zone {
@@ -78,7 +79,7 @@ fn strangers_keep_to_the_goal() {
     let mut missed = Vec::new();
     for person in people::strangers(20, 1) {
         let body = person.body().unwrap();
-        let report = Rig::fit(&body).report(&body);
+        let report = toile_assets::rig::report(&toile_assets::rig::fit(&body), &body);
         for zone in Zone::HELD {
             let r = report.of(zone);
             assert!(r.mean_mm <= MEAN_GOAL_MM && r.p95_mm <= P95_GOAL_MM + 1.5, "{person:?}: {} {r:?}", zone.name());

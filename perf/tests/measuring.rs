@@ -5,7 +5,7 @@ mod recordings;
 
 use std::path::{Path, PathBuf};
 
-use toile_assets::numeric::random::SplitMix64;
+use toile_base::numeric::random::SplitMix64;
 use toile_perf::ansur::Survey;
 use toile_perf::measuring::{
     Family, MeasuredPerson, MeasuringAgreement, MeasuringOptions, MeasuringStudy, Moment, PersonSurfaces, Sensor,

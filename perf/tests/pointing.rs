@@ -1,17 +1,17 @@
 //! Arms that point at the camera or aside: the body fit finds them, and the trunk does not take them for its own.
 
 use glam::{Quat, Vec3};
-use toile_assets::body::{Body, Measures, Sex};
-use toile_assets::skeleton::{Joint, Pose};
+use toile_base::body::{Measures, Sex};
+use toile_base::frame::{DepthFrame, Intrinsics};
+use toile_base::skeleton::{Joint, Pose};
 use toile_engine::body::JointFrames;
 use toile_fitting::dress::depth::posed;
-use toile_sensors::frame::{DepthFrame, Intrinsics};
 use toile_sensors::source::synthetic::SyntheticCamera;
 use toile_track::fit::{BodyFit, FitOptions};
 
 /// An average man whose left arm points a way, as a camera 2.3 m before him sees him; and where his joints are (m).
-fn pointing(way: Vec3) -> (DepthFrame, [Vec3; toile_assets::skeleton::JOINTS]) {
-    let body = Body::build(Sex::Male, &Measures::average(Sex::Male)).unwrap();
+fn pointing(way: Vec3) -> (DepthFrame, [Vec3; toile_base::skeleton::JOINTS]) {
+    let body = toile_assets::body::build(Sex::Male, &Measures::average(Sex::Male)).unwrap();
     let mut pose = Pose::rest(&body.skeleton);
     let along = body.skeleton.at(Joint::LeftElbow) - body.skeleton.at(Joint::LeftShoulder);
     pose.local[Joint::LeftShoulder.index()] = Quat::from_rotation_arc(along.normalize(), way.normalize());

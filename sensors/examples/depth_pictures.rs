@@ -8,9 +8,9 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use glam::{Vec3, Vec3A};
-use toile_assets::body::{Body, Measures, Sex};
+use toile_base::body::{Measures, Sex};
+use toile_base::frame::{DepthFrame, Intrinsics};
 use toile_sensors::depth::{Clean, Cloud, DepthSmoothing, Validity};
-use toile_sensors::frame::{DepthFrame, Intrinsics};
 use toile_sensors::segment::Zone;
 use toile_sensors::source::synthetic::room;
 use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera};
@@ -47,7 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Two people before a Kinect, one of them behind the other.
 fn room() -> Result<DepthFrame, Box<dyn Error>> {
-    let [shopper, other] = [Sex::Female, Sex::Male].map(|sex| Body::build(sex, &Measures::average(sex)));
+    let [shopper, other] = [Sex::Female, Sex::Male].map(|sex| toile_assets::body::build(sex, &Measures::average(sex)));
     let (shopper, other) = (shopper?, other?);
     let moved: Vec<Vec3> = other.mesh.positions.iter().map(|p| *p + Vec3::new(0.35, 0.0, -0.55)).collect();
     let eye = Vec3::new(0.0, 1.2, 2.5);

@@ -2,8 +2,8 @@
 
 use glam::{Affine3A, Mat3, Vec2, Vec3};
 
-use crate::frame::{Intrinsics, pose_fault};
 use crate::lens::BrownConrady;
+use toile_base::frame::{Intrinsics, pose_fault};
 
 /// Steps in which a bent ray is made straight: each is a tenth of the one before for lenses of phones and webcams.
 const UNBEND_STEPS: usize = 8;

@@ -5,13 +5,11 @@
 //! Thread: the sensor thread.
 
 // Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
-pub mod clock;
 pub mod error;
 
 pub mod limits;
 
 pub mod calibration;
-pub mod frame;
 pub mod lens;
 pub mod pictures;
 

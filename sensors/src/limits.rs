@@ -34,12 +34,6 @@ pub const MAX_DEPTH_BYTES: u64 = 5 << 28;
 /// Most files of a folder that is read as a recording: a minute of colour, depth and motion at 30 Hz, with room to spare.
 pub const MAX_FOLDER_FILES: usize = 20_000;
 
-/// Most pixels of a depth image: four times the largest sensor in sale (1 megapixel).
-pub const MAX_PIXELS: u64 = 4_194_304;
-
-/// Longest side of a depth image (px): no sensor is wider, and it keeps width * height within `u32`.
-pub const MAX_SIDE: u32 = 8_192;
-
 /// Most pixels of a colour picture: those of a camera of 4096 x 2160, and a third more.
 pub const MAX_COLOUR_PIXELS: u64 = 12_000_000;
 
@@ -49,16 +43,13 @@ pub const MAX_BVH_JOINTS: usize = 1_024;
 /// Deepest nesting of a motion-capture skeleton: a finger tip lies at depth 12.
 pub const MAX_BVH_DEPTH: usize = 64;
 
-/// Farthest coordinate that a recording may hold (m): a room, with room to spare.
-pub const MAX_COORDINATE: f32 = 100.0;
-
 /// Longest recording (ns): two hours, in which a sensor of 30 Hz makes [`MAX_JOINT_FRAMES`]. Every second of it is
 /// simulated, so that a clock that was set within a recording must not become a month of steps.
-pub const MAX_DURATION_NS: u64 = 7_200 * crate::clock::SECOND_NS;
+pub const MAX_DURATION_NS: u64 = 7_200 * toile_base::clock::SECOND_NS;
 
 /// Longest time between two frames of a recording (ns): a minute, after which somebody else may stand there, and during
 /// which the cloth is simulated although nobody is seen.
-pub const MAX_GAP_NS: u64 = 60 * crate::clock::SECOND_NS;
+pub const MAX_GAP_NS: u64 = 60 * toile_base::clock::SECOND_NS;
 
 /// Largest chunk of a session, unpacked (bytes): writers make chunks of about a megabyte, and a depth image that does not
 /// pack has 8.

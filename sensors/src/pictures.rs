@@ -11,7 +11,8 @@ use image::{DynamicImage, ImageReader, Limits, RgbImage};
 use toile_assets::file::{self, FileKind};
 
 use crate::error::{Fault, Place, SourceError};
-use crate::limits::{MAX_CAMERAS, MAX_SIDE};
+use crate::limits::MAX_CAMERAS;
+use toile_base::limits::MAX_SIDE;
 
 /// Largest file of one picture.
 pub(crate) const PICTURE: FileKind =

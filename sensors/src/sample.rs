@@ -3,10 +3,10 @@
 //! Works on FILTERED joints: interpolating raw ones would draw every outlier out over two frames.
 
 use glam::Vec3;
-use toile_assets::skeleton::JOINTS;
+use toile_base::skeleton::JOINTS;
 
-use crate::clock::seconds_between;
-use crate::frame::{Joints, TrackedJoint};
+use toile_base::clock::seconds_between;
+use toile_base::frame::{Joints, TrackedJoint};
 
 /// Joints between two frames, linear in time; before `a` it is `a`, after `b` it is `b`.
 ///
@@ -109,7 +109,7 @@ mod tests {
         let track = [frame(0, 0.0), frame(33, 0.1), frame(200, 0.5), frame(233, 0.6), frame(266, 0.6)];
         let mut last = 0.0;
         for tick in 0..32 {
-            let x = sample(&track, crate::clock::ticks_to_ns(tick)).unwrap().joints[0].position.x;
+            let x = sample(&track, toile_base::clock::ticks_to_ns(tick)).unwrap().joints[0].position.x;
             assert!(x >= last - 1e-6 && x - last < 0.04, "tick {tick}: {last} -> {x}");
             last = x;
         }

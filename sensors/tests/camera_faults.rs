@@ -7,8 +7,8 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::time::Duration;
 
 use glam::Affine3A;
-use toile_assets::numeric::random::SplitMix64;
-use toile_sensors::clock::SECOND_NS;
+use toile_base::clock::SECOND_NS;
+use toile_base::numeric::random::SplitMix64;
 use toile_sensors::source::live::fault_injection::{CameraFault, FaultPlan, FaultyCamera, SimulatedCamera, TimedFault};
 use toile_sensors::source::live::{CameraCounts, CameraState, LiveDepth};
 

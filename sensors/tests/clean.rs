@@ -1,12 +1,12 @@
 //! Smoothing and filling: what they do to noise, to edges and to holes, on surfaces that are known.
 
 use glam::Affine3A;
-use toile_assets::numeric::random::SplitMix64;
+use toile_base::frame::{DepthFrame, Intrinsics};
+use toile_base::numeric::random::SplitMix64;
 use toile_sensors::depth::fill::Fill;
 use toile_sensors::depth::gaussian::Gaussian;
 use toile_sensors::depth::smooth::{EdgePreserving, plain};
 use toile_sensors::depth::{SensorNoise, Validity};
-use toile_sensors::frame::{DepthFrame, Intrinsics};
 use toile_sensors::source::synthetic::KinectNoise;
 
 const K: Intrinsics = Intrinsics { width: 160, height: 120, fx: 575.8, fy: 575.8, cx: 79.5, cy: 59.5 };

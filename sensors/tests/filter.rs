@@ -7,9 +7,9 @@ use std::time::Instant;
 use common::samples::standing;
 use common::{data, filtered, median, session, top_speed};
 use glam::{Quat, Vec3};
-use toile_assets::skeleton::Joint;
+use toile_base::frame::{Joints, TrackedJoint};
+use toile_base::skeleton::Joint;
 use toile_sensors::filter::{FilterSettings, HELD_CONFIDENCE, JointFilter};
-use toile_sensors::frame::{Joints, TrackedJoint};
 
 /// Time between two frames at 30 Hz (ns).
 const PERIOD_NS: u64 = 33_333_333;
@@ -154,7 +154,7 @@ fn a_wobbling_bone_is_steady_and_its_direction_is_kept() {
 
 #[test]
 fn a_measured_body_fixes_the_limbs_whatever_is_seen() {
-    use toile_assets::skeleton::{JOINTS, Skeleton};
+    use toile_base::skeleton::{JOINTS, Skeleton};
     let mut rest = [Vec3::ZERO; JOINTS];
     Joint::ALL.into_iter().for_each(|j| rest[j.index()] = standing(0).at(j).position);
     rest[Joint::LeftElbow.index()] = rest[Joint::LeftShoulder.index()] - Vec3::Y * 0.31;

@@ -3,7 +3,7 @@
 mod common;
 
 use common::samples;
-use toile_assets::numeric::random::SplitMix64;
+use toile_base::numeric::random::SplitMix64;
 use toile_sensors::session::{self, Session};
 use toile_sensors::source::{SourceError, read_bytes};
 

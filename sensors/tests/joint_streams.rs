@@ -8,13 +8,14 @@ use std::path::PathBuf;
 use common::{samples, skeletons};
 use glam::Vec3;
 use proptest::prelude::*;
-use toile_assets::skeleton::{JOINTS, Joint};
+use toile_base::filter::Filter;
+use toile_base::frame::{Joints, TrackedJoint};
+use toile_base::skeleton::{JOINTS, Joint};
 use toile_sensors::filter::angles::AngleFilter;
 use toile_sensors::filter::one_euro::OneEuroSettings;
 use toile_sensors::filter::predict::Predictor;
 use toile_sensors::filter::smoothing::Smoothing;
-use toile_sensors::filter::{Filter, FilterSettings, JointFilter};
-use toile_sensors::frame::{Joints, TrackedJoint};
+use toile_sensors::filter::{FilterSettings, JointFilter};
 use toile_sensors::source::vmc::Decoder;
 use toile_sensors::source::{OpenOptions, open, read_bytes};
 

@@ -6,11 +6,11 @@ use std::path::Path;
 
 use common::{data, filtered, length, median, session, spread, top_speed};
 use glam::Vec3;
-use toile_assets::limits::CONFIDENCE_GATE;
-use toile_assets::skeleton::Joint;
-use toile_sensors::clock::ticks_to_ns;
+use toile_base::clock::ticks_to_ns;
+use toile_base::frame::Joints;
+use toile_base::limits::CONFIDENCE_GATE;
+use toile_base::skeleton::Joint;
 use toile_sensors::filter::{FilterSettings, JointFilter};
-use toile_sensors::frame::Joints;
 use toile_sensors::sample::sample;
 use toile_sensors::session::{self as recording, Session};
 use toile_sensors::source::{OpenOptions, open};

@@ -3,7 +3,8 @@
 mod common;
 
 use common::samples;
-use toile_sensors::frame::HandState::{self, Closed, Open, Unknown};
+use toile_base::frame::HandState;
+use toile_base::frame::HandState::{Closed, Open, Unknown};
 use toile_sensors::session;
 
 const PYTHON_ZSTD: &[u8] = include_bytes!("data/python-zstd.mcap");

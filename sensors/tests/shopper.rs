@@ -4,10 +4,10 @@ mod common;
 
 use common::data;
 use glam::{Quat, Vec3};
-use toile_assets::body::{Body, Measures, Sex};
-use toile_sensors::clock::SECOND_NS;
+use toile_base::body::{Body, Measures, Sex};
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::{DepthFrame, Intrinsics};
 use toile_sensors::depth::{Clean, Validity};
-use toile_sensors::frame::{DepthFrame, Intrinsics};
 use toile_sensors::segment::{Segmenter, Zone};
 use toile_sensors::source::synthetic::room::{self, PERSON, RoomView};
 use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera};
@@ -22,7 +22,7 @@ struct Two([Body; 2]);
 
 impl Two {
     fn new() -> Self {
-        Self([Sex::Female, Sex::Male].map(|sex| Body::build(sex, &Measures::average(sex)).unwrap()))
+        Self([Sex::Female, Sex::Male].map(|sex| toile_assets::body::build(sex, &Measures::average(sex)).unwrap()))
     }
 
     /// Both where they stand (m) and how they are turned about the vertical (rad).

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use glam::Vec3;
-use toile_sensors::frame::{DepthFrame, Intrinsics};
+use toile_base::frame::{DepthFrame, Intrinsics};
 use toile_sensors::session::{self, Session};
 use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera};
 

@@ -2,10 +2,11 @@
 //! world.
 
 use glam::{Affine3A, DVec3, Vec3, Vec3A};
-use toile_assets::fabric::Fabric;
-use toile_assets::garment::{Garment, Part, Shape};
-use toile_assets::mesh::SkinWeights;
-use toile_assets::skeleton::BONES;
+use toile_bake::Shape;
+use toile_base::fabric::Fabric;
+use toile_base::garment::{Garment, Part};
+use toile_base::mesh::SkinWeights;
+use toile_base::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::Colliders;
 use toile_perf::oracle::State;
@@ -42,7 +43,7 @@ pub fn plain_fabric(density_kg_m2: f32, stretch_n_m: f32, damping_per_s: f32) ->
         bend_warp_un_m: 0.0,
         bend_weft_un_m: 0.0,
         damping_per_s,
-        ..Fabric::built_in("cotton-lawn").expect("a fabric that is built in")
+        ..toile_assets::fabric::built_in("cotton-lawn").expect("a fabric that is built in")
     }
 }
 

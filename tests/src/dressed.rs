@@ -1,19 +1,18 @@
 //! The scene on which the frame is tested: the shopper of the embedded session, her joints as a perfect sensor sees
 //! them, and the wardrobe in the size nearest to her.
 
-use toile_assets::body::Body;
-use toile_assets::garment::Garment;
-use toile_assets::rig::Rig;
 use toile_assets::scene;
 use toile_assets::sizes::SizeBody;
 use toile_assets::wardrobe::{self, style::Style};
+use toile_base::body::Body;
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::Joints;
+use toile_base::garment::Garment;
 use toile_engine::body::JointFrames;
 use toile_engine::cloth::Settings;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::triple_buffer::Reader;
-use toile_sensors::clock::SECOND_NS;
 use toile_sensors::filter::JointFilter;
-use toile_sensors::frame::Joints;
 
 /// Frames a second of the sensor.
 pub const SENSOR_HZ: u64 = 30;
@@ -23,7 +22,7 @@ pub const SENSOR_HZ: u64 = 30;
 /// # Panics
 /// Where her body cannot be built.
 pub fn shopper() -> Body {
-    Body::build(scene::SHOPPER.0, &scene::SHOPPER.1).expect("the scene's shopper can be built")
+    toile_assets::body::build(scene::SHOPPER.0, &scene::SHOPPER.1).expect("the scene's shopper can be built")
 }
 
 /// Her joints at a time, all seen (s).
@@ -87,7 +86,7 @@ pub fn frame(body: Body, garments: Vec<Garment>) -> Frame {
 /// # Panics
 /// As [`frame`].
 pub fn frame_and_reader(body: Body, garments: Vec<Garment>) -> (Frame, Reader<Snapshot>) {
-    let rig = Rig::fit(&body);
+    let rig = toile_assets::rig::fit(&body);
     Frame::new(body, &rig, garments, Settings::default()).expect("a frame of the wardrobe")
 }
 

@@ -2,9 +2,10 @@
 //! any plane.
 
 use glam::{Quat, Vec2, Vec3};
-use toile_assets::garment::shape::NO_VERTEX;
-use toile_assets::garment::{Part, Shape};
-use toile_assets::mesh::SkinWeights;
+use toile_bake::Shape;
+use toile_bake::shape::NO_VERTEX;
+use toile_base::garment::Part;
+use toile_base::mesh::SkinWeights;
 
 /// Length of a cell (m).
 pub const CELL_M: f32 = 0.03;

@@ -270,8 +270,8 @@ mod tests {
 
     #[test]
     fn paths_in_code_are_found() {
-        let source = "fn f(x: &crate::a::B) -> u8 { toile_sensors::frame::g::<u8>(x) + super::h() }";
-        assert_eq!(named(source), ["crate::a::B", "toile_sensors::frame::g", "super::h"]);
+        let source = "fn f(x: &crate::a::B) -> u8 { toile_base::frame::g::<u8>(x) + super::h() }";
+        assert_eq!(named(source), ["crate::a::B", "toile_base::frame::g", "super::h"]);
     }
 
     #[test]

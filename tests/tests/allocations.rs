@@ -7,6 +7,8 @@ use std::cell::Cell;
 use std::hint::black_box;
 
 use toile_assets::wardrobe;
+use toile_base::clock::SECOND_NS;
+use toile_base::filter::Filter;
 use toile_engine::body::Poser;
 use toile_engine::body::filters::{LimitFilter, PoseFilter};
 use toile_engine::clock::{Clock, SimClock};
@@ -19,12 +21,11 @@ use toile_engine::frame_loop::recording::{ENTRIES, ENTRIES_NAME};
 use toile_engine::frame_loop::render_thread::{RenderThread, Renderer};
 use toile_engine::frame_loop::sensor_thread::{Playback, SensorFrame, SensorThread};
 use toile_engine::triple_buffer::TripleBuffer;
-use toile_sensors::clock::SECOND_NS;
 use toile_sensors::filter::angles::AngleFilter;
 use toile_sensors::filter::one_euro::OneEuroSettings;
 use toile_sensors::filter::predict::Predictor;
 use toile_sensors::filter::smoothing::Smoothing;
-use toile_sensors::filter::{Filter, FilterSettings, JointFilter};
+use toile_sensors::filter::{FilterSettings, JointFilter};
 use toile_sensors::sample::between;
 use toile_tests::dressed;
 
@@ -146,7 +147,7 @@ fn no_turn_of_the_loop_costs_an_allocation_whatever_happens() {
     let outlets = PhysicsOutputs { events: sender, recording: Some(recording) };
     let mut physics =
         PhysicsThread::new(FrameScene::new(frame), clock.clone(), 0, news, outlets, NoCounters).warming_up(60);
-    let mut sense = SensorThread::new(Playback::new(&seen, 0, 1), clock.clone(), writer);
+    let mut sense = SensorThread::new(Playback::new(&seen, 0, 1), JointFilter::default(), clock.clone(), writer);
     let mut render = RenderThread::new(Glance(0.0), clock.clone(), 0, reader);
     let found = allocations(|| {
         for tick in 0..360u64 {

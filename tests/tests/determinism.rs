@@ -2,10 +2,10 @@
 
 use std::thread;
 
+use toile_base::clock::ticks_to_ns;
+use toile_base::frame::Joints;
 use toile_engine::cloth::ContactRates;
 use toile_engine::frame::Frame;
-use toile_sensors::clock::ticks_to_ns;
-use toile_sensors::frame::Joints;
 use toile_sensors::sample::sample;
 use toile_tests::dressed;
 

@@ -1,17 +1,17 @@
 //! Laws of the whole step, through what the engine shows to everybody.
 
 use glam::{Affine3A, Vec3, Vec3A};
-use toile_assets::bake::bake;
-use toile_assets::fabric::Fabric;
-use toile_assets::garment::Garment;
-use toile_assets::limits::{STEP_HZ, STEP_SECONDS};
-use toile_assets::skeleton::BONES;
+use toile_bake::bake;
+use toile_base::clock::ticks_to_ns;
+use toile_base::fabric::Fabric;
+use toile_base::frame::Joints;
+use toile_base::garment::Garment;
+use toile_base::limits::{STEP_HZ, STEP_SECONDS};
+use toile_base::skeleton::BONES;
 use toile_engine::body::{Poser, palette};
 use toile_engine::cloth::{Cloth, Settings, Step, measure};
 use toile_engine::colliders::Colliders;
 use toile_engine::frame::Frame;
-use toile_sensors::clock::ticks_to_ns;
-use toile_sensors::frame::Joints;
 use toile_sensors::sample::sample;
 use toile_tests::cloth::{plain_fabric, sheet};
 use toile_tests::dressed;

@@ -4,10 +4,11 @@ use std::collections::BTreeSet;
 
 use glam::{Quat, Vec2, Vec3};
 use proptest::prelude::*;
-use toile_assets::bake::bake;
-use toile_assets::fabric::Fabric;
-use toile_assets::garment::layout::{FiberList, OwnerShare, Tuples};
-use toile_assets::garment::{Garment, Shape, check};
+use toile_bake::bake;
+use toile_bake::{Shape, check};
+use toile_base::fabric::Fabric;
+use toile_base::garment::Garment;
+use toile_base::garment::layout::{FiberList, OwnerShare, Tuples};
 use toile_perf::oracle::{Problem, State, measure};
 use toile_tests::meshes::{Cell, Plan, area, folded};
 use toile_tests::tolerance;
@@ -30,7 +31,7 @@ fn plan() -> impl Strategy<Value = Plan> {
 }
 
 fn fabric() -> Fabric {
-    Fabric::built_in("cotton-lawn").expect("a fabric that is built in")
+    toile_assets::fabric::built_in("cotton-lawn").expect("a fabric that is built in")
 }
 
 /// Sides of the faces, and both diagonals of quads, as particles, except what is held at both ends.

@@ -1,10 +1,10 @@
 //! Laws of the collision body as it moves: capsules follow their bones, and the skin stays near them where joints bend.
 
 use glam::{Affine3A, Quat, Vec3};
-use toile_assets::body::{Body, Measures, Sex};
-use toile_assets::limits::MAX_CAPSULES;
-use toile_assets::rig::{Rig, Zone};
-use toile_assets::skeleton::{BONES, Joint, Pose};
+use toile_assets::rig::Zone;
+use toile_base::body::{Body, Measures, Sex};
+use toile_base::limits::MAX_CAPSULES;
+use toile_base::skeleton::{BONES, Joint, Pose};
 use toile_engine::body::palette;
 use toile_engine::colliders::{Colliders, RestSphere};
 use toile_engine::cone::RoundCone;
@@ -44,7 +44,7 @@ fn posed(body: &Body, pose: &Pose) -> (Vec<Vec3>, [RoundCone; MAX_CAPSULES]) {
     job.run(BLEND, &bones, &mut skin);
     let (mut positions, mut normals) = (body.mesh.positions.clone(), body.normals.clone());
     skin.read(&mut positions, &mut normals);
-    let rig = Rig::fit(body);
+    let rig = toile_assets::rig::fit(body);
     let spheres = rig.spheres.map(|s| RestSphere::on_bone(&body.skeleton, s.bone, s.offset, s.radius));
     let mut colliders = Colliders::new(&spheres, &rig.capsules, true).expect("a rig of ours");
     colliders.place(&bones);
@@ -76,7 +76,7 @@ fn dressed(zone: Zone) -> bool {
 #[test]
 fn capsules_follow_the_skin_where_joints_bend() {
     for sex in [Sex::Female, Sex::Male] {
-        let body = Body::build(sex, &Measures::average(sex)).expect("a mean body");
+        let body = toile_assets::body::build(sex, &Measures::average(sex)).expect("a mean body");
         let rest = figures(&body, &Pose::rest(&body.skeleton), dressed);
         eprintln!("{sex:?} at rest: mean {:.1}, 95 % {:.1}, outside {:.1} mm", rest[0], rest[1], rest[2]);
         for (name, joint, turn) in BENDS {
@@ -91,7 +91,7 @@ fn capsules_follow_the_skin_where_joints_bend() {
 
 #[test]
 fn capsules_left_and_right_bend_alike() {
-    let body = Body::build(Sex::Female, &Measures::average(Sex::Female)).expect("a mean body");
+    let body = toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).expect("a mean body");
     for (name, joint, turn) in BENDS {
         let (positions, cones) = posed(&body, &bent(&body, joint, turn));
         for p in positions.iter().step_by(29) {
@@ -103,7 +103,7 @@ fn capsules_left_and_right_bend_alike() {
 
 #[test]
 fn a_body_that_is_carried_and_turned_takes_its_capsules_along() {
-    let body = Body::build(Sex::Male, &Measures::average(Sex::Male)).expect("a mean body");
+    let body = toile_assets::body::build(Sex::Male, &Measures::average(Sex::Male)).expect("a mean body");
     let still = Pose::rest(&body.skeleton);
     let mut moved = still;
     moved.root += Vec3::new(0.4, 0.1, -0.3);

@@ -2,10 +2,10 @@
 
 use glam::{Affine3A, Vec3, Vec3A};
 use proptest::prelude::*;
-use toile_assets::bake::bake;
-use toile_assets::fabric::Fabric;
-use toile_assets::garment::Garment;
-use toile_assets::skeleton::BONES;
+use toile_bake::bake;
+use toile_base::fabric::Fabric;
+use toile_base::garment::Garment;
+use toile_base::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere, RoundCone};
 use toile_tests::cloth::sheet;
@@ -13,7 +13,8 @@ use toile_tests::tolerance;
 
 /// A small cloth, not held anywhere, in the middle of the world.
 fn garment(friction: f32) -> Garment {
-    let fabric = Fabric { friction, ..Fabric::built_in("cotton-lawn").expect("a fabric that is built in") };
+    let fabric =
+        Fabric { friction, ..toile_assets::fabric::built_in("cotton-lawn").expect("a fabric that is built in") };
     bake("cloth", "one", &sheet(5, 5, 0.03, Vec3::new(-0.075, 0.075, 0.0), false), &fabric).expect("it can be baked")
 }
 

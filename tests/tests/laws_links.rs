@@ -1,9 +1,8 @@
 //! Links of two slopes that rub and lock: the engine's cloth swings as the oracle's does, substep for substep.
 
 use glam::{DVec3, Quat, Vec3};
-use toile_assets::bake::bake;
-use toile_assets::fabric::Fabric;
-use toile_assets::garment::Garment;
+use toile_bake::bake;
+use toile_base::garment::Garment;
 use toile_engine::cloth::{Quality, Settings};
 use toile_perf::oracle::{Oracle, Problem, State, Step};
 use toile_tests::cloth::{Alone, sheet};
@@ -30,7 +29,7 @@ fn garment(laws: &str) -> Garment {
         "name = \"law\"\ntitle = \"Law\"\nbase = \"cotton-lawn\"\ndensity_kg_m2 = 0.3\nstretch_warp_n_m = 33.3\nstretch_weft_n_m = 33.3\nshear_n_m = 2.0\n\
         bend_warp_un_m = 0.0\nbend_weft_un_m = 0.0\nfriction = 0.3\ndamping_per_s = 1.0\ncontact_offset_mm = 3.0\n{laws}"
     );
-    let fabric = Fabric::parse("law", &text).expect("figures that cloth can have");
+    let fabric = toile_assets::fabric::parse("law", &text).expect("figures that cloth can have");
     let top = Vec3::new(-0.5 * CELLS[0] as f32 * CELL_M, 0.0, 0.0);
     bake("law", "one", &sheet(CELLS[0], CELLS[1], CELL_M, top, true), &fabric).expect("a sheet can be baked")
 }

@@ -1,10 +1,11 @@
 //! Laws of motion that every cloth obeys, whatever it is made of.
 
 use glam::{Vec3, Vec3A};
-use toile_assets::bake::bake;
-use toile_assets::fabric::Fabric;
-use toile_assets::garment::{Garment, Shape, Solver};
-use toile_assets::limits::{STEP_HZ, STEP_SECONDS};
+use toile_bake::Shape;
+use toile_bake::bake;
+use toile_base::fabric::Fabric;
+use toile_base::garment::{Garment, Solver};
+use toile_base::limits::{STEP_HZ, STEP_SECONDS};
 use toile_engine::cloth::{Quality, Settings};
 use toile_perf::oracle::{Problem, measure};
 use toile_tests::cloth::{Alone, plain_fabric, ripple, sheet, swing};
@@ -19,7 +20,7 @@ const CELL_M: f32 = 0.04;
 
 /// Lawn without air.
 fn lawn() -> Fabric {
-    Fabric { damping_per_s: 0.0, ..Fabric::built_in("cotton-lawn").expect("a fabric that is built in") }
+    Fabric { damping_per_s: 0.0, ..toile_assets::fabric::built_in("cotton-lawn").expect("a fabric that is built in") }
 }
 
 fn baked(shape: &Shape, fabric: &Fabric) -> Garment {

@@ -6,15 +6,15 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::thread;
 
-use toile_assets::body::{Body, Measures, Sex};
-use toile_assets::limits::STEP_SECONDS;
-use toile_assets::skeleton::Pose;
+use toile_base::body::{Measures, Sex};
+use toile_base::clock::{SECOND_NS, ns_to_ticks, ticks_to_ns};
+use toile_base::frame::Joints;
+use toile_base::limits::STEP_SECONDS;
+use toile_base::skeleton::Pose;
 use toile_engine::body::ROOT_SPEED;
 use toile_engine::body::smooth::LIMB_SPEED;
 use toile_engine::frame::Frame;
-use toile_sensors::clock::{SECOND_NS, ns_to_ticks, ticks_to_ns};
 use toile_sensors::filter::JointFilter;
-use toile_sensors::frame::Joints;
 use toile_sensors::sample::sample;
 use toile_sensors::source::{OpenOptions, open};
 use toile_tests::{dressed, recordings};
@@ -68,7 +68,7 @@ fn filtered(file: &Path) -> Vec<Joints> {
 
 /// An average woman in these garments, through a recording.
 fn play(track: &[Joints], worn: &[&str]) -> (Frame, Figures) {
-    let body = Body::build(Sex::Female, &Measures::average(Sex::Female)).expect("the average woman");
+    let body = toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).expect("the average woman");
     let garments = worn.iter().map(|name| dressed::dress(name, &body)).collect();
     let mut frame = dressed::frame(body, garments);
     frame.dress(&track[0]);

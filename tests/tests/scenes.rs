@@ -1,7 +1,7 @@
 //! The page about scene files says what the program takes: every key, and scenes that can be run.
 
-use toile_assets::bake::bake;
 use toile_assets::scene_file::{SceneFile, SceneSource, schema};
+use toile_bake::bake;
 use toile_tests::tree;
 
 fn page() -> String {

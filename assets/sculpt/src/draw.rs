@@ -7,8 +7,8 @@ use crate::lattice;
 use crate::lattice::chart::Chart;
 use crate::subdivide::Quads;
 use crate::wrap::Wrapping;
-use toile_assets::body::Region;
-use toile_assets::skeleton::Skeleton;
+use toile_base::body::Region;
+use toile_base::skeleton::Skeleton;
 
 /// A base body as it is drawn.
 #[derive(Debug, Clone, PartialEq)]

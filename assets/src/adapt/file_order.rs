@@ -3,8 +3,8 @@
 use glam::Vec3;
 
 use super::mesh::ForeignMesh;
-use crate::garment::check::corners;
-use crate::garment::shape::{Face, NO_VERTEX};
+use toile_bake::check::corners;
+use toile_bake::shape::{Face, NO_VERTEX};
 
 /// What became of the vertices of a file.
 #[derive(Debug, Clone, Default, PartialEq)]

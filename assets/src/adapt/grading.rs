@@ -8,9 +8,10 @@ use super::measures::MeshSizes;
 use super::mesh::ForeignMesh;
 use super::own_mesh::OwnMesh;
 use super::place::{Below, BodyWay};
-use crate::body::{Body, Measures, tape};
-use crate::mesh::Mesh;
+use crate::body::tape;
 use crate::sizes::{Girth, SizeBody};
+use toile_base::body::{Body, Measures};
+use toile_base::mesh::Mesh;
 
 /// A section of a garment that is shorter than this share of the body's girth does not go around it.
 const AROUND: f32 = 0.9;
@@ -50,7 +51,7 @@ impl OwnMesh {
         };
         let trunk = |v: u32| [1.0, -1.0].iter().all(|side| arm_share(&self.weights[v as usize], *side) < 0.5);
         let mut mesh = Mesh { positions: self.mesh.positions.clone(), ..Mesh::default() };
-        for face in self.mesh.faces.iter().map(crate::garment::check::corners).filter(|f| f.iter().all(|v| trunk(*v))) {
+        for face in self.mesh.faces.iter().map(toile_bake::check::corners).filter(|f| f.iter().all(|v| trunk(*v))) {
             (2..face.len()).for_each(|k| mesh.triangles.push([face[0], face[k - 1], face[k]]));
         }
         let cut = tape::slice(&mesh, |_| true, Vec3::Y * height, Vec3::Y);

@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::mesh::ForeignMesh;
 use super::report::Repair;
 use super::surface::{borders, links};
-use crate::garment::check::corners;
+use toile_bake::check::corners;
 
 /// A rim is at most this wide (m): a seam allowance that is turned in is wider and is a layer of its own.
 const WIDEST_RIM_M: f32 = 0.015;
@@ -84,12 +84,24 @@ fn nearest_on(p: Vec3, a: Vec3, b: Vec3) -> Vec3 {
 mod tests {
     use super::*;
     use crate::adapt::surface::loops;
-    use crate::bake::meshes::tube;
-    use crate::garment::shape::NO_VERTEX;
+    use toile_bake::shape::NO_VERTEX;
 
-    fn mesh((positions, faces): (Vec<Vec3>, Vec<crate::garment::Face>)) -> ForeignMesh {
+    /// A tube of `columns` and `rows` of quads as large as they are wide, radius 1 m.
+    fn tube(columns: u32, rows: u32) -> (Vec<Vec3>, Vec<toile_bake::shape::Face>) {
+        let at = |r: u32, c: u32| r * columns + c % columns;
+        let side = std::f32::consts::TAU / columns as f32;
+        let point = |r: u32, c: u32| {
+            let (sin, cos) = (side * c as f32).sin_cos();
+            Vec3::new(sin, -(r as f32) * side, cos)
+        };
+        let positions = (0..rows).flat_map(|r| (0..columns).map(move |c| point(r, c))).collect();
+        let face = |r, c| [at(r + 1, c), at(r + 1, c + 1), at(r, c + 1), at(r, c)];
+        (positions, (0..rows - 1).flat_map(|r| (0..columns).map(move |c| face(r, c))).collect())
+    }
+
+    fn mesh((positions, faces): (Vec<Vec3>, Vec<toile_bake::shape::Face>)) -> ForeignMesh {
         let text: String = positions.iter().map(|p| format!("v {} {} {}\n", p.x, p.y, p.z)).collect();
-        let face = |f: &crate::garment::Face| {
+        let face = |f: &toile_bake::shape::Face| {
             let ring: Vec<String> = f.iter().filter(|v| **v != NO_VERTEX).map(|v| (v + 1).to_string()).collect();
             format!("f {}\n", ring.join(" "))
         };

@@ -8,9 +8,9 @@ use super::lay::LaidMesh;
 use super::made_for::arm_share;
 use super::mesh::ForeignMesh;
 use super::surface::loops;
-use crate::body::Body;
-use crate::garment::Part;
-use crate::garment::check::corners;
+use toile_bake::check::corners;
+use toile_base::body::Body;
+use toile_base::garment::Part;
 
 /// Cloth that starts nearer to the skin than this (m) lies on it and follows it.
 const TIGHT_M: f32 = 0.010;

@@ -5,9 +5,9 @@ use glam::Vec3;
 use super::lay::LaidMesh;
 use super::mesh::{ForeignMesh, sides};
 use super::report::{Behaviour, PieceReport};
-use crate::mesh::SkinWeights;
-use crate::numeric::statistics::quantile;
-use crate::skeleton::BONES;
+use toile_base::mesh::SkinWeights;
+use toile_base::numeric::statistics::quantile;
+use toile_base::skeleton::BONES;
 
 /// Pieces no larger than this in any direction (m) are buttons, buckles, zips: they ride along.
 const TRIM_M: f32 = 0.08;

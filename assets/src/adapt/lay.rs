@@ -6,12 +6,12 @@ use super::layers::PieceOrder;
 use super::made_for::arm_share;
 use super::mesh::{ForeignMesh, sides};
 use super::place::{Below, BodyWay, leg_share};
-use crate::body::{Body, Region};
-use crate::garment::Part;
-use crate::garment::shape::NO_VERTEX;
-use crate::mesh::SkinWeights;
 use crate::rig::skin::SkinByHeight;
-use crate::skeleton::{BONES, Joint};
+use toile_bake::shape::NO_VERTEX;
+use toile_base::body::{Body, Region};
+use toile_base::garment::Part;
+use toile_base::mesh::SkinWeights;
+use toile_base::skeleton::{BONES, Joint};
 
 /// Cloth starts at least this far from the skin (m): a little more than the contact offset of the thickest fabric.
 const START_GAP_M: f32 = 0.005;
@@ -131,7 +131,7 @@ impl Lengths {
 
 /// The skin weights of places near a body, averaged along the cloth.
 pub fn smooth_weights(mesh: &ForeignMesh, body: &Body) -> Vec<SkinWeights> {
-    let found = crate::bake::weights::transfer(body, &mesh.positions, |_, _| true);
+    let found = toile_bake::weights::transfer(body, &mesh.positions, |_, _| true);
     smooth(&found, &mesh.neighbours())
 }
 
@@ -141,7 +141,7 @@ fn on_shopper(shopper: &Body, p: Vec3, made: &SkinWeights) -> SkinWeights {
         let one = SkinWeights { bones: [bone as u8; 4], weights: [1.0, 0.0, 0.0, 0.0] };
         [1.0, -1.0].iter().all(|side| arm_share(&one, *side) == 0.0 || arm_share(made, *side) > 0.02)
     };
-    crate::bake::weights::transfer(shopper, &[p], |_, bone| carried(bone))[0]
+    toile_bake::weights::transfer(shopper, &[p], |_, bone| carried(bone))[0]
 }
 
 fn smooth(weights: &[SkinWeights], neighbours: &[Vec<u32>]) -> Vec<SkinWeights> {

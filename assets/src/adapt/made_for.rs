@@ -6,9 +6,10 @@ use glam::{Quat, Vec3};
 use super::mesh::ForeignMesh;
 use super::report::MadeForReport;
 use super::surface::loops;
-use crate::body::{Body, BodyError, Measures, Sex};
-use crate::mesh::SkinWeights;
-use crate::skeleton::{Joint, bone_joint};
+use crate::body::BodyError;
+use toile_base::body::{Body, Measures, Sex};
+use toile_base::mesh::SkinWeights;
+use toile_base::skeleton::{Joint, bone_joint};
 
 /// Arms that are held this much otherwise (rad) are turned; less is within what the search of a cuff errs.
 const LEAST_TURN: f32 = 0.05;
@@ -43,7 +44,7 @@ impl MadeFor {
     /// # Errors
     /// Measures that no body has.
     pub fn mannequin(sex: Sex, measures: &Measures, how: String) -> Result<Self, BodyError> {
-        Ok(Self { body: Body::build(sex, measures)?, how })
+        Ok(Self { body: crate::body::build(sex, measures)?, how })
     }
 
     /// Turns the mannequin's arms and legs so that they go through the cuffs and the hems of a mesh.

@@ -4,8 +4,8 @@ use serde::Deserialize;
 
 use super::error::AdaptError;
 use super::unit::UNITS;
-use crate::body::{Measures, Sex};
 use crate::sizes::{GarmentKind, Girth, Population, SizeBody, SizeTable};
+use toile_base::body::{Measures, Sex};
 
 /// Lengths of a body outside of these (mm) are in another unit.
 const PLAUSIBLE_MM: [f32; 2] = [200.0, 2500.0];

@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
-use crate::garment::check::corners;
-use crate::garment::shape::{Face, NO_VERTEX};
 use crate::import::obj::FREE;
 use crate::import::plain::PlainMesh;
-use crate::texture::Texture;
+use toile_bake::check::corners;
+use toile_bake::shape::{Face, NO_VERTEX};
+use toile_base::texture::Texture;
 
 /// What the material of a face says.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! Adapting: meshes that others made become garments that hold.
 //!
 //! Reads: an OBJ, glTF or GLB file, a MakeHuman clothes file and a file of measures beside it, a shopper's body. Writes: a
-//! [`Shape`](crate::garment::Shape) laid on the shopper, and a report of what was repaired and what became of each piece.
+//! [`Shape`](toile_bake::Shape) laid on the shopper, and a report of what was repaired and what became of each piece.
 //! Budget: 1 s for 8,000 vertices; at load only.
 //! Thread: the loading thread.
 //!

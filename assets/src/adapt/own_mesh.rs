@@ -14,12 +14,12 @@ use super::report::Repair;
 use super::source::{self, MeshFiles};
 use super::unit::{self, FileAxes};
 use super::{hems, repair, shells, surface};
-use crate::body::{Measures, Sex};
-use crate::garment::check::check;
 use crate::import::avatar::ImportOptions;
 use crate::import::makehuman::clothes::{Clothes, base_folder};
 use crate::import::makehuman::{self, MakehumanOptions};
-use crate::mesh::SkinWeights;
+use toile_bake::check::check;
+use toile_base::body::{Measures, Sex};
+use toile_base::mesh::SkinWeights;
 
 /// Height of the origin over the soles of MakeHuman's base mesh (dm): -8.190 to the sole of its young women, -8.181 of its men.
 const HM08_ORIGIN_DM: f32 = 8.185;
@@ -107,7 +107,7 @@ fn sex_of(population: crate::sizes::Population) -> Option<Sex> {
 }
 
 /// A flaw that is left after all repairs, by the file's own vertices.
-fn described(mesh: &ForeignMesh, flaw: &crate::garment::MeshError) -> String {
+fn described(mesh: &ForeignMesh, flaw: &toile_bake::check::MeshError) -> String {
     let own = |v: u32| mesh.source.get(v as usize).copied().unwrap_or_default();
     flaw.described(
         |v| format!("vertex {}", own(v)),

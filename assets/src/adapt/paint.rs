@@ -8,7 +8,7 @@ use crate::file::{self, FileKind};
 use crate::import::makehuman::clothes::Clothes;
 use crate::import::paint::{Paint, parse_mhmat, parse_mtl};
 use crate::import::plain::PlainMesh;
-use crate::texture::Texture;
+use toile_base::texture::Texture;
 
 /// What is read as a picture.
 const PICTURE: FileKind = FileKind { name: "a picture", max_bytes: 64 << 20, cure: "make it smaller" };
@@ -121,5 +121,5 @@ impl MeshPaint {
 }
 
 fn decoded(name: &str, bytes: &[u8]) -> Result<Option<Texture>, String> {
-    Texture::decode(bytes).map(Some).map_err(|reason| format!("{name} is not shown: {reason}"))
+    crate::texture::decode(bytes).map(Some).map_err(|reason| format!("{name} is not shown: {reason}"))
 }

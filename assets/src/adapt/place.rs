@@ -7,9 +7,10 @@
 use glam::{Quat, Vec2, Vec3};
 
 use super::made_for::arm_share;
-use crate::body::{Body, Levels, Region, tape};
-use crate::mesh::SkinWeights;
-use crate::skeleton::{Joint, bone_joint};
+use crate::body::tape;
+use toile_base::body::{Body, Levels, Region};
+use toile_base::mesh::SkinWeights;
+use toile_base::skeleton::{Joint, bone_joint};
 
 /// Heights at which the middles of sections are known.
 const HEIGHTS: usize = 96;
@@ -234,12 +235,12 @@ fn arm_segment(bone: u8, side: usize) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bake::weights;
-    use crate::body::{Measures, Sex};
+    use toile_bake::weights;
+    use toile_base::body::{Measures, Sex};
 
     fn woman(times: f32) -> Body {
         let m = Measures::average(Sex::Female);
-        Body::build(Sex::Female, &Measures { stature: m.stature * times, ..m }).unwrap()
+        crate::body::build(Sex::Female, &Measures { stature: m.stature * times, ..m }).unwrap()
     }
 
     /// Places 2 cm above the skin of one body come to lie as far above the other's, where no joint bends. Between fingers and
@@ -260,7 +261,7 @@ mod tests {
             .filter(|(p, _)| p.y > from.levels.crotch || p.x.abs() > 0.03)
             .map(|(p, w)| (skin.distance_of(way.place(*p, w, Below::Legs), |_| true).unwrap().1 - 0.02).abs())
             .collect();
-        let p95 = crate::numeric::statistics::quantile(&mut off, 0.95).unwrap();
+        let p95 = toile_base::numeric::statistics::quantile(&mut off, 0.95).unwrap();
         assert!(p95 < 0.005, "{p95}");
     }
 

@@ -6,8 +6,8 @@ use glam::{Vec2, Vec3};
 
 use super::mesh::ForeignMesh;
 use super::report::Repair;
-use crate::garment::check::{LEAST_AREA_M2, corners};
-use crate::garment::shape::{Face, NO_VERTEX};
+use toile_bake::check::{LEAST_AREA_M2, corners};
+use toile_bake::shape::{Face, NO_VERTEX};
 
 /// Vertices this near to each other are one (m): a twentieth of a millimetre, far below the thickness of any fabric.
 const WELD_M: f32 = 5e-5;
@@ -114,8 +114,8 @@ fn drop_doubles(mesh: &mut ForeignMesh) -> Repair {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::garment::check::check;
     use crate::import::plain::parse_obj;
+    use toile_bake::check::check;
 
     const SOUND: &str = "v 0 0 0\nv .2 0 0\nv .2 1 0\nv 0 1 0\nf 1 2 3 4\n";
 

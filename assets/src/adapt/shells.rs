@@ -98,7 +98,7 @@ impl FaceGrid {
             })
             .collect();
         let sizes = triangles.iter().map(|([a, b, c], _)| a.distance(*b).max(b.distance(*c)).max(c.distance(*a)));
-        let cell = crate::numeric::statistics::median_of(sizes)?.max(2.0 * THICKEST_M);
+        let cell = toile_base::numeric::statistics::median_of(sizes)?.max(2.0 * THICKEST_M);
         let mut grid = Self { cell, triangles, cells: HashMap::new() };
         let mut entries = 0;
         for t in 0..grid.triangles.len() {
@@ -150,7 +150,7 @@ fn cells(low: [i32; 3], high: [i32; 3]) -> impl Iterator<Item = [i32; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::garment::shape::NO_VERTEX;
+    use toile_bake::shape::NO_VERTEX;
 
     /// A tube, one layer or two that are joined at both ends.
     fn shell(layers: &[f32]) -> ForeignMesh {

@@ -7,11 +7,11 @@ use super::measures::GarmentMeasures;
 use super::mesh::ForeignMesh;
 use super::paint::MeshPaint;
 use crate::file::{self, FileKind};
-use crate::garment::check::{MAX_VERTICES, MeshError};
 use crate::import::gltf::parse_gltf;
 use crate::import::makehuman::clothes::Clothes;
 use crate::import::obj::MAX_BYTES;
 use crate::import::plain::{PlainMesh, parse_obj};
+use toile_bake::check::{MAX_VERTICES, MeshError};
 
 /// What is read as a garment's mesh.
 const MESH_FILE: FileKind =

@@ -7,8 +7,8 @@ use glam::Vec3;
 use super::mesh::{ForeignMesh, sides};
 use super::report::Repair;
 use super::sets::DisjointSets;
-use crate::garment::check::corners;
-use crate::garment::shape::{Face, NO_VERTEX};
+use toile_bake::check::corners;
+use toile_bake::shape::{Face, NO_VERTEX};
 
 /// Which faces continue each other, and across which edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -201,8 +201,8 @@ pub fn loops(mesh: &ForeignMesh) -> Vec<Vec<u32>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::garment::check::check;
     use crate::import::plain::parse_obj;
+    use toile_bake::check::check;
 
     fn settled(text: &str) -> (ForeignMesh, Vec<(&'static str, usize)>) {
         let mut mesh = ForeignMesh::of(&parse_obj(text).unwrap());

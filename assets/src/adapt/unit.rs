@@ -3,8 +3,8 @@
 use glam::Vec3;
 
 use super::mesh::ForeignMesh;
-use crate::body::Body;
 use crate::rig::skin::SkinByHeight;
+use toile_base::body::Body;
 
 /// Units that meshes come in: metres a unit, and its name.
 pub const UNITS: [(f32, &str); 6] = [
@@ -186,11 +186,11 @@ fn nobody(low: Vec3, high: Vec3) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::{Measures, Sex};
     use crate::wardrobe;
+    use toile_base::body::{Measures, Sex};
 
     fn body() -> Body {
-        Body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap()
+        crate::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap()
     }
 
     /// A garment of our own as a file in another unit and place would have it.

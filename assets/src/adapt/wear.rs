@@ -1,6 +1,10 @@
 //! A mesh of the user's own on a shopper: laid, held, judged, and reported.
 
+use std::sync::Arc;
+
 use glam::Vec3;
+use toile_base::garment::look::MeshPicture;
+use toile_base::texture::Texture;
 
 use super::hold::Holding;
 use super::judge::{self, MOST_MOVING, PieceMeasures};
@@ -10,10 +14,11 @@ use super::own_mesh::OwnMesh;
 use super::place::Below;
 use super::report::{Behaviour, MeshReport, PieceReport};
 use super::surface::{loops, pieces};
-use crate::body::Body;
-use crate::garment::Shape;
-use crate::garment::shape::{NO_VERTEX, Painted};
 use crate::import::obj::warp_upright;
+use crate::texture::Atlas;
+use toile_bake::Shape;
+use toile_bake::shape::NO_VERTEX;
+use toile_base::body::Body;
 
 /// Borders below the crotch that lie this far beside the middle (m) are those of trouser legs.
 const LEG_BESIDE_M: f32 = 0.04;
@@ -21,11 +26,22 @@ const LEG_BESIDE_M: f32 = 0.04;
 /// Cloth within this distance of a trim (m) is held with it, so that it stays where it is sewn on.
 const SEWN_M: f32 = 0.02;
 
+/// What each face of a mesh shows.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Painted {
+    /// The pictures of all materials.
+    pub pictures: Vec<Arc<Texture>>,
+    /// Which of them each face shows, counted from 1; 0 is none `[faces]`.
+    pub of_face: Vec<u8>,
+}
+
 /// A mesh on a shopper.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WornMesh {
-    /// All of it as one shape.
+    /// All of it as one shape, without a picture.
     pub shape: Shape,
+    /// What its faces show.
+    pub painted: Option<Painted>,
     /// Vertices of what is worn in one layer, sorted; the innermost layer first.
     pub layers: Vec<Vec<u32>>,
     /// What became of it.
@@ -48,6 +64,10 @@ impl OwnMesh {
         let (held, reports) = self.decide(cut, &mut laid, shopper, &pieces);
         let layers = layers(&laid, &piece, &reports, &pieces);
         let shape = shape(cut, laid, held);
+        let painted = (!cut.pictures.is_empty()).then(|| Painted {
+            pictures: cut.pictures.clone(),
+            of_face: cut.materials.iter().map(|m| m.picture).collect(),
+        });
         let mut notes = self.notes.clone();
         notes.extend(no_cloth(&reports));
         notes.extend(other_girths(from, shopper));
@@ -59,7 +79,7 @@ impl OwnMesh {
             pieces: reports,
             notes,
         };
-        WornMesh { shape, layers, report }
+        WornMesh { shape, painted, layers, report }
     }
 
     /// What is held of each piece, and why.
@@ -122,7 +142,7 @@ impl OwnMesh {
 fn sticks(cut: &ForeignMesh) -> Vec<bool> {
     let mut held = vec![false; cut.positions.len()];
     let fixed = (0..cut.faces.len()).filter(|f| !cut.materials[*f].free);
-    fixed.flat_map(|f| crate::garment::check::corners(&cut.faces[f])).for_each(|v| held[*v as usize] = true);
+    fixed.flat_map(|f| toile_bake::check::corners(&cut.faces[f])).for_each(|v| held[*v as usize] = true);
     held
 }
 
@@ -201,30 +221,51 @@ fn layers(laid: &LaidMesh, piece: &[u32], reports: &[PieceReport], pieces: &[Vec
 impl WornMesh {
     /// The shape of each layer, the innermost first.
     pub fn shapes(&self) -> Vec<Shape> {
-        self.layers.iter().map(|layer| part_of(&self.shape, layer)).collect()
+        let part = |layer: &Vec<u32>| {
+            let (mut part, faces) = part_of(&self.shape, layer);
+            part.picture = self.painted.as_ref().and_then(|all| picture(&part, all, &faces));
+            part
+        };
+        self.layers.iter().map(part).collect()
     }
 }
 
-/// The part of a shape on some of its vertices, sorted, that no face leaves.
-fn part_of(shape: &Shape, layer: &[u32]) -> Shape {
+/// The picture of a shape whose faces are these of the whole mesh, in one atlas.
+fn picture(shape: &Shape, painted: &Painted, faces: &[usize]) -> Option<MeshPicture> {
+    let Painted { pictures, of_face } = painted;
+    if shape.uvs.len() != shape.faces.len() {
+        return None;
+    }
+    let of_face: Vec<u8> = faces.iter().map(|f| of_face[*f]).collect();
+    // Faces without a picture show the fabric: a picture that covers nothing.
+    let bare = of_face.contains(&0);
+    let nothing = bare.then(|| Arc::new(Texture { width: 1, height: 1, texels: vec![[0; 4]] }));
+    let all: Vec<Arc<Texture>> = nothing.into_iter().chain(pictures.iter().cloned()).collect();
+    let atlas = Atlas::of(&all)?;
+    let number: Vec<[u8; 4]> = of_face.iter().map(|k| [if bare { *k } else { k - 1 }; 4]).collect();
+    let corners = shape.corners(&shape.uvs);
+    let placed = corners.into_iter().zip(shape.corners(&number)).map(|(uvs, [k, ..])| atlas.place(usize::from(k), uvs));
+    Some(MeshPicture { corners: placed.collect(), texture: atlas.texture })
+}
+
+/// The part of a shape on some of its vertices, sorted, that no face leaves; and which faces those are.
+fn part_of(shape: &Shape, layer: &[u32]) -> (Shape, Vec<usize>) {
     if layer.len() == shape.cut.len() {
-        return shape.clone();
+        return (shape.clone(), (0..shape.faces.len()).collect());
     }
     let place = |v: u32| layer.binary_search(&v).map_or(NO_VERTEX, |k| k as u32);
     let mut part = Shape { solver: shape.solver, ..Shape::default() };
-    part.painted = shape.painted.as_ref().map(|all| Painted { pictures: all.pictures.clone(), of_face: Vec::new() });
-    for (i, face) in shape.faces.iter().enumerate().filter(|(_, face)| place(face[0]) != NO_VERTEX) {
-        part.faces.push(face.map(|v| if v == NO_VERTEX { v } else { place(v) }));
+    let own = |i: &usize| place(shape.faces[*i][0]) != NO_VERTEX;
+    let faces: Vec<usize> = (0..shape.faces.len()).filter(own).collect();
+    for &i in &faces {
+        part.faces.push(shape.faces[i].map(|v| if v == NO_VERTEX { v } else { place(v) }));
         part.uvs.push(shape.uvs[i]);
-        if let (Some(to), Some(all)) = (&mut part.painted, &shape.painted) {
-            to.of_face.push(all.of_face[i]);
-        }
     }
     for v in layer.iter().map(|v| *v as usize) {
         part.push(shape.cut[v], shape.worn[v], shape.fixed[v], shape.parts[v]);
         part.weights.push(shape.weights[v]);
     }
-    part
+    (part, faces)
 }
 
 /// Girths that differ by more than this (m) are worth a word.
@@ -254,12 +295,7 @@ fn no_cloth(pieces: &[PieceReport]) -> Option<String> {
 fn shape(cut: &ForeignMesh, laid: LaidMesh, fixed: Vec<bool>) -> Shape {
     let upright = cut.faces.iter().zip(&cut.uvs).map(|(f, uv)| warp_upright(&cut.positions, *f, *uv));
     let (faces, uvs) = upright.unzip();
-    let painted = (!cut.pictures.is_empty()).then(|| Painted {
-        pictures: cut.pictures.clone(),
-        of_face: cut.materials.iter().map(|m| m.picture).collect(),
-    });
     Shape {
-        painted,
         cut: cut.positions.clone(),
         worn: laid.worn,
         faces,
@@ -268,5 +304,35 @@ fn shape(cut: &ForeignMesh, laid: LaidMesh, fixed: Vec<bool>) -> Shape {
         weights: laid.weights,
         uvs,
         ..Shape::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec2;
+    use toile_base::garment::Part;
+
+    use super::*;
+
+    #[test]
+    fn a_mesh_shows_its_pictures_and_its_fabric_where_it_has_none() {
+        let mut shape = Shape::default();
+        for at in [[0.0, 0.0], [0.04, 0.0], [0.08, 0.0], [0.0, 0.04], [0.04, 0.04], [0.08, 0.04]] {
+            let at = Vec3::new(at[0], at[1], 0.0);
+            shape.push(at, at, false, Part::All);
+        }
+        shape.faces = vec![[0, 1, 4, 3], [1, 2, 5, NO_VERTEX]];
+        let painted = Painted { pictures: vec![Arc::new(Texture::plain([9, 8, 7]))], of_face: vec![1, 0] };
+        assert_eq!(picture(&shape, &painted, &[0, 1]), None, "no texture points");
+        shape.uvs = vec![[Vec2::splat(0.5); 4]; 2];
+        let picture = picture(&shape, &painted, &[0, 1]).unwrap();
+        assert_eq!(picture.corners.len(), 3);
+        let texel = |uv: Vec2| {
+            let at = uv * picture.texture.width as f32;
+            picture.texture.texels
+                [(picture.texture.width - 1 - at.y as u32) as usize * picture.texture.width as usize + at.x as usize]
+        };
+        assert_eq!(texel(picture.corners[0][0]), [9, 8, 7, 255]);
+        assert_eq!(texel(picture.corners[2][0])[3], 0, "the fabric's own colour");
     }
 }

@@ -11,9 +11,10 @@ use glam::{Vec2, Vec3};
 
 use super::landmarks::Landmarks;
 use super::stored::StoredBodies;
-use super::{Region, Sex, shares, skin};
-use crate::mesh::{Mesh, SkinWeights};
-use crate::skeleton::Skeleton;
+use super::{shares, skin};
+use toile_base::body::{Region, Sex};
+use toile_base::mesh::{Mesh, SkinWeights};
+use toile_base::skeleton::Skeleton;
 
 /// One sex's body as drawn: closed, symmetric about x = 0, facing +z, soles on y = 0, arms half raised.
 ///

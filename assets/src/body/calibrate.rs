@@ -13,7 +13,8 @@ use super::morph::{Morphs, Setting};
 use super::people::{People, allowance};
 use super::reading::{READINGS, Reading};
 use super::slider::{PARAMETERS, SLIDERS, Slider};
-use crate::numeric::linear::{self, Pivot};
+use toile_base::numeric::linear;
+use toile_base::numeric::linear::Pivot;
 
 /// Error at which a given measure pulls as hard as one standard deviation of people (m): conflicts with what is
 /// expected move a given measure by micrometres.

@@ -7,8 +7,8 @@ use super::gauge::neck_axis;
 use super::landmarks::Landmark;
 use super::segments::Neighbourhood;
 use super::slider::{SLIDERS, Slider};
-use super::{Region, Sex};
-use crate::skeleton::Joint;
+use toile_base::body::{Region, Sex};
+use toile_base::skeleton::Joint;
 
 /// How far a segment reaches, as the Gaussian's sigma over the mean way to its neighbours' cores: the share is a half
 /// midway to the neighbour, and 12 % at its core.

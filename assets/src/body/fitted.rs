@@ -12,9 +12,10 @@ use super::calibrate::{BodyModel, Calibrated};
 use super::landmarks::Landmark;
 use super::proportions::Proportions;
 use super::reading::{En, Reading, Readings, Vocabulary, Wanted};
-use super::{Body, BodyError, Fitted, Levels, Measures, Sex};
-use crate::mesh::{Mesh, vertex_normals};
-use crate::skeleton::Joint;
+use super::{BodyError, Fitted};
+use toile_base::body::{Body, Levels, Measures, Sex};
+use toile_base::mesh::{Mesh, vertex_normals};
+use toile_base::skeleton::Joint;
 
 /// Largest error of a given measure that a caller has to accept (m).
 pub const TOLERANCE: f32 = 2e-3;
@@ -29,73 +30,69 @@ pub(super) fn model(sex: Sex) -> &'static BodyModel {
     }
 }
 
-impl Measures {
-    /// The same in the words of the standard.
-    pub fn wanted(&self) -> Wanted<En> {
-        Wanted::new()
-            .with(En::Stature, self.stature)
-            .with(En::ShoulderBreadth, self.shoulder_breadth)
-            .with(En::BustGirth, self.chest_girth)
-            .with(En::WaistGirth, self.waist_girth)
-            .with(En::HipGirth, self.hip_girth)
-    }
+/// The measures in the words of the standard.
+pub fn wanted(measures: &Measures) -> Wanted<En> {
+    Wanted::new()
+        .with(En::Stature, measures.stature)
+        .with(En::ShoulderBreadth, measures.shoulder_breadth)
+        .with(En::BustGirth, measures.chest_girth)
+        .with(En::WaistGirth, measures.waist_girth)
+        .with(En::HipGirth, measures.hip_girth)
+}
 
-    /// What the tape reads, of these five.
-    fn read(readings: &Readings) -> Self {
-        Self {
-            stature: readings.of(En::Stature),
-            shoulder_breadth: readings.of(En::ShoulderBreadth),
-            chest_girth: readings.of(En::BustGirth),
-            waist_girth: readings.of(En::WaistGirth),
-            hip_girth: readings.of(En::HipGirth),
-        }
+/// What the tape reads, of the five measures that a body keeps.
+fn five(readings: &Readings) -> Measures {
+    Measures {
+        stature: readings.of(En::Stature),
+        shoulder_breadth: readings.of(En::ShoulderBreadth),
+        chest_girth: readings.of(En::BustGirth),
+        waist_girth: readings.of(En::WaistGirth),
+        hip_girth: readings.of(En::HipGirth),
     }
 }
 
-impl Body {
-    /// Builds the body of a sex that has the five measures wanted, each within [`TOLERANCE`].
-    ///
-    /// # Errors
-    /// As [`Body::fitted`].
-    pub fn build(sex: Sex, wanted: &Measures) -> Result<Self, BodyError> {
-        Ok(Self::fitted(sex, &wanted.wanted())?.body)
-    }
+/// Builds the body of a sex that has the five measures wanted, each within [`TOLERANCE`].
+///
+/// # Errors
+/// As [`fitted`].
+pub fn build(sex: Sex, wanted: &Measures) -> Result<Body, BodyError> {
+    Ok(fitted(sex, &self::wanted(wanted))?.body)
+}
 
-    /// Builds the body of a sex that has every measure wanted, each within [`TOLERANCE`]; all other measures are what
-    /// people with these are expected to have.
-    ///
-    /// # Errors
-    /// [`BodyError::OutOfRange`] for a measure that no body is built for, and [`BodyError::Unreachable`], which holds
-    /// the nearest body, for measures that none has together.
-    pub fn fitted<V: Vocabulary>(sex: Sex, wanted: &Wanted<V>) -> Result<Fitted, BodyError> {
-        wanted.check()?;
-        let given: Vec<(Reading, f32)> = wanted.given().iter().map(|(m, value)| (m.reading(), *value)).collect();
-        let model = model(sex);
-        let fitted = model.fitted(&model.calibrate(&given));
-        let off = |(m, value): &(V, f32)| (fitted.readings.of(*m) - value).abs();
-        let furthest = wanted.given().iter().max_by(|a, b| off(a).total_cmp(&off(b)));
-        match furthest.filter(|f| off(f) > TOLERANCE) {
-            None => Ok(fitted),
-            Some(&(measure, value)) => Err(BodyError::Unreachable {
-                measure: measure.name(),
-                value,
-                reached: fitted.readings.of(measure),
-                against: model.against(wanted, measure),
-                nearest: Box::new(fitted),
-            }),
-        }
+/// Builds the body of a sex that has every measure wanted, each within [`TOLERANCE`]; all other measures are what
+/// people with these are expected to have.
+///
+/// # Errors
+/// [`BodyError::OutOfRange`] for a measure that no body is built for, and [`BodyError::Unreachable`], which holds
+/// the nearest body, for measures that none has together.
+pub fn fitted<V: Vocabulary>(sex: Sex, wanted: &Wanted<V>) -> Result<Fitted, BodyError> {
+    wanted.check()?;
+    let given: Vec<(Reading, f32)> = wanted.given().iter().map(|(m, value)| (m.reading(), *value)).collect();
+    let model = model(sex);
+    let fitted = model.fitted(&model.calibrate(&given));
+    let off = |(m, value): &(V, f32)| (fitted.readings.of(*m) - value).abs();
+    let furthest = wanted.given().iter().max_by(|a, b| off(a).total_cmp(&off(b)));
+    match furthest.filter(|f| off(f) > TOLERANCE) {
+        None => Ok(fitted),
+        Some(&(measure, value)) => Err(BodyError::Unreachable {
+            measure: measure.name(),
+            value,
+            reached: fitted.readings.of(measure),
+            against: model.against(wanted, measure),
+            nearest: Box::new(fitted),
+        }),
     }
+}
 
-    /// The body of a sex as it is drawn, before any morph.
-    pub fn drawn(sex: Sex) -> Self {
-        let model = model(sex);
-        model.fitted(&model.as_drawn()).body
-    }
+/// The body of a sex as it is drawn, before any morph.
+pub fn drawn(sex: Sex) -> Body {
+    let model = model(sex);
+    model.fitted(&model.as_drawn()).body
+}
 
-    /// Where the landmarks of a sex's drawn body lie.
-    pub(crate) fn proportions(sex: Sex) -> Proportions {
-        Proportions::of(&model(sex).morphs.base)
-    }
+/// Where the landmarks of a sex's drawn body lie.
+pub(crate) fn proportions(sex: Sex) -> Proportions {
+    Proportions::of(&model(sex).morphs.base)
 }
 
 impl BodyModel {
@@ -144,7 +141,7 @@ impl BodyModel {
         let readings = Readings(found.readings);
         let body = Body {
             sex: base.sex,
-            measures: Measures::read(&readings),
+            measures: five(&readings),
             mesh: Mesh { positions, uvs: Vec::new(), triangles: base.triangles.clone() },
             normals,
             skeleton,

@@ -6,13 +6,13 @@
 
 use glam::{Vec2, Vec3};
 
-use super::Region;
 use super::base::BaseBody;
 use super::landmarks::{Landmark, Mark};
 use super::people::Allowance;
 use super::reading::{READINGS, Reading};
 use super::tape::{hull_corners, perimeter_f64};
-use crate::skeleton::Joint;
+use toile_base::body::Region;
+use toile_base::skeleton::Joint;
 
 /// How far from its plane on the base body an edge may lie and still be cut on a calibrated one (m).
 const MARGIN: f32 = 0.06;

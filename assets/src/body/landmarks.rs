@@ -9,9 +9,9 @@ use std::sync::LazyLock;
 use glam::Vec3;
 use serde::Deserialize;
 
-use super::{Region, Sex};
+use toile_base::body::{Region, Sex};
 
-named! {
+toile_base::named! {
     /// A named place on the surface of the body.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Deserialize)]
     #[serde(rename_all = "snake_case")]

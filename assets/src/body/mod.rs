@@ -4,7 +4,6 @@
 //! Budget: at load only, under 20 ms a body; the mesh has the same vertices and triangles whatever the size.
 //! Thread: the loading thread.
 
-mod anatomy;
 pub mod base;
 mod calibrate;
 mod fields;
@@ -27,7 +26,7 @@ pub mod tape;
 #[cfg(test)]
 mod tests;
 
-pub use anatomy::{Body, Levels, Measures, Region, Sex};
-pub use fitted::TOLERANCE;
+pub(crate) use fitted::proportions;
+pub use fitted::{TOLERANCE, build, drawn, fitted, wanted};
 pub use outcome::{BodyError, Fitted};
 pub use reading::{Ansur, En, Readings, Vocabulary, Wanted};

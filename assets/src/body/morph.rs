@@ -10,7 +10,7 @@ use super::base::BaseBody;
 use super::fields;
 use super::segments::Neighbourhood;
 use super::slider::SLIDERS;
-use crate::skeleton::{JOINTS, Joint, Skeleton};
+use toile_base::skeleton::{JOINTS, Joint, Skeleton};
 
 /// A setting of all sliders, then the scale.
 #[derive(Debug, Clone, Copy, PartialEq)]

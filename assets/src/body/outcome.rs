@@ -1,7 +1,7 @@
 //! What building a body comes to: one that has the measures wanted, or why there is none.
 
-use super::anatomy::Body;
 use super::reading::{Readings, Vocabulary, Wanted};
+use toile_base::body::Body;
 
 /// A body built to measure, and what the tape reads on it.
 #[derive(Debug, Clone, PartialEq)]

@@ -9,9 +9,10 @@ use std::sync::LazyLock;
 
 use serde::Deserialize;
 
-use super::Sex;
 use super::reading::{READINGS, Reading};
-use crate::numeric::linear::{self, Pivot};
+use toile_base::body::Sex;
+use toile_base::numeric::linear;
+use toile_base::numeric::linear::Pivot;
 
 /// What posing adds to lengths of the arm, which the body holds straight (m).
 #[derive(Debug, Clone, Copy)]

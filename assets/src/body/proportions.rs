@@ -2,7 +2,7 @@
 
 use super::base::BaseBody;
 use super::landmarks::Landmark;
-use crate::skeleton::Joint;
+use toile_base::skeleton::Joint;
 
 /// Places of landmarks as shares of ways that every body has. Each is 0 at the first and 1 at the second end named.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -10,9 +10,10 @@ use super::calibrate::{BodyModel, Calibrated, CalibrationBuffers, ParameterVecto
 use super::fitted::model;
 use super::reading::{READINGS, Readings, Vocabulary};
 use super::slider::{PARAMETERS, SLIDERS};
-use super::{BodyError, Fitted, Sex};
-use crate::numeric::linear::{Pivot, factor as factor_in_place, inverse};
-use crate::skeleton::{JOINTS, Skeleton};
+use super::{BodyError, Fitted};
+use toile_base::body::Sex;
+use toile_base::numeric::linear::{Pivot, factor as factor_in_place, inverse};
+use toile_base::skeleton::{JOINTS, Skeleton};
 
 /// Number of a shape's parameters.
 pub const SHAPES: usize = PARAMETERS;
@@ -171,7 +172,7 @@ mod tests {
     fn the_mean_shape_is_the_body_built_to_nothing() {
         for sex in [Sex::Female, Sex::Male] {
             let shapes = Shapes::of(sex);
-            let built = crate::body::Body::fitted(sex, &Wanted::<En>::new()).unwrap();
+            let built = crate::body::fitted(sex, &Wanted::<En>::new()).unwrap();
             let shaped = shapes.body(shapes.mean());
             assert_eq!(built.body.mesh.positions, shaped.body.mesh.positions);
             assert_eq!(built.readings, shaped.readings);

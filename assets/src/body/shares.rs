@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 
-use super::Region;
-use crate::skeleton::{Joint, Skeleton};
+use toile_base::body::Region;
+use toile_base::skeleton::{Joint, Skeleton};
 
 /// Rounds of averaging over neighbours: the border of an arm spreads over about 90 mm.
 const ROUNDS: usize = 14;

@@ -5,8 +5,8 @@
 
 use glam::Vec3;
 
-use crate::mesh::SkinWeights;
-use crate::skeleton::{BONES, Joint, Skeleton, Twist};
+use toile_base::mesh::SkinWeights;
+use toile_base::skeleton::{BONES, Joint, Skeleton, Twist};
 
 /// A ramp from 0 at `-width` to 1 at `+width`, with level ends.
 fn ramp(x: f32, width: f32) -> f32 {

@@ -1,6 +1,6 @@
 //! The sliders by which a body is changed.
 
-named! {
+toile_base::named! {
     /// What can be changed on a body; lengths in metres a unit, the others as a fraction of the base's size.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     #[repr(u8)]

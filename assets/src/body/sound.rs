@@ -5,7 +5,7 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::mesh::Mesh;
+use toile_base::mesh::Mesh;
 
 /// Roughness of a surface after Ugur 2008, equation 7.2: the mean distance of a vertex from the mean of its neighbours,
 /// as a fraction of the mean length of the edges, so that size alone does not make a body rough. 0 without triangles.

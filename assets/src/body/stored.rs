@@ -7,9 +7,9 @@
 
 use glam::{Vec2, Vec3};
 
-use super::{Region, Sex};
-use crate::numeric::hash;
-use crate::skeleton::{JOINTS, Skeleton};
+use toile_base::body::{Region, Sex};
+use toile_base::numeric::hash;
+use toile_base::skeleton::{JOINTS, Skeleton};
 
 const MAGIC: &[u8; 8] = b"TOILEBDY";
 const VERSION: u32 = 1;

@@ -2,8 +2,8 @@
 
 use glam::{Vec2, Vec3};
 
-use super::{Body, Region};
-use crate::mesh::Mesh;
+use toile_base::body::{Body, Region};
+use toile_base::mesh::Mesh;
 
 /// The segments in which a plane cuts the triangles that `keep` admits (by index), one a triangle, unordered.
 /// A vertex that lies exactly on the plane counts as above it, so that no segment comes out twice.

@@ -6,9 +6,10 @@ use std::f32::consts::TAU;
 use glam::{DVec3, Vec3};
 
 use super::*;
-use crate::mesh::Mesh;
-use crate::numeric::random::SplitMix64;
-use crate::skeleton::{BONES, Joint, TWISTS, bone_joint, bone_mirror};
+use toile_base::body::{Body, Measures, Region, Sex};
+use toile_base::mesh::Mesh;
+use toile_base::numeric::random::SplitMix64;
+use toile_base::skeleton::{BONES, Joint, TWISTS, bone_joint, bone_mirror};
 
 /// Somebody like the people of ANSUR II: girths that follow one another, by its deviations.
 fn somebody(sex: Sex, random: &mut SplitMix64) -> Measures {
@@ -29,12 +30,12 @@ fn somebody(sex: Sex, random: &mut SplitMix64) -> Measures {
 }
 
 fn average(sex: Sex) -> Body {
-    Body::build(sex, &Measures::average(sex)).unwrap()
+    build(sex, &Measures::average(sex)).unwrap()
 }
 
 fn small_and_large() -> [Body; 4] {
     let of = |sex, [stature, shoulder_breadth, chest_girth, waist_girth, hip_girth]: [f32; 5]| {
-        Body::build(sex, &Measures { stature, shoulder_breadth, chest_girth, waist_girth, hip_girth }).unwrap()
+        build(sex, &Measures { stature, shoulder_breadth, chest_girth, waist_girth, hip_girth }).unwrap()
     };
     [
         of(Sex::Female, [1.50, 0.33, 0.76, 0.60, 0.84]),
@@ -143,7 +144,7 @@ fn tape_reads_the_measures_wanted_on_a_grid() {
                         waist_girth: mean.waist_girth * waist,
                         hip_girth: mean.hip_girth * hip,
                     };
-                    let body = Body::build(sex, &wanted).unwrap();
+                    let body = build(sex, &wanted).unwrap();
                     assert!(worst(&wanted, &body.measures) < TOLERANCE, "{wanted:?} {:?}", body.measures);
                     let chest = tape::girth(&body, body.levels.chest);
                     assert!((chest - wanted.chest_girth).abs() < TOLERANCE, "the public tape agrees");
@@ -159,7 +160,7 @@ fn anybody_like_ansurs_people_is_met() {
     for sex in [Sex::Female, Sex::Male] {
         for _ in 0..50 {
             let wanted = somebody(sex, &mut random);
-            let body = Body::build(sex, &wanted).unwrap();
+            let body = build(sex, &wanted).unwrap();
             assert!(worst(&wanted, &body.measures) < TOLERANCE, "{wanted:?} {:?}", body.measures);
         }
     }
@@ -189,7 +190,7 @@ fn people_of_the_survey_are_met() {
                 waist_girth: metres(waist),
                 hip_girth: metres(hip),
             };
-            let body = Body::build(sex, &wanted).unwrap();
+            let body = build(sex, &wanted).unwrap();
             assert!(worst(&wanted, &body.measures) < TOLERANCE, "{wanted:?} {:?}", body.measures);
             met += 1;
         }
@@ -209,7 +210,7 @@ fn corners_of_the_range_are_met_or_refused() {
             waist_girth: pick(3, 0.5, 1.8),
             hip_girth: pick(4, 0.5, 1.8),
         };
-        match Body::build(Sex::Female, &wanted) {
+        match build(Sex::Female, &wanted) {
             Ok(body) => {
                 assert!(worst(&wanted, &body.measures) < TOLERANCE);
                 assert!(body.mesh.positions.iter().all(|p| p.is_finite()));
@@ -233,7 +234,7 @@ fn impossible_measures_are_refused_in_one_sentence() {
         (Measures { waist_girth: f32::INFINITY, ..mean }, "waist girth"),
         (Measures { hip_girth: -1.0, ..mean }, "hip girth"),
     ] {
-        let message = Body::build(Sex::Female, &wanted).unwrap_err().to_string();
+        let message = build(Sex::Female, &wanted).unwrap_err().to_string();
         assert!(
             message.contains(name)
                 && (message.contains("check") || message.contains("give metres"))

@@ -8,7 +8,7 @@ use super::limits::MAX_PIXELS;
 use super::package::is_plain;
 use super::picture::Picture;
 
-crate::named! {
+toile_base::named! {
     /// In which layer a garment is worn, the innermost first.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
     #[serde(rename_all = "kebab-case")]
@@ -203,7 +203,7 @@ mod tests {
     use image::{ImageFormat, Rgba, RgbaImage};
 
     use super::*;
-    use crate::body::Measures;
+    use toile_base::body::Measures;
 
     const SAID: &str = "name = \"Tee\"\nlayer = \"shirts\"\nlevel = \"shoulders\"\n[front]\npicture = \"f.png\"\narms = \"a.png\"\n\
         points = [[10, 8], [50, 8]]\ndistance_mm = 400\n[stretches]\nchest = [820, 960]\n";
@@ -228,7 +228,7 @@ mod tests {
         let front = front.unwrap();
         assert!(side.is_none() && back.is_none());
         assert_eq!((front.arms[0], front.arms[30], front.points[1]), (255, 0, [50.0, 8.0]));
-        let woman = Measures::average(crate::body::Sex::Female);
+        let woman = Measures::average(toile_base::body::Sex::Female);
         let large = Measures { chest_girth: 1.2, ..woman };
         assert!(garment.stretches.hold(&large).unwrap_err().contains("820 to 960 mm"));
         assert!((garment.stretches.most().unwrap() - 960.0 / 820.0).abs() < 1e-6);

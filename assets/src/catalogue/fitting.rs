@@ -4,7 +4,7 @@
 use glam::Vec2;
 use serde::Deserialize;
 
-use crate::body::{Levels, Measures};
+use toile_base::body::{Levels, Measures};
 
 /// Where a garment stays in place on the body while the rest of it stretches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]

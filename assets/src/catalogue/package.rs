@@ -14,7 +14,6 @@ use super::error::CatalogueError;
 use super::limits::{MAX_FILES, MAX_PACKAGE_BYTES, MAX_PICTURE_PIXELS, MAX_PIXELS, MAX_TOML_BYTES, MAX_UNPACKED_BYTES};
 use super::manifest::GarmentManifest;
 use crate::adapt::source;
-use crate::fabric::Fabric;
 use crate::file::{self, FileKind};
 
 /// How packages are recognised.
@@ -212,7 +211,7 @@ pub fn pack(folder: &Path) -> Result<(Vec<u8>, GarmentManifest), CatalogueError>
 fn printed(folder: &Path, manifest: &GarmentManifest) -> Option<String> {
     let file = manifest.fabric.as_deref().filter(|name| name.ends_with(".toml"))?;
     let text = file::read_text(&folder.join(file), &MANIFEST_FILE).ok()?;
-    Fabric::parse(file, &text).ok()?.print?.picture
+    crate::fabric::parse(file, &text).ok()?.print?.picture
 }
 
 /// The files of a folder that go by a mesh's name with another ending.

@@ -7,11 +7,12 @@ use glam::{Vec2, Vec3};
 use serde::Deserialize;
 
 use super::fitting::{FittingLevel, StretchLimits, check_registration};
-use crate::body::{Body, Measures};
-use crate::garment::Garment;
-use crate::garment::look::MeshPicture;
-use crate::numeric::statistics;
-use crate::texture::{Atlas, Texture};
+use crate::texture::Atlas;
+use toile_base::body::{Body, Measures};
+use toile_base::garment::Garment;
+use toile_base::garment::look::MeshPicture;
+use toile_base::numeric::statistics;
+use toile_base::texture::Texture;
 
 /// What a manifest says of a garment's photographs.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -78,7 +79,7 @@ impl PhotographedGarment {
             let bytes = file(name)?;
             let size =
                 imagesize::blob_size(&bytes).map_err(|_| format!("{name} is no picture in PNG or JPEG; convert it"))?;
-            let texture = Texture::decode(&bytes).map_err(|e| format!("{name}: {e}"))?;
+            let texture = crate::texture::decode(&bytes).map_err(|e| format!("{name}: {e}"))?;
             let view = PhotographView::of(texture)
                 .ok_or_else(|| format!("{name} shows nothing: all of it is transparent; cut the garment out again"))?;
             Ok::<_, String>((Vec2::new(size.width as f32, size.height as f32), view))
@@ -278,8 +279,8 @@ mod tests {
     use image::{ImageFormat, Rgba, RgbaImage};
 
     use super::*;
-    use crate::body::Sex;
     use crate::drafting;
+    use toile_base::body::Sex;
 
     /// A tee from the front: red where the wearer's right is, green at the left, its lower third blue, nothing beside it.
     fn photograph() -> Vec<u8> {

@@ -4,8 +4,8 @@
 //! The proportions here are linear rules of that kind, with their constants fitted to the bodies of the size tables, largest and
 //! smallest; the armhole's depth is an eighth of the chest and a constant, the crotch's width goes by the hip, and so on.
 
-use crate::body::Sex;
 use crate::sizes::SizeBody;
+use toile_base::body::Sex;
 
 /// The lengths that drafts are drawn by, all in metres.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use super::block::DraftBlock;
 use super::panel::{DraftPanel, DraftSide, Outline, at};
-use crate::body::Sex;
+use toile_base::body::Sex;
 
 /// How a bodice is cut.
 #[derive(Debug, Clone, Copy, PartialEq)]

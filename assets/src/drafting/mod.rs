@@ -27,9 +27,9 @@ pub use block::DraftBlock;
 pub use garment::DraftGarment;
 pub use styles::{DraftStyle, STYLES};
 
-use crate::body::Sex;
 use crate::draping::{PatternPackage, PatternSizes, SizeGirths, SizedDraft};
 use crate::sizes::{Population, SizeError, SizeTable};
+use toile_base::body::Sex;
 
 /// Names of the garments that are drafted here.
 pub fn names() -> Vec<&'static str> {

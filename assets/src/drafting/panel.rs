@@ -3,7 +3,8 @@
 use glam::DVec2;
 
 use crate::pattern::curve::ArcLength;
-use crate::pattern::{Curve, Trim, TrimKind};
+use crate::pattern::{Curve, Trim};
+use toile_base::garment::trim::TrimKind;
 
 /// Where a panel is laid: the side of the body that it is seen from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

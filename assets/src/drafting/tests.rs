@@ -3,8 +3,9 @@
 use super::{STYLES, names, style};
 use crate::draping::PatternPackage;
 use crate::import::pattern::parse;
-use crate::pattern::{MAX_TRIMS, Pattern, TrimKind};
+use crate::pattern::Pattern;
 use crate::sizes::SizeTable;
+use toile_base::garment::trim::{MAX_TRIMS, TrimKind};
 
 /// The most that one side of a seam may be longer than the other (1), where it is not gathered: what cloth takes by steam.
 const EASED: f64 = 1.06;

@@ -6,7 +6,8 @@ use super::block::{BAND_M, DraftBlock};
 use super::bodice::BodiceStyle;
 use super::garment::DraftGarment;
 use super::panel::{across, at};
-use crate::pattern::{Trim, TrimKind};
+use crate::pattern::Trim;
+use toile_base::garment::trim::TrimKind;
 
 /// Colours of buttons and zips (sRGB).
 const PEARL: [f32; 3] = [0.9, 0.88, 0.83];

@@ -15,9 +15,9 @@ use super::outlines::{coordinates, outline, width};
 use super::panels::{Around, ArrangedPanel, faces, panels};
 use super::sleeves;
 use crate::body::tape::girth;
-use crate::body::{Body, Region};
 use crate::pattern::Pattern;
 use crate::tailor::SewnMesh;
+use toile_base::body::{Body, Region};
 
 /// The panels of a pattern around a body.
 #[derive(Debug, Clone)]

@@ -3,9 +3,9 @@
 
 use glam::{DVec2, Vec3};
 
-use crate::body::Body;
-use crate::garment::check::corners;
 use crate::tailor::{PanelMesh, SewnMesh};
+use toile_bake::check::corners;
+use toile_base::body::Body;
 
 /// Places of the vertices of `fine`, from those of `coarse` (m) `[vertices]`.
 pub fn carry(coarse: &SewnMesh, at: &[Vec3], fine: &SewnMesh) -> Vec<Vec3> {

@@ -16,11 +16,11 @@ use super::quality::{self, DrapeQuality};
 use super::relax::{RelaxRun, Relaxation};
 use super::skin_field::SkinField;
 use super::springs::{Springs, panel_starts, shape, unsewn_shape};
-use crate::body::Body;
-use crate::fabric::Fabric;
-use crate::garment::Shape;
 use crate::pattern::Pattern;
 use crate::tailor::{SewnMesh, sew};
+use toile_bake::Shape;
+use toile_base::body::Body;
+use toile_base::fabric::Fabric;
 
 /// What a level took.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,10 +4,11 @@ use super::arrange::{Arrangement, arrange};
 use super::error::DrapeError;
 use super::outlines::{outline, width};
 use super::panels::Around;
-use crate::body::{Body, Measures, Sex, tape};
+use crate::body::tape;
 use crate::pattern::Pattern;
 use crate::sizes::{GarmentKind, Girth, SizeTable};
 use crate::tailor::{SewnMesh, sew};
+use toile_base::body::{Body, Measures, Sex};
 
 use super::limits::LEVELS_M;
 
@@ -111,7 +112,8 @@ pub fn fitting_size(pattern: &Pattern, table: &SizeTable, sex: Sex) -> Result<St
     let codes = table.codes();
     let mut best = codes.first().copied().unwrap_or_default();
     for code in codes {
-        let Some(body) = table.size_body(code).ok().and_then(|b| Body::build(sex, &Measures::from(b)).ok()) else {
+        let Some(body) = table.size_body(code).ok().and_then(|b| crate::body::build(sex, &Measures::from(b)).ok())
+        else {
             continue;
         };
         let eases = of_arranged(&sewn, &arrange(pattern, &sewn, &body)?, &body);

@@ -3,8 +3,8 @@
 use thiserror::Error;
 
 use super::limits::MAX_OPEN_MM;
-use crate::garment::MeshError;
 use crate::tailor::TailorError;
+use toile_bake::check::MeshError;
 
 /// Why a pattern cannot be draped.
 #[derive(Debug, Clone, PartialEq, Error)]

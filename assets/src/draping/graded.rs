@@ -2,10 +2,10 @@
 
 use super::package::{PackageError, PatternPackage};
 use super::pattern_sizes::{SizedDraft, TO_MEASURE};
-use crate::body::Measures;
 use crate::import::pattern;
 use crate::pattern::Pattern;
 use crate::sizes::{GarmentKind, Girth, Size, SizeTable};
+use toile_base::body::Measures;
 
 /// A draft, the girth that it is for (m), and its size.
 #[derive(Debug, Clone)]

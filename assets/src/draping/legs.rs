@@ -4,8 +4,8 @@ use glam::DVec2;
 
 use super::outlines::coordinates;
 use super::panels::{Around, ArrangedPanel};
-use crate::garment::check::corners;
 use crate::tailor::SewnMesh;
+use toile_bake::check::corners;
 
 /// Legs of a garment.
 #[derive(Debug, Clone, PartialEq)]

@@ -9,17 +9,19 @@ use super::drape::{DrapedPattern, drape, drape_around, drape_on};
 use super::error::DrapeError;
 use super::pattern_sizes::{AS_DRAFTED, PatternSizes, TO_MEASURE};
 use super::skin_field::SkinField;
-use crate::bake::bake;
-use crate::body::{Body, Measures, Sex};
-use crate::fabric::{Fabric, FabricError};
+use crate::fabric::FabricError;
 use crate::file::{self, FileError, FileKind};
-use crate::garment::{Garment, Shape};
 use crate::import::pattern::{self, PatternError};
 use crate::pattern::Pattern;
 use crate::pattern::limits::MAX_PATTERN_BYTES;
 use crate::sizes::{Population, SizeError, SizeTable};
 use crate::tailor::TailorError;
 use crate::tailor::limits::SPACING_M;
+use toile_bake::Shape;
+use toile_bake::bake;
+use toile_base::body::{Body, Measures, Sex};
+use toile_base::fabric::Fabric;
+use toile_base::garment::Garment;
 
 /// The format of a package.
 const SCHEMA: &str = "toile.garment-package/1";
@@ -233,7 +235,7 @@ impl PatternPackage {
         };
         let table = SizeTable::embedded(&sizes.table)?;
         let sex = if table.population == Population::Men { Sex::Male } else { Sex::Female };
-        let body = Body::build(sex, &Measures::from(table.size_body(size)?));
+        let body = crate::body::build(sex, &Measures::from(table.size_body(size)?));
         body.map(Some).map_err(|e| PackageError::Content { file: self.name.clone(), reason: e.to_string() })
     }
 
@@ -256,7 +258,7 @@ impl PatternPackage {
     /// As [`Self::sized`] and [`Self::drape`].
     pub fn hang(&self, fabric: Option<&Fabric>, size: &str) -> Result<Option<HungPattern>, PackageError> {
         let Some(body) = self.body_of(size)? else { return Ok(None) };
-        let fabric = fabric.map_or_else(|| Fabric::built_in(&self.fabric), |f| Ok(f.clone()))?;
+        let fabric = fabric.map_or_else(|| crate::fabric::built_in(&self.fabric), |f| Ok(f.clone()))?;
         let pattern = self.sized(size, &body.measures)?;
         let draped = self.drape(&pattern, &body, &fabric)?;
         Ok(Some(HungPattern { size: size.to_owned(), body, fabric, pattern, draped }))
@@ -302,7 +304,7 @@ impl PatternPackage {
     /// # Errors
     /// As [`Self::draft`].
     pub fn dress(&self, size: &str, body: &Body) -> Result<Garment, PackageError> {
-        self.dress_in(&Fabric::built_in(&self.fabric)?, size, body)
+        self.dress_in(&crate::fabric::built_in(&self.fabric)?, size, body)
     }
 
     /// The same in another fabric.

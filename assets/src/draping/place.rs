@@ -9,9 +9,9 @@ use super::limits::CLEARANCE_M;
 use super::outlines::breadth;
 use super::panels::{Around, faces};
 use super::rows::{BLEND_M, RowRing, Rows};
-use crate::body::{Body, Region};
-use crate::skeleton::Joint;
 use crate::tailor::SewnMesh;
+use toile_base::body::{Body, Region};
+use toile_base::skeleton::Joint;
 
 /// Height under the armpits in which cloth passes from around the trunk to flat before and behind it (m).
 const FLATTEN_M: f32 = 0.06;

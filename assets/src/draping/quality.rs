@@ -4,9 +4,10 @@ use glam::Vec3;
 
 use super::skin_field::SkinField;
 use super::springs::Springs;
-use crate::body::{Body, sound};
-use crate::mesh::Mesh;
-use crate::numeric::statistics::quantile;
+use crate::body::sound;
+use toile_base::body::Body;
+use toile_base::mesh::Mesh;
+use toile_base::numeric::statistics::quantile;
 
 /// What is measured on a draped mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -8,9 +8,9 @@ use super::arrange::Arrangement;
 use super::limits::CLEARANCE_M;
 use super::outlines::{outline, width};
 use super::panels::Around;
-use crate::body::Body;
 use crate::tailor::SewnMesh;
 use crate::wardrobe::section::{BodySection, RingFit, SectionPlane};
+use toile_base::body::Body;
 
 /// Height between two rows (m), half of the finest cloth's spacing above which folds are seen.
 const STEP_M: f64 = 0.01;

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::limits::{BAND_M, CELL_M};
-use crate::body::Body;
+use toile_base::body::Body;
 
 /// No triangle is near.
 const NONE: u32 = u32::MAX;

@@ -2,14 +2,17 @@
 
 use glam::Vec3;
 
-use crate::bake::bending::{self, Stencil};
-use crate::bake::fibers::{self, Edge};
-use crate::bake::stiffness;
-use crate::fabric::Fabric;
-use crate::garment::check::corners;
-use crate::garment::shape::{Face, NO_VERTEX};
-use crate::garment::{Direction, Shape};
 use crate::tailor::SewnMesh;
+use toile_bake::Shape;
+use toile_bake::bending;
+use toile_bake::bending::Stencil;
+use toile_bake::check::corners;
+use toile_bake::fibers;
+use toile_bake::fibers::Edge;
+use toile_bake::shape::{Face, NO_VERTEX};
+use toile_bake::stiffness;
+use toile_base::fabric::Fabric;
+use toile_base::garment::Direction;
 
 /// One edge as a distance constraint.
 #[derive(Debug, Clone, Copy)]
@@ -41,7 +44,7 @@ pub struct Springs {
 pub fn shape(sewn: &SewnMesh, at: Vec<Vec3>) -> Shape {
     Shape {
         fixed: vec![false; at.len()],
-        parts: vec![crate::garment::Part::All; at.len()],
+        parts: vec![toile_base::garment::Part::All; at.len()],
         cut: at.clone(),
         worn: at,
         faces: sewn.faces.clone(),

@@ -7,11 +7,12 @@ use super::outlines::coordinates;
 use super::panels::Around;
 use super::skin_field::SkinField;
 use super::springs::shape;
-use crate::bake::weights;
-use crate::body::Body;
-use crate::garment::{Part, Shape};
 use crate::rig::skin::SkinByHeight;
-use crate::skeleton::Joint;
+use toile_bake::Shape;
+use toile_bake::weights;
+use toile_base::body::Body;
+use toile_base::garment::Part;
+use toile_base::skeleton::Joint;
 
 /// What lies nearer to the skin than this (m) on a shoulder rests there.
 const RESTS_M: f32 = 0.008;
@@ -130,7 +131,7 @@ fn turn_out(shape: &mut Shape) {
     for (face, flat) in shape.faces.iter_mut().zip(&mut shape.flat) {
         face.swap(0, 1);
         flat.swap(0, 1);
-        if face[3] != crate::garment::shape::NO_VERTEX {
+        if face[3] != toile_bake::shape::NO_VERTEX {
             face.swap(2, 3);
             flat.swap(2, 3);
         } else {
@@ -138,7 +139,7 @@ fn turn_out(shape: &mut Shape) {
         }
         *flat = flat.map(|p| glam::Vec2::new(-p.x, p.y));
     }
-    shape.split.iter_mut().zip(&shape.faces).for_each(|(s, f)| *s = f[3] != crate::garment::shape::NO_VERTEX && !*s);
+    shape.split.iter_mut().zip(&shape.faces).for_each(|(s, f)| *s = f[3] != toile_bake::shape::NO_VERTEX && !*s);
     shape.trims.iter_mut().for_each(|trim| *trim = trim.from_behind());
     shape.uvs.clone_from(&shape.flat);
 }

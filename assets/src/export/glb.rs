@@ -11,9 +11,9 @@ use super::joints;
 use super::material::material;
 use super::parts::GlbBuffer;
 use super::surface::{SurfaceLook, linear};
-use crate::body::Body;
-use crate::mesh::vertex_normals;
-use crate::skeleton::{BONES, Joint};
+use toile_base::body::Body;
+use toile_base::mesh::vertex_normals;
+use toile_base::skeleton::{BONES, Joint};
 
 /// sRGB of the body: the mannequin's warm light grey-beige.
 const SKIN_SRGB: [f32; 3] = [0.797, 0.754, 0.711];

@@ -3,8 +3,8 @@
 use glam::{Affine3A, DMat4, DQuat, DVec3, Mat4, Quat, Vec3};
 use serde_json::{Value, json};
 
-use crate::body::Body;
-use crate::skeleton::{BONES, Joint, bone_joint, bone_name};
+use toile_base::body::Body;
+use toile_base::skeleton::{BONES, Joint, bone_joint, bone_name};
 
 /// Where a bone stands beside its parent: the pelvis, in the world.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -8,7 +8,7 @@ use super::frame_rate::FrameRate;
 use super::moving_glb::MovingGlb;
 use super::part::MovingPart;
 use super::surface::SurfaceLook;
-use crate::garment::shape::NO_VERTEX;
+use toile_bake::shape::NO_VERTEX;
 
 /// Grey of a mesh without a look (sRGB).
 const GREY: f32 = 0.8;

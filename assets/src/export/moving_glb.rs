@@ -24,9 +24,9 @@ use super::material::material;
 use super::part::{MovingPart, SplitSurface};
 use super::parts::{GlbBuffer, HEAD, buffer_head, head};
 use super::surface::png;
-use crate::body::Body;
-use crate::mesh::{SkinWeights, vertex_normals};
-use crate::skeleton::{BONES, Joint};
+use toile_base::body::Body;
+use toile_base::mesh::{SkinWeights, vertex_normals};
+use toile_base::skeleton::{BONES, Joint};
 
 /// Most frames of a session: the weights of the targets are a table of frames by frames, and a viewer holds every target.
 pub const MAX_GLB_FRAMES: usize = 1_200;

@@ -43,8 +43,8 @@ pub(super) fn mtl(part: &MovingPart, picture: Option<&str>) -> String {
 mod tests {
     use super::super::surface::SurfaceLook;
     use super::*;
-    use crate::garment::shape::NO_VERTEX;
     use glam::Vec2;
+    use toile_bake::shape::NO_VERTEX;
 
     #[test]
     fn vertices_keep_their_order_and_corners_their_texture_points() {

@@ -6,10 +6,10 @@ use std::sync::Arc;
 use glam::Vec2;
 
 use super::surface::SurfaceLook;
-use crate::body::Body;
-use crate::garment::Garment;
-use crate::garment::check::corners;
-use crate::garment::shape::{Face, NO_VERTEX};
+use toile_bake::check::corners;
+use toile_bake::shape::{Face, NO_VERTEX};
+use toile_base::body::Body;
+use toile_base::garment::Garment;
 
 /// A surface whose vertices move.
 #[derive(Debug, Clone)]

@@ -13,9 +13,9 @@ use super::ply::ply;
 use super::point_cache::{CacheFormat, PointCache};
 use super::surface::png;
 use super::usda::{self, UsdMesh, stage};
-use crate::skeleton::BONES;
+use toile_base::skeleton::BONES;
 
-crate::named! {
+toile_base::named! {
     /// A format of moving surfaces.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
     pub enum ExportFormat {

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use glam::{Vec2, Vec3};
 use image::{ImageFormat, RgbImage};
 
-use crate::garment::Garment;
-use crate::texture::Texture;
+use toile_base::garment::Garment;
+use toile_base::texture::Texture;
 
 /// Roughness of skin and of cloth: neither shines.
 pub const SKIN_ROUGHNESS: f32 = 0.6;
@@ -111,7 +111,8 @@ mod tests {
         assert_eq!(laid.texels[..2], [[0, 0, 255, 255], [255, 0, 0, 255]]);
         // Half of the light is 188 of 255 in sRGB.
         assert_eq!(laid.texels[2], [188, 0, 187, 255]);
-        let read = Texture::decode(&png(&Texture { width: 2, height: 1, texels: laid.texels[..2].to_vec() })).unwrap();
+        let read =
+            crate::texture::decode(&png(&Texture { width: 2, height: 1, texels: laid.texels[..2].to_vec() })).unwrap();
         assert_eq!(read.texels, laid.texels[..2]);
     }
 }

@@ -7,13 +7,13 @@ use gltf::animation::util::ReadOutputs;
 use gltf::mesh::util::ReadIndices;
 
 use super::*;
-use crate::body::{Body, Measures, Sex};
-use crate::garment::shape::NO_VERTEX;
-use crate::skeleton::{BONES, Joint, bone_name};
-use crate::texture::Texture;
+use toile_bake::shape::NO_VERTEX;
+use toile_base::body::{Body, Measures, Sex};
+use toile_base::skeleton::{BONES, Joint, bone_name};
+use toile_base::texture::Texture;
 
 fn body() -> Body {
-    Body::build(Sex::Male, &Measures::average(Sex::Male)).expect("an average body")
+    crate::body::build(Sex::Male, &Measures::average(Sex::Male)).expect("an average body")
 }
 
 const TRIANGLE: WornGarment<'static> = WornGarment {
@@ -177,7 +177,7 @@ fn a_session_moves_by_targets_and_by_its_skeleton() {
         panic!("the picture is inside")
     };
     let png = &blob[view.offset()..][..view.length()];
-    assert_eq!((mime_type, Texture::decode(png).unwrap().texels[1]), ("image/png", [40, 50, 60, 255]));
+    assert_eq!((mime_type, crate::texture::decode(png).unwrap().texels[1]), ("image/png", [40, 50, 60, 255]));
     // The weights: one target a frame.
     let of_kerchief = |c: &gltf::animation::Channel<'_>| {
         c.target().property() == gltf::animation::Property::MorphTargetWeights

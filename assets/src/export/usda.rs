@@ -174,8 +174,8 @@ fn material(prim: &str, part: &MovingPart, picture: Option<&str>) -> String {
 mod tests {
     use super::super::surface::SurfaceLook;
     use super::*;
-    use crate::garment::shape::NO_VERTEX;
     use glam::Vec2;
+    use toile_bake::shape::NO_VERTEX;
 
     /// The numbers between a head and the end of its line.
     fn numbers(text: &str, head: &str) -> Vec<f32> {

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use thiserror::Error;
 
-use super::stretch_curve::StretchCurve;
+use toile_base::fabric::stretch_curve::StretchCurve;
 
 /// uN m of a gf cm2/cm.
 const RIGIDITY: f64 = 98.066_5;
@@ -290,7 +290,6 @@ fn line(figure: &FileFigure, key: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fabric::Fabric;
 
     const KES_SHEET: &str = "# cotton broad\nLT, 0.712\nWT, 9.0, 10.0\nRT, 54\nB, 0.118, 0.102\n2HB 0.124 0.11\nG; 0.8\n2HG\t1.5\n\
         2HG5 2.5\nLC .3\nWC .2\nRC 30\nT .6\nW 12.0\nMIU .18\nMMD .02\nSMD 4\nDC 62\n";
@@ -308,7 +307,8 @@ mod tests {
         // e = 2 WT / (LT F).
         assert!((figure(&sheet, "stretch_warp_n_m") - 490.3325 / (18.0 / (0.712 * 500.0))).abs() < 1e-6);
         let fabric =
-            Fabric::parse("sheet", &sheet.file("broad", "Broad \"cloth\"", "cotton-lawn", "own laboratory")).unwrap();
+            crate::fabric::parse("sheet", &sheet.file("broad", "Broad \"cloth\"", "cotton-lawn", "own laboratory"))
+                .unwrap();
         assert!((fabric.hysteresis.bend_warp_mn - 1.21602).abs() < 1e-4 && fabric.drape_percent == Some(62.0));
         assert!((fabric.density_kg_m2 - 0.12).abs() < 1e-6 && (fabric.bend_weft_un_m - 10.0028).abs() < 1e-3);
         let [warp, _] = fabric.hysteresis.residual_curvatures([fabric.bend_warp_un_m, 1.0]);
@@ -324,7 +324,7 @@ mod tests {
         assert!((figure(&sheet, "bend_warp_un_m") - 5.56).abs() < 0.01);
         assert!((figure(&sheet, "bend_weft_un_m") - 5.02).abs() < 0.01);
         assert!((figure(&sheet, "stretch_warp_n_m") - 3922.66).abs() < 0.1);
-        let fabric = Fabric::parse("sheet", &sheet.file("wool", "Wool", "wool-suiting", "report")).unwrap();
+        let fabric = crate::fabric::parse("sheet", &sheet.file("wool", "Wool", "wool-suiting", "report")).unwrap();
         assert_eq!(fabric.hysteresis, Default::default());
     }
 
@@ -336,7 +336,7 @@ mod tests {
         assert!(between > 5.0 && between < 10.0, "{between}");
         assert_eq!(usual_bias([0.0, 5.0]), None);
         let sheet = MeasuredSheet::parse(KES_SHEET).unwrap();
-        let fabric = Fabric::parse("sheet", &sheet.file("broad", "Broad", "cotton-lawn", "own")).unwrap();
+        let fabric = crate::fabric::parse("sheet", &sheet.file("broad", "Broad", "cotton-lawn", "own")).unwrap();
         let bias = fabric.bend_bias_un_m.unwrap();
         assert!(bias > fabric.bend_weft_un_m && bias < fabric.bend_warp_un_m, "{bias}");
         assert_eq!(MeasuredSheet::parse("DC 60").unwrap().figures().len(), 1);

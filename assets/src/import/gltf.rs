@@ -13,9 +13,9 @@ use serde_json::Value;
 
 use super::paint;
 use super::plain::PlainMesh;
-use crate::garment::shape::NO_VERTEX;
 pub use file::ReadBeside;
 use file::{GltfFile, index, list, transform};
+use toile_bake::shape::NO_VERTEX;
 
 /// Deepest nesting of nodes: deeper ones go round in a circle.
 const MAX_DEPTH: usize = 64;

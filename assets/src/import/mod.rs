@@ -1,7 +1,7 @@
 //! Imports: meshes, bodies and patterns that others made.
 //!
-//! Reads: OBJ, glTF and GLB, VRM, MakeHuman folders, sewn patterns. Writes: [`Shape`](crate::garment::Shape), a mesh in its file's own
-//! order, a [`Body`](crate::body::Body), or a [`Pattern`](crate::pattern::Pattern).
+//! Reads: OBJ, glTF and GLB, VRM, MakeHuman folders, sewn patterns. Writes: [`Shape`](toile_bake::Shape), a mesh in its file's own
+//! order, a [`Body`](toile_base::body::Body), or a [`Pattern`](crate::pattern::Pattern).
 //! Budget: at load only. Thread: the loading thread.
 
 pub mod avatar;

@@ -9,8 +9,9 @@ use thiserror::Error;
 
 use super::plain::parse_obj;
 use crate::file::{self, FileError, FileKind};
-use crate::garment::check::{MeshError, check};
-use crate::garment::shape::{Face, NO_VERTEX, Part, Shape};
+use toile_bake::check::{MeshError, check};
+use toile_bake::shape::{Face, NO_VERTEX, Shape};
+use toile_base::garment::Part;
 
 /// Largest file that is read (bytes): a quarter of a million vertices and their faces take 40 MiB as text.
 pub const MAX_BYTES: u64 = 64 << 20;

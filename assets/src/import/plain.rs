@@ -5,8 +5,8 @@
 use glam::{Vec2, Vec3};
 
 use super::paint::Paint;
-use crate::garment::check::MeshError;
-use crate::garment::shape::{Face, NO_VERTEX};
+use toile_bake::check::MeshError;
+use toile_bake::shape::{Face, NO_VERTEX};
 
 /// A mesh in its file's order.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -17,7 +17,7 @@ pub struct PlainMesh {
     pub faces: Vec<Face>,
     /// Texture coordinates of the corners of each face `[faces]`, or empty.
     pub uvs: Vec<[Vec2; 4]>,
-    /// True where a quad is split along b-d, as in [`crate::garment::Shape`].
+    /// True where a quad is split along b-d, as in [`toile_bake::Shape`].
     pub split: Vec<bool>,
     /// Index of each face's material among `materials` `[faces]`.
     pub face_materials: Vec<Option<usize>>,

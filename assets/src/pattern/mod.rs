@@ -20,7 +20,7 @@ pub use curve::Curve;
 pub use flaw::PatternFlaw;
 pub use panel::{Panel, PanelEdge, Placement};
 pub use seam::{Seam, SeamSide};
-pub use trim::{ClothTrim, MAX_TRIMS, Trim, TrimKind};
+pub use trim::Trim;
 
 /// A pattern: its panels and how they are sewn. Made by [`Pattern::checked`], so whoever holds one knows that every seam
 /// names edges that are there, every outline is a closed loop that does not cross itself, and no edge is sewn twice.

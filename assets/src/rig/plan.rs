@@ -7,15 +7,14 @@
 //! hands and feet were then given theirs, in place of one across the shoulder blades.
 //! Where the fit begins is the middle of what it found on twelve bodies.
 
-use crate::limits::MAX_CAPSULES;
-use crate::skeleton::Joint;
+use toile_base::limits::MAX_CAPSULES;
+use toile_base::skeleton::Joint;
 
 /// Spheres beside the middle, each followed by its mirror image.
 pub(super) const PAIRS: usize = 24;
 /// Spheres of the middle, after them.
 pub(super) const MIDDLE: usize = 3;
-/// All spheres of a rig.
-pub const SPHERES: usize = 2 * PAIRS + MIDDLE;
+const _: () = assert!(toile_base::rig::SPHERES == 2 * PAIRS + MIDDLE);
 
 /// Where a sphere stands before the fit.
 pub(super) enum SpherePlace {

@@ -8,7 +8,7 @@ use super::plan::CAPSULES;
 use super::skin::{SkinByHeight, vertex_areas};
 use super::union::{RestSpheres, nearest};
 use super::zones::{self, Zone};
-use crate::body::Body;
+use toile_base::body::Body;
 
 /// Mean distance that the trunk and the thighs are held to (mm).
 pub const MEAN_GOAL_MM: f32 = 5.0;

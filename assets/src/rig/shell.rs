@@ -67,16 +67,16 @@ impl CapsuleSurface {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Rig, nearest};
+    use super::super::union::nearest;
     use super::*;
-    use crate::body::{Body, Measures, Sex};
-    use crate::cone::round_cone;
+    use toile_base::body::{Measures, Sex};
+    use toile_base::cone::round_cone;
 
     #[test]
     fn shells_lie_on_their_capsules_and_face_outwards() {
-        let body = Body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
-        let rig = Rig::fit(&body);
-        let (shell, placed) = (rig.shell(&body), rig.placed(&body));
+        let body = crate::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
+        let rig = crate::rig::fit(&body);
+        let (shell, placed) = (crate::rig::shell(&rig, &body), rig.placed(&body));
         assert_eq!(shell.positions.len(), CAPSULES.len() * RINGS * AROUND);
         for ((p, n), c) in shell.positions.iter().zip(&shell.normals).zip(&shell.capsules) {
             let [a, b] = CAPSULES[usize::from(*c)].map(|s| placed[usize::from(s)]);

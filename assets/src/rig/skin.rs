@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 
-use crate::body::{Body, Region};
-use crate::skeleton::Joint;
+use toile_base::body::{Body, Region};
+use toile_base::skeleton::Joint;
 
 /// Nearer than this (m) to the skin of an arm and of the trunk, cloth lies in the hollow of an armpit.
 const HOLLOW_M: f32 = 0.045;
@@ -158,11 +158,11 @@ pub(super) fn vertex_areas(body: &Body) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::{Measures, Sex};
+    use toile_base::body::{Measures, Sex};
 
     #[test]
     fn nearest_vertex_is_that_of_brute_force_and_triangles_are_no_farther() {
-        let body = Body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
+        let body = crate::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
         let skin = SkinByHeight::new(&body);
         for i in 0..200 {
             let spread = |k: f32| (i as f32 * k).fract() - 0.5;

@@ -1,6 +1,7 @@
 //! Normal equations of the fit's least squares.
 
-use crate::numeric::linear::{self, Pivot};
+use toile_base::numeric::linear;
+use toile_base::numeric::linear::Pivot;
 
 use super::plan::{MIDDLE, PAIRS};
 

@@ -1,8 +1,8 @@
 //! The collision body against brute force and against its own promises.
 
-use super::union::RestSpheres;
+use super::union::{RestSpheres, nearest};
 use super::*;
-use crate::body::{Measures, Sex};
+use toile_base::body::{Measures, Sex};
 
 /// Small, average and large bodies of both sexes.
 fn people() -> Vec<(String, Body)> {
@@ -12,7 +12,7 @@ fn people() -> Vec<(String, Body)> {
         let [chest_girth, waist_girth, hip_girth] =
             [m.chest_girth, m.waist_girth, m.hip_girth].map(|girth| girth * scale);
         let measures = Measures { stature, shoulder_breadth, chest_girth, waist_girth, hip_girth };
-        (format!("{sex:?} {scale}"), Body::build(sex, &measures).unwrap())
+        (format!("{sex:?} {scale}"), crate::body::build(sex, &measures).unwrap())
     };
     [Sex::Female, Sex::Male].into_iter().flat_map(|sex| [0.95, 1.0, 1.05].map(|scale| sized(sex, scale))).collect()
 }
@@ -20,7 +20,7 @@ fn people() -> Vec<(String, Body)> {
 #[test]
 fn rig_is_symmetric_and_complete() {
     for (_, body) in people() {
-        let rig = Rig::fit(&body);
+        let rig = fit(&body);
         let (sides, middle) = rig.spheres.split_at(2 * PAIRS);
         for pair in sides.chunks(2) {
             let (l, r) = (pair[0], pair[1]);
@@ -44,9 +44,9 @@ fn rig_is_symmetric_and_complete() {
 
 #[test]
 fn reports_are_what_the_distance_says() {
-    let body = Body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
-    let rig = Rig::fit(&body);
-    let report = rig.report(&body);
+    let body = crate::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
+    let rig = fit(&body);
+    let report = report(&rig, &body);
     for (zone, report) in Zone::ALL.into_iter().zip(report.zones) {
         let within = (0..body.mesh.positions.len()).filter(|&v| Zone::of(&body, v) == zone);
         let distances: Vec<f32> = within.map(|v| rig.distance(&body, body.mesh.positions[v]) * 1e3).collect();
@@ -60,8 +60,8 @@ fn reports_are_what_the_distance_says() {
 
 #[test]
 fn way_out_leads_out() {
-    let body = Body::build(Sex::Male, &Measures::average(Sex::Male)).unwrap();
-    let placed = Rig::fit(&body).placed(&body);
+    let body = crate::body::build(Sex::Male, &Measures::average(Sex::Male)).unwrap();
+    let placed = fit(&body).placed(&body);
     let mut inside = 0;
     for (p, n) in body.mesh.positions.iter().zip(&body.normals).step_by(7) {
         let (deepest, way) = (nearest(&placed, *p).0, report::way_out(&placed, *p, *n));
@@ -93,6 +93,6 @@ fn surface_of_the_union_is_sampled_evenly() {
 
 #[test]
 fn same_body_gives_the_same_bits() {
-    let body = Body::build(Sex::Male, &Measures::average(Sex::Male)).unwrap();
-    assert_eq!(Rig::fit(&body), Rig::fit(&body));
+    let body = crate::body::build(Sex::Male, &Measures::average(Sex::Male)).unwrap();
+    assert_eq!(fit(&body), fit(&body));
 }

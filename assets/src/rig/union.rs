@@ -2,8 +2,9 @@
 
 use glam::Vec3;
 
-use super::plan::{CAPSULES, SPHERES};
-use crate::cone::round_cone;
+use super::plan::CAPSULES;
+use toile_base::cone::round_cone;
+use toile_base::rig::SPHERES;
 
 /// Spheres in the rest pose: centre and radius (m).
 pub(super) type RestSpheres = [(Vec3, f32); SPHERES];

@@ -2,10 +2,10 @@
 
 use glam::Vec3;
 
-use crate::body::{Body, Region};
-use crate::skeleton::Joint;
+use toile_base::body::{Body, Region};
+use toile_base::skeleton::Joint;
 
-named! {
+toile_base::named! {
     /// A part of the skin that the fit is judged on, trunk first.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
     pub enum Zone {

@@ -4,8 +4,8 @@ use std::f32::consts::{PI, TAU};
 
 use glam::{Quat, Vec3};
 
-use crate::body::{Measures, Sex};
-use crate::skeleton::{Joint, Pose, Skeleton};
+use toile_base::body::{Measures, Sex};
+use toile_base::skeleton::{Joint, Pose, Skeleton};
 
 /// The woman of the embedded session: her girths lie between two sizes of the women's table, so that choosing one is a
 /// real question, and Toile knows them only from the session.
@@ -141,11 +141,10 @@ pub const CAMERA: [Vec3; 2] = [Vec3::new(0.0, 1.05, 2.6), Vec3::new(0.0, 0.95, 0
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::Body;
 
     #[test]
     fn the_performance_is_smooth_and_stays_on_the_floor() {
-        let body = Body::build(SHOPPER.0, &SHOPPER.1).unwrap();
+        let body = crate::body::build(SHOPPER.0, &SHOPPER.1).unwrap();
         let mut before = shopper(&body.skeleton, 0.0);
         for step in 1..=1_250 {
             let pose = shopper(&body.skeleton, step as f32 / 120.0);

@@ -6,8 +6,8 @@ use super::error::SceneError;
 use super::source::SceneSource;
 use super::table::SceneTable;
 use super::track::Track;
-use crate::limits::{MAX_CAPSULES, MAX_PLANES, MAX_SPHERES};
 use crate::scene::skirt::{self, Motion};
+use toile_base::limits::{MAX_CAPSULES, MAX_PLANES, MAX_SPHERES};
 
 /// A plane: cloth stays on the side that the normal shows.
 #[derive(Debug, Clone, Copy, PartialEq)]

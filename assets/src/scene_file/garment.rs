@@ -7,14 +7,16 @@ use super::pins::{PinSource, SceneLoader};
 use super::source::SceneSource;
 use super::table::SceneTable;
 use super::{primitive, weld};
-use crate::fabric::Fabric;
-use crate::garment::check::check;
-use crate::garment::shape::{Face, NO_VERTEX};
-use crate::garment::{Overrides, Shape, Solver};
 use crate::import::gltf::parse_gltf;
 use crate::import::obj::FREE;
 use crate::import::plain::{PlainMesh, parse_obj};
-use crate::mesh::SkinWeights;
+use toile_bake::Shape;
+use toile_bake::check::check;
+use toile_bake::overrides::Overrides;
+use toile_bake::shape::{Face, NO_VERTEX};
+use toile_base::fabric::Fabric;
+use toile_base::garment::Solver;
+use toile_base::mesh::SkinWeights;
 
 /// A garment's extent may lie between these (m): what is smaller or larger was given in another unit.
 const EXTENT_M: [f32; 2] = [0.005, 200.0];
@@ -160,7 +162,7 @@ fn check_shape(table: &SceneTable<'_>, plain: &PlainMesh, mesh: &UserMesh, shape
 
 fn fabric(table: &SceneTable<'_>, source: SceneSource<'_>) -> Result<Fabric, SceneError> {
     let built_in = |table: &SceneTable<'_>, key: &str, name: &str| {
-        Fabric::built_in(name).map_err(|e| table.wrong(key, format!("is unknown: {e}")))
+        crate::fabric::built_in(name).map_err(|e| table.wrong(key, format!("is unknown: {e}")))
     };
     const DEFAULT: &str = "cotton-lawn";
     let Some(own) = (if table.is_table("fabric") { table.table("fabric")? } else { None }) else {
@@ -171,7 +173,7 @@ fn fabric(table: &SceneTable<'_>, source: SceneSource<'_>) -> Result<Fabric, Sce
         Some(name) => {
             let wrong = |e: String| own.wrong("file", format!("{name}: {e}"));
             let text = source.text(name).map_err(|e| wrong(format!("{e}; give the path of a fabric file")))?;
-            Fabric::parse(name, &text).map_err(|e| wrong(e.to_string()))?
+            crate::fabric::parse(name, &text).map_err(|e| wrong(e.to_string()))?
         }
         None => built_in(&own, "base", own.text("base")?.unwrap_or(DEFAULT))?,
     };

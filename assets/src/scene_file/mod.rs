@@ -34,9 +34,9 @@ pub use source::SceneSource;
 pub use track::Track;
 
 use crate::file::{self, FileKind};
-use crate::limits::{MAX_SCENE_GARMENTS, MAX_SCENE_VERTICES};
 use error::SceneDocument;
 use table::SceneTable;
+use toile_base::limits::{MAX_SCENE_GARMENTS, MAX_SCENE_VERTICES};
 
 /// Air that moves.
 #[derive(Debug, Clone, Copy, PartialEq)]

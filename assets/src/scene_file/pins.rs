@@ -8,7 +8,7 @@ use super::table::SceneTable;
 use super::track::Track;
 use super::{colliders, schema};
 use crate::scene::skirt::{self, Motion};
-use crate::skeleton::BONES;
+use toile_base::skeleton::BONES;
 
 /// Most different pin tracks of a scene: one bone each, and one for what stands.
 const MAX_PIN_TRACKS: usize = BONES - 1;

@@ -6,10 +6,10 @@ use glam::{DVec3, Vec3};
 
 use super::error::SceneError;
 use super::table::SceneTable;
-use crate::garment::Shape;
-use crate::garment::shape::Face;
 use crate::import::plain::PlainMesh;
 use crate::scene::skirt;
+use toile_bake::Shape;
+use toile_bake::shape::Face;
 
 /// A rectangle, centred on x = 0. Vertex (row, column) is `row * columns + column`; row 0 is the top, or the far edge
 /// of a level one.

@@ -341,7 +341,7 @@ impl SceneKey {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fabric::Fabric;
+    use toile_base::fabric::Fabric;
 
     #[test]
     fn every_table_that_a_key_opens_has_keys_and_no_key_stands_twice() {

@@ -3,9 +3,9 @@
 use glam::{Quat, Vec3};
 
 use super::*;
-use crate::garment::Solver;
-use crate::limits::MAX_SPHERES;
 use crate::scene::skirt::{self, Motion};
+use toile_base::garment::Solver;
+use toile_base::limits::MAX_SPHERES;
 
 /// A scene in which every key of the schema stands once.
 const EVERY_KEY: &str = r#"name = "all"

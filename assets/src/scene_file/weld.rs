@@ -4,11 +4,12 @@ use std::collections::BTreeMap;
 
 use glam::{Vec2, Vec3};
 
-use crate::garment::Shape;
-use crate::garment::check::corners;
-use crate::garment::shape::{Face, NO_VERTEX, Part};
 use crate::import::obj::warp_upright;
 use crate::import::plain::PlainMesh;
+use toile_bake::Shape;
+use toile_bake::check::corners;
+use toile_bake::shape::{Face, NO_VERTEX};
+use toile_base::garment::Part;
 
 /// The shape of a mesh, and which of its vertices each of the mesh is. Vertices at the very same place become one,
 /// because exporters split them along seams of texture and material; those that no face uses are left out.
@@ -86,7 +87,7 @@ fn orient(faces: &mut [Face], uvs: &mut [[Vec2; 4]]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::garment::check::check;
+    use toile_bake::check::check;
 
     #[test]
     fn faces_drawn_from_the_other_side_are_turned_and_sound_ones_left() {

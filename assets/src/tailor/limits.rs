@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use crate::garment::check::MAX_VERTICES;
+use toile_bake::check::MAX_VERTICES;
 
 /// Spacings that panels are meshed at (m): from the finest weave of folds that a frame has time for to the coarsest first
 /// step of sewing.

@@ -9,8 +9,8 @@ use super::lattice::Lattice;
 use super::quads;
 use super::ring::{Filled, Points};
 use super::sampling::Boundary;
-use crate::garment::shape::{Face, NO_VERTEX};
 use crate::pattern::{Panel, crossing};
+use toile_bake::shape::{Face, NO_VERTEX};
 
 /// A panel as a flat mesh: quads along warp and weft inside, triangles towards the outline.
 #[derive(Debug, Clone, PartialEq)]

@@ -8,9 +8,10 @@ use super::error::TailorError;
 use super::limits::{MAX_IMPROVEMENT, MAX_OUTLINE_POINTS, MAX_PARTICLES, SPACING_M};
 use super::panel_mesh::{MeshBudget, PanelMesh, mesh};
 use super::sampling::sample;
-use crate::garment::check::corners;
-use crate::garment::shape::{Face, NO_VERTEX};
-use crate::pattern::{ClothTrim, Pattern, Seam};
+use crate::pattern::{Pattern, Seam};
+use toile_bake::check::corners;
+use toile_bake::shape::{Face, NO_VERTEX};
+use toile_base::garment::trim::ClothTrim;
 
 /// How often panels are meshed again because their seams would fold a face.
 const MAX_REPAIRS: usize = 4;
@@ -30,7 +31,7 @@ pub struct SewnMesh {
     pub faces: Vec<Face>,
     /// Panel of each face `[faces]`.
     pub face_panels: Vec<u32>,
-    /// The corners of each face at rest (m): weft along x, warp along y `[faces]`. What [`crate::garment::Shape`] calls
+    /// The corners of each face at rest (m): weft along x, warp along y `[faces]`. What [`toile_bake::Shape`] calls
     /// texture coordinates.
     pub flat: Vec<[Vec2; 4]>,
     /// True where a quad is split along b-d `[faces]`.

@@ -3,9 +3,9 @@
 use glam::{DVec2, Vec3};
 
 use super::{SewnMesh, TailorError, sew};
-use crate::garment::check::check;
-use crate::numeric::random::SplitMix64;
 use crate::pattern::{Curve, Panel, PanelEdge, Pattern, Seam, SeamSide};
+use toile_bake::check::check;
+use toile_base::numeric::random::SplitMix64;
 
 fn panel(name: &str, curves: Vec<Curve>) -> Panel {
     let edge = |(number, curve)| PanelEdge { curve, number, label: None };

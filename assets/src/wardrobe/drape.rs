@@ -4,8 +4,8 @@ use glam::{Vec2, Vec3};
 
 use super::section::{BodySection, RingFit, SectionPlane, resample};
 use crate::body::tape::hull;
-use crate::body::{Body, Region};
-use crate::garment::shape::{Face, Shape};
+use toile_bake::shape::{Face, Shape};
+use toile_base::body::{Body, Region};
 
 /// Cloth starts at least this far from the skin (m): a little more than the contact offset of the thickest fabric.
 pub const START_GAP_M: f32 = 0.005;

@@ -2,8 +2,8 @@
 
 use super::style::{Cut, Style};
 use super::upper_body::{self, UpperBodyCut};
-use crate::body::Body;
-use crate::garment::Shape;
+use toile_bake::Shape;
+use toile_base::body::Body;
 
 /// Room for a T-shirt under it, on the shoulders and where a shopper is larger than the garment (m).
 const ROOM_M: f32 = 0.006;

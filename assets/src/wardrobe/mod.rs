@@ -17,12 +17,16 @@ pub mod wide_trousers;
 use thiserror::Error;
 
 use crate::adapt::AdaptError;
-use crate::bake::{bake, weights};
-use crate::body::{Body, BodyError, Measures, Sex};
-use crate::fabric::{Fabric, FabricError};
-use crate::garment::{Garment, MeshError, Shape};
+use crate::body::BodyError;
+use crate::fabric::FabricError;
 use crate::sizes::{Girth, Population, SizeBody, SizeError, SizeTable};
 use style::{Cut, Style};
+use toile_bake::Shape;
+use toile_bake::check::MeshError;
+use toile_bake::{bake, weights};
+use toile_base::body::{Body, Measures, Sex};
+use toile_base::fabric::Fabric;
+use toile_base::garment::Garment;
 
 /// The garments that are built in, first the one that is shown when none is asked for.
 const BUILT_IN: [(&str, &str); 4] = [
@@ -153,7 +157,8 @@ impl Style {
     /// The body that a size is cut for; `wearer` chooses the block of a garment in unisex sizes.
     pub fn body(&self, size: &str, wearer: Sex) -> Result<Body, WardrobeError> {
         let measures = Measures::from(self.sizes()?.size_body(size)?);
-        Body::build(self.block(wearer)?, &measures).map_err(|source| WardrobeError::Body { size: size.into(), source })
+        crate::body::build(self.block(wearer)?, &measures)
+            .map_err(|source| WardrobeError::Body { size: size.into(), source })
     }
 
     /// Cuts the garment in a size and lays it on a shopper.
@@ -179,7 +184,7 @@ impl Style {
 
     /// The garment in a size on a shopper, baked.
     pub fn dress(&self, size: &str, shopper: &Body) -> Result<Garment, WardrobeError> {
-        self.dress_in(&Fabric::built_in(&self.fabric)?, size, shopper)
+        self.dress_in(&crate::fabric::built_in(&self.fabric)?, size, shopper)
     }
 
     /// The same in another fabric.
@@ -193,5 +198,55 @@ impl Style {
         garment.substeps = self.substeps.unwrap_or(garment.substeps);
         garment.layer = self.layer;
         Ok(garment)
+    }
+}
+#[cfg(test)]
+mod gather_tests {
+    use toile_base::body::{Measures, Sex};
+    use toile_base::garment::gather::WIDENS_M;
+    use toile_base::garment::tuck::SLIPS_M;
+    use toile_base::garment::{Garment, Tuck};
+
+    use super::style;
+
+    #[test]
+    fn what_is_tucked_in_gets_the_width_at_which_it_lies_and_the_rest_keeps_its_own() {
+        let shopper = crate::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
+        let shirt = style("t-shirt").unwrap().dress("M", &shopper).unwrap();
+        let mut same = shirt.clone();
+        same.gather();
+        assert_eq!(same, shirt, "nothing is tucked in");
+        let band = shopper.levels.waist - 0.05;
+        let mut tucked = shirt.clone();
+        let particles: Box<[bool]> = shirt.start.iter().map(|p| p.y < band).collect();
+        let free = |[a, b]: [u32; 2]| [a, b].iter().all(|&v| shirt.start[v as usize].y > band + SLIPS_M + WIDENS_M);
+        tucked.start.iter_mut().zip(&particles).filter(|(_, inside)| **inside).for_each(|(p, _)| {
+            (p.x, p.z) = (0.8 * p.x, 0.8 * p.z);
+        });
+        tucked.tuck = Some(Tuck { into: 0, band, particles: particles.clone() });
+        tucked.gather();
+        // The shirt starts a little wider or narrower than it is cut, because this shopper is not of its size.
+        let as_cut = |garment: &Garment| {
+            let of = |within: bool| {
+                let links = garment.hoop_edges.iter().filter(|(ends, _)| free(*ends) == within);
+                links.map(|(_, rest)| *rest).sum::<f32>()
+            };
+            [of(false), of(true)]
+        };
+        let ([before, rest], [after, kept]) = (as_cut(&shirt), as_cut(&tucked));
+        assert!((0.7..0.95).contains(&(after / before)) && rest == kept, "{before} {after} {rest} {kept}");
+        // The layout has them too: as many links, each as long as before or shorter.
+        let lengths = |garment: &Garment| {
+            let mut all = Vec::new();
+            let links = &garment.layout().weft;
+            links.tuples.for_each(|at, ends| all.push((ends, links.rest[at], links.compliance[at])));
+            all
+        };
+        let (old, new) = (lengths(&shirt), lengths(&tucked));
+        assert_eq!(old.len(), new.len());
+        for ((ends, was, soft), (same_ends, is, same_soft)) in old.into_iter().zip(new) {
+            assert_eq!((ends, soft), (same_ends, same_soft));
+            assert!(is <= was && (!free(ends) || is == was), "{ends:?}: {was} became {is}");
+        }
     }
 }

@@ -5,11 +5,11 @@ use std::path::Path;
 use super::WardrobeError;
 use crate::adapt::wear::WornMesh;
 use crate::adapt::{MeshReport, OwnMesh};
-use crate::bake::bake;
-use crate::body::Body;
-use crate::fabric::Fabric;
-use crate::garment::Garment;
 use crate::sizes::{GarmentKind, Girth};
+use toile_bake::bake;
+use toile_base::body::Body;
+use toile_base::fabric::Fabric;
+use toile_base::garment::Garment;
 
 /// Fabric of a mesh that does not say what it is made of.
 const FABRIC: &str = "cotton-lawn";
@@ -44,7 +44,7 @@ pub struct DraftedMesh {
 /// # Errors
 /// A size of a mesh that has none, a fabric that there is not.
 pub fn draft(own: &OwnMesh, size: Option<&str>, shopper: &Body) -> Result<DraftedMesh, WardrobeError> {
-    let fabric = Fabric::built_in(own.measures.fabric.as_deref().unwrap_or(FABRIC))?;
+    let fabric = crate::fabric::built_in(own.measures.fabric.as_deref().unwrap_or(FABRIC))?;
     let worn = match (size, &own.sizes) {
         (Some(size), Some(sizes)) if size != sizes.made_in => {
             let graded = own.graded(sizes, size)?;

@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use crate::body::tape::{hull, perimeter, slice};
-use crate::body::{Body, Region};
+use toile_base::body::{Body, Region};
 
 /// A plane with its own axes: points of a section are `origin + u * x + v * y`.
 #[derive(Debug, Clone, Copy, PartialEq)]

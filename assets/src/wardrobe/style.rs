@@ -2,8 +2,8 @@
 
 use serde::Deserialize;
 
-use crate::garment::Overrides;
 use crate::sizes::{GarmentKind, Girth};
+use toile_bake::overrides::Overrides;
 
 /// A garment file: what is cut, from which fabric, in which sizes, with how much ease.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -148,9 +148,10 @@ pub enum Cut {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::garment::Direction;
-    use crate::garment::solver::{Solver, SolverRegion};
     use crate::wardrobe;
+    use toile_bake::overrides::SolverRegion;
+    use toile_base::garment::Direction;
+    use toile_base::garment::Solver;
 
     #[test]
     fn a_garment_file_may_name_its_substeps_within_reason() {

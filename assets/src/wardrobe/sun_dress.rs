@@ -5,9 +5,10 @@ use glam::Vec3;
 use super::drape::{DrapeBody, join};
 use super::section::resample;
 use super::style::{Cut, Style};
-use crate::body::Body;
-use crate::garment::{Part, Shape};
 use crate::sizes::Girth;
+use toile_bake::Shape;
+use toile_base::body::Body;
+use toile_base::garment::Part;
 
 /// Where a strap begins, as a share of the ring from the front centre: over the middle of the breast.
 const STRAP_SHARE: f32 = 0.105;

@@ -2,8 +2,8 @@
 
 use super::style::{Cut, Style};
 use super::upper_body::{self, UpperBodyCut};
-use crate::body::Body;
-use crate::garment::Shape;
+use toile_bake::Shape;
+use toile_base::body::Body;
 
 /// Drafts the T-shirt for the body of its size and lays it on the shopper.
 pub fn draft(style: &Style, cut: &Body, shopper: &Body) -> Shape {

@@ -6,10 +6,11 @@ use glam::{Vec2, Vec3};
 use super::drape::{DrapeBody, below, flip, join, rows_after, split_at_top};
 use super::section::{BodySection, SectionPlane};
 use super::style::Style;
-use crate::body::{Body, Region};
-use crate::garment::{Part, Shape};
 use crate::sizes::Girth;
-use crate::skeleton::Joint;
+use toile_bake::Shape;
+use toile_base::body::{Body, Region};
+use toile_base::garment::Part;
+use toile_base::skeleton::Joint;
 
 /// Least ease of any row (m).
 const LEAST_EASE_M: f32 = 0.02;

@@ -6,9 +6,10 @@ use glam::{Vec2, Vec3};
 use super::drape::{DrapeBody, flip, join};
 use super::section::{BodySection, RingFit};
 use super::style::{Cut, Style};
-use crate::body::Body;
-use crate::garment::{Part, Shape};
 use crate::sizes::Girth;
+use toile_bake::Shape;
+use toile_base::body::Body;
+use toile_base::garment::Part;
 
 /// Height of the skinned waistband (m).
 const WAISTBAND_M: f32 = 0.04;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use clap::builder::{PossibleValuesParser, RangedU64ValueParser, TypedValueParser};
 use toile_assets::export::ExportFormat;
-use toile_assets::limits::STEP_HZ;
+use toile_base::limits::STEP_HZ;
 use toile_engine::cloth::Quality;
 use toile_engine::lanes::Width;
 use toile_engine::workers::SHARES;

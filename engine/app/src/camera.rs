@@ -2,7 +2,7 @@
 
 use clap::builder::{PossibleValuesParser, RangedU64ValueParser};
 use clap::value_parser;
-use toile_assets::body::Sex;
+use toile_base::body::Sex;
 use toile_engine::clock::RealClock;
 use toile_fitting::live::camera_start::{self, CameraSetup, CameraStartError, StartedCamera};
 use toile_fitting::live::webcam::WebcamOptions;

@@ -1,11 +1,11 @@
 //! A picture of a fitted body over the depth frame that it was fitted to.
 
 use glam::Vec3;
-use toile_assets::body::Body;
-use toile_assets::mesh::vertex_normals;
-use toile_assets::skeleton::Pose;
+use toile_base::body::Body;
+use toile_base::frame::DepthFrame;
+use toile_base::mesh::vertex_normals;
+use toile_base::skeleton::Pose;
 use toile_fitting::dress::depth::posed;
-use toile_sensors::frame::DepthFrame;
 use toile_sensors::source::synthetic::SyntheticCamera;
 use toile_view::image::{Image, Size};
 

@@ -6,7 +6,7 @@ use std::io::BufWriter;
 use std::ops::RangeInclusive;
 
 use glam::Vec3;
-use toile_assets::limits::STEP_HZ;
+use toile_base::limits::STEP_HZ;
 use toile_engine::frame::Snapshot;
 use toile_engine::lines::Line;
 use toile_engine::skin::Posed;

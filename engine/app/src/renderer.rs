@@ -4,7 +4,7 @@
 //! Budget: a second for a still by rays, milliseconds on a GPU.
 //! Thread: the main thread; rays use every core.
 
-use toile_assets::garment::Garment;
+use toile_base::garment::Garment;
 use toile_engine::lines::Line;
 use toile_view::figure::Figure;
 use toile_view::image::{Image, Size};
@@ -16,7 +16,7 @@ use crate::exit::AppError;
 #[cfg(feature = "view")]
 mod gpu;
 
-toile_assets::named! {
+toile_base::named! {
     /// Choice of the renderer on the command line.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
     pub enum RendererChoice {

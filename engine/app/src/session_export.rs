@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use glam::{Affine3A, Vec3};
 use toile_assets::export::session::{ExportError, ExportFrame};
 use toile_assets::export::{ExportFormat, ExportPlan, FrameRate, MovingPart, SessionExport};
-use toile_assets::skeleton::BONES;
+use toile_base::skeleton::BONES;
 use toile_engine::body::palette;
 use toile_engine::frame::{Frame, Snapshot};
 

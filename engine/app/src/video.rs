@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use toile_assets::limits::STEP_HZ;
+use toile_base::limits::STEP_HZ;
 use toile_engine::frame::Snapshot;
 use toile_engine::lines::Line;
 use toile_view::drawn_frame::DrawnFrame;

@@ -6,8 +6,8 @@ use std::fs;
 
 use common::{Scratch, sentence};
 use glam::DVec3;
-use toile_assets::body::Sex;
 use toile_assets::body::shape::Shapes;
+use toile_base::body::Sex;
 use toile_capture::depth_buffer::DepthBuffer;
 use toile_capture::face::FaceLandmarks;
 

@@ -6,7 +6,7 @@ mod recordings;
 
 use common::Scratch;
 use serde_json::Value;
-use toile_assets::skeleton::Joint;
+use toile_base::skeleton::Joint;
 use toile_sensors::session::Session;
 use toile_sensors::source::{OpenOptions, open};
 

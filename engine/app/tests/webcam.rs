@@ -12,7 +12,7 @@ use common::Scratch;
 use image::imageops::{self, FilterType};
 use image::{Rgb, RgbImage};
 use serde_json::Value;
-use toile_assets::numeric::random::SplitMix64;
+use toile_base::numeric::random::SplitMix64;
 use toile_pose::files::{self, NetworkPackage};
 
 /// Runs a command with the network of a folder.

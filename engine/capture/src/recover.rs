@@ -5,7 +5,7 @@
 
 use glam::Vec3;
 use serde::Serialize;
-use toile_assets::numeric::linear::{Pivot, factor, solve};
+use toile_base::numeric::linear::{Pivot, factor, solve};
 
 /// Values that are looked for: stretch, shear, bending, damping.
 pub const VALUES: usize = 4;
@@ -157,7 +157,7 @@ fn step(normal: &[[f64; VALUES]; VALUES], right: &[f64; VALUES], damping: f64) -
 fn spread(normal: &[[f64; VALUES]; VALUES], variance: f64) -> [[f64; VALUES]; VALUES] {
     let mut a = *normal;
     match factor(&mut a, Pivot::AtLeast(1e-30)) {
-        Some(()) => toile_assets::numeric::linear::inverse(&a).map(|row| row.map(|v| v * variance)),
+        Some(()) => toile_base::numeric::linear::inverse(&a).map(|row| row.map(|v| v * variance)),
         None => [[f64::INFINITY; VALUES]; VALUES],
     }
 }

@@ -137,7 +137,7 @@ fn inverse(block: &DMat3) -> DMat3 {
 
 #[cfg(test)]
 mod tests {
-    use toile_assets::numeric::random::SplitMix64;
+    use toile_base::numeric::random::SplitMix64;
 
     use super::*;
 

@@ -4,15 +4,14 @@
 
 use std::error::Error;
 
-use toile_assets::body::Body;
-use toile_assets::limits::STEP_HZ;
-use toile_assets::rig::Rig;
 use toile_assets::{scene, wardrobe};
+use toile_base::body::Body;
+use toile_base::clock::ticks_to_ns;
+use toile_base::frame::Joints;
+use toile_base::limits::STEP_HZ;
 use toile_engine::body::JointFrames;
 use toile_engine::cloth::Settings;
 use toile_engine::frame::Frame;
-use toile_sensors::clock::ticks_to_ns;
-use toile_sensors::frame::Joints;
 
 /// Length of the run (s).
 const SECONDS: u32 = 3;
@@ -28,8 +27,8 @@ fn joints(body: &Body, tick: u64) -> Joints {
 fn main() -> Result<(), Box<dyn Error>> {
     // At load: a body of some measures, its collision spheres, a dress in a size of its table.
     let (sex, measures) = scene::SHOPPER;
-    let body = Body::build(sex, &measures)?;
-    let rig = Rig::fit(&body);
+    let body = toile_assets::body::build(sex, &measures)?;
+    let rig = toile_assets::rig::fit(&body);
     let dress = wardrobe::style("sun-dress")?.dress("38", &body)?;
     println!(
         "{} in {}: {} particles on a body of {:.3} m",

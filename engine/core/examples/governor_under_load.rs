@@ -8,9 +8,9 @@
 
 use std::error::Error;
 
-use toile_assets::body::Body;
-use toile_assets::rig::Rig;
 use toile_assets::{scene, wardrobe};
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::Joints;
 use toile_engine::body::JointFrames;
 use toile_engine::clock::{Clock, SimClock};
 use toile_engine::cloth::{Settings, Wind};
@@ -22,8 +22,7 @@ use toile_engine::frame_loop::queue::bounded;
 use toile_engine::frame_loop::sensor_thread::{Playback, SensorFrame, SensorThread};
 use toile_engine::frame_loop::simulate::simulate;
 use toile_engine::triple_buffer::TripleBuffer;
-use toile_sensors::clock::SECOND_NS;
-use toile_sensors::frame::Joints;
+use toile_sensors::filter::JointFilter;
 
 /// What a step costs at whole quality (ns), and while the load lasts.
 const COST_NS: [u64; 2] = [3_000_000, 10_500_000];
@@ -69,7 +68,7 @@ impl Scene for Loaded {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let body = Body::build(scene::SHOPPER.0, &scene::SHOPPER.1)?;
+    let body = toile_assets::body::build(scene::SHOPPER.0, &scene::SHOPPER.1)?;
     let seen = |i: u64| {
         let pose = scene::shopper(&body.skeleton, i as f32 / 30.0);
         let at = JointFrames::new(&body.skeleton, &pose).position;
@@ -81,7 +80,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     (style.spacing_mm, style.columns) = (40.0, 40);
     let dress = style.dress("38", &body)?;
     let wind = Some(Wind { velocity: glam::Vec3A::X, drag: 1.2, lift: 0.6 });
-    let rig = Rig::fit(&body);
+    let rig = toile_assets::rig::fit(&body);
     let (mut frame, _snapshots) = Frame::new(body, &rig, vec![dress], Settings { wind, ..Settings::default() })?;
     frame.dress(&frames[0]);
 
@@ -91,7 +90,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let scene = Loaded { staged: FrameScene::new(frame), clock: clock.clone(), share: 1.0 };
     let outlets = PhysicsOutputs { events: sender, recording: None };
     let mut physics = PhysicsThread::new(scene, clock.clone(), 0, reader, outlets, NoCounters);
-    let mut sense = SensorThread::new(Playback::new(&frames, 0, 2), clock.clone(), writer);
+    let mut sense = SensorThread::new(Playback::new(&frames, 0, 2), JointFilter::default(), clock.clone(), writer);
     simulate(&clock, &mut [&mut sense, &mut physics], LENGTH_NS);
 
     let mut lowest = 0;

@@ -5,11 +5,10 @@
 use std::error::Error;
 
 use glam::{Affine3A, Vec3, Vec3A};
-use toile_assets::bake::bake;
-use toile_assets::fabric::Fabric;
-use toile_assets::garment::Shape;
-use toile_assets::limits::STEP_HZ;
-use toile_assets::skeleton::BONES;
+use toile_bake::Shape;
+use toile_bake::bake;
+use toile_base::limits::STEP_HZ;
+use toile_base::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Settings, Step, measure};
 use toile_engine::colliders::Colliders;
 
@@ -26,7 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // At load: what is baked is shared and never changes, what is stepped owns all its storage from here on.
     let place = |row: u32, column: u32| (Vec3::new(column as f32 * CELL, TOP - row as f32 * CELL, 0.0), row == 0);
     let shape = Shape::sheet(SIZE, SIZE, place);
-    let fabric = Fabric::built_in("cotton-lawn")?;
+    let fabric = toile_assets::fabric::built_in("cotton-lawn")?;
     let garment = bake("curtain", "one size", &shape, &fabric)?;
     let colliders = Colliders::new(&[], &[], false)?;
     let mut cloth = Cloth::new(&garment, &colliders);

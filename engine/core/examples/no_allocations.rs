@@ -8,18 +8,16 @@ use std::alloc::System;
 use std::error::Error;
 
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
-use toile_assets::body::Body;
-use toile_assets::garment::Garment;
-use toile_assets::limits::{MAX_CAPSULES, MAX_SPHERES, STEP_HZ};
-use toile_assets::rig::Rig;
 use toile_assets::{scene, wardrobe};
+use toile_base::clock::ticks_to_ns;
+use toile_base::frame::Joints;
+use toile_base::garment::Garment;
+use toile_base::limits::{MAX_CAPSULES, MAX_SPHERES, STEP_HZ};
 use toile_engine::body::JointFrames;
 use toile_engine::cloth::settings::MAX_SUBSTEPS;
 use toile_engine::cloth::{Cloth, Settings};
 use toile_engine::frame::Frame;
 use toile_engine::meter::{PERIOD_NS, STAGES, STEP_BUDGET_US};
-use toile_sensors::clock::ticks_to_ns;
-use toile_sensors::frame::Joints;
 
 /// Counts what every thread of the program asks for.
 #[global_allocator]
@@ -34,8 +32,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("  {}", STAGES.map(|stage| format!("{} {}", stage.name, stage.budget_us)).join(", "));
 
     let load = Region::new(&INSTRUMENTED_SYSTEM);
-    let body = Body::build(scene::SHOPPER.0, &scene::SHOPPER.1)?;
-    let rig = Rig::fit(&body);
+    let body = toile_assets::body::build(scene::SHOPPER.0, &scene::SHOPPER.1)?;
+    let rig = toile_assets::rig::fit(&body);
     let garments = [("t-shirt", "M"), ("wide-trousers", "38")];
     let garments = garments.map(|(name, size)| wardrobe::style(name).and_then(|style| style.dress(size, &body)));
     let garments = garments.into_iter().collect::<Result<Vec<Garment>, _>>()?;

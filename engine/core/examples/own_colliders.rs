@@ -5,11 +5,10 @@
 use std::error::Error;
 
 use glam::{Affine3A, Vec3, Vec4};
-use toile_assets::bake::bake;
-use toile_assets::fabric::Fabric;
-use toile_assets::garment::Shape;
-use toile_assets::limits::STEP_HZ;
-use toile_assets::skeleton::BONES;
+use toile_bake::Shape;
+use toile_bake::bake;
+use toile_base::limits::STEP_HZ;
+use toile_base::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Settings, Step, measure};
 use toile_engine::colliders::{ColliderError, Colliders, RestSphere};
 
@@ -46,7 +45,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let half = (SIZE - 1) as f32 * CELL * 0.5;
     let place = |row: u32, column: u32| (Vec3::new(column as f32 * CELL - half, 0.9, row as f32 * CELL - half), false);
     let shape = Shape::sheet(SIZE, SIZE, place);
-    let cloth = bake("throw", "one size", &shape, &Fabric::built_in("cotton-jersey")?)?;
+    let cloth = bake("throw", "one size", &shape, &toile_assets::fabric::built_in("cotton-jersey")?)?;
     let mut state = Cloth::new(&cloth, &colliders);
     let (palette, settings) = ([Affine3A::IDENTITY; BONES], Settings::default());
     let (mut deepest, mut worst) = (0.0f32, 0.0f32);

@@ -8,11 +8,11 @@
 use std::error::Error;
 
 use glam::{Affine3A, Vec3};
-use toile_assets::bake::bake;
-use toile_assets::fabric::Fabric;
-use toile_assets::garment::Shape;
-use toile_assets::limits::STEP_HZ;
-use toile_assets::skeleton::BONES;
+use toile_bake::Shape;
+use toile_bake::bake;
+use toile_base::fabric::Fabric;
+use toile_base::limits::STEP_HZ;
+use toile_base::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Quality, Settings, Step};
 use toile_engine::colliders::Colliders;
 
@@ -77,7 +77,9 @@ fn stretched(fabric: &Fabric) -> Result<[f32; 2], Box<dyn Error>> {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    for fabric in [Fabric::parse("ribbed-knit.toml", STRETCHY)?, Fabric::built_in("cotton-jersey")?] {
+    for fabric in
+        [toile_assets::fabric::parse("ribbed-knit.toml", STRETCHY)?, toile_assets::fabric::built_in("cotton-jersey")?]
+    {
         let [found, sheet] = stretched(&fabric)?;
         println!("{:<14} longer by {:.2} %, by its data sheet {:.2} %", fabric.title, found * 100.0, sheet * 100.0);
         if (found / sheet - 1.0).abs() > 0.02 {
@@ -86,7 +88,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     // Grams in place of kilograms are refused by key, value and range.
     let slip = STRETCHY.replace("density_kg_m2 = 0.22", "density_kg_m2 = 220");
-    match Fabric::parse("ribbed-knit.toml", &slip) {
+    match toile_assets::fabric::parse("ribbed-knit.toml", &slip) {
         Ok(_) => Err("a fabric of 220 kg/m2 was read".into()),
         Err(refused) => {
             println!("refused: {refused}");

@@ -4,15 +4,15 @@
 
 use std::error::Error;
 
-use toile_assets::body::{Body, Measures, Sex};
-use toile_assets::garment::Garment;
-use toile_assets::limits::STEP_HZ;
-use toile_assets::rig::Rig;
 use toile_assets::wardrobe;
+use toile_base::body::{Body, Measures, Sex};
+use toile_base::frame::Joints;
+use toile_base::garment::Garment;
+use toile_base::limits::STEP_HZ;
+use toile_base::rig::Rig;
 use toile_engine::body::JointFrames;
 use toile_engine::cloth::{Settings, measure};
 use toile_engine::frame::Frame;
-use toile_sensors::frame::Joints;
 
 /// By the definitions of EN 13402-1 (m).
 const MEASURES: Measures =
@@ -22,7 +22,7 @@ const SIZES: [&str; 2] = ["38", "44"];
 
 /// Mean tightness of a dress after a second at rest, -1 (loose) .. 1 (stretched as far as is comfortable).
 fn worn(body: &Body, rig: &Rig, dress: Garment) -> Result<f32, Box<dyn Error>> {
-    let rest = toile_assets::skeleton::Pose::rest(&body.skeleton);
+    let rest = toile_base::skeleton::Pose::rest(&body.skeleton);
     let at = JointFrames::new(&body.skeleton, &rest).position;
     let joints = Joints::seen(0, at);
     let (mut frame, _reader) = Frame::new(body.clone(), rig, vec![dress], Settings::default())?;
@@ -39,7 +39,7 @@ fn worn(body: &Body, rig: &Rig, dress: Garment) -> Result<f32, Box<dyn Error>> {
 
 fn main() -> Result<(), Box<dyn Error>> {
     // The body is measured on its own mesh, by the tape: what was asked for and what was reached stand side by side.
-    let body = Body::build(Sex::Female, &MEASURES)?;
+    let body = toile_assets::body::build(Sex::Female, &MEASURES)?;
     let got = body.measures;
     let pairs = [
         ("stature", MEASURES.stature, got.stature),
@@ -57,14 +57,17 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // What no body has is refused with the cure, in words for a screen.
     let slip = Measures { stature: 172.0, ..MEASURES };
-    match Body::build(Sex::Female, &slip) {
+    match toile_assets::body::build(Sex::Female, &slip) {
         Ok(_) => return Err("a body of 172 m was built".into()),
         Err(refused) => println!("refused: {refused}"),
     }
 
     // Capsules that the cloth meets are fitted to this body, and the dress is cut for the size and laid on it.
-    let rig = Rig::fit(&body);
-    println!("collision body off the skin by {:.1} mm on average", rig.report(&body).whole.mean_mm);
+    let rig = toile_assets::rig::fit(&body);
+    println!(
+        "collision body off the skin by {:.1} mm on average",
+        toile_assets::rig::report(&rig, &body).whole.mean_mm
+    );
     let style = wardrobe::style("sun-dress")?;
     let mut tight = [0.0; SIZES.len()];
     for (tight, size) in tight.iter_mut().zip(SIZES) {

@@ -7,16 +7,14 @@
 use std::error::Error;
 use std::path::PathBuf;
 
-use toile_assets::body::Body;
-use toile_assets::rig::Rig;
-use toile_assets::skeleton::Joint;
 use toile_assets::{scene, wardrobe};
+use toile_base::clock::{SECOND_NS, ns_to_ticks, ticks_to_ns};
+use toile_base::frame::Joints;
+use toile_base::skeleton::Joint;
 use toile_engine::body::JointFrames;
 use toile_engine::cloth::Settings;
 use toile_engine::frame::Frame;
-use toile_sensors::clock::{SECOND_NS, ns_to_ticks, ticks_to_ns};
 use toile_sensors::filter::JointFilter;
-use toile_sensors::frame::Joints;
 use toile_sensors::sample::sample;
 use toile_sensors::source::{self, OpenOptions};
 
@@ -46,8 +44,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
 
     let (sex, measures) = scene::SHOPPER;
-    let body = Body::build(sex, &measures)?;
-    let rig = Rig::fit(&body);
+    let body = toile_assets::body::build(sex, &measures)?;
+    let rig = toile_assets::rig::fit(&body);
     let dress = wardrobe::style("sun-dress")?.dress("38", &body)?;
     let (mut frame, _reader) = Frame::new(body, &rig, vec![dress], Settings::default())?;
     frame.dress(first);

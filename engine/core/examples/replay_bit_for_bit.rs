@@ -4,10 +4,10 @@
 
 use std::error::Error;
 
-use toile_assets::body::Body;
-use toile_assets::rig::Rig;
-use toile_assets::skeleton::Joint;
 use toile_assets::{scene, wardrobe};
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::Joints;
+use toile_base::skeleton::Joint;
 use toile_engine::body::JointFrames;
 use toile_engine::clock::SimClock;
 use toile_engine::cloth::Settings;
@@ -20,8 +20,7 @@ use toile_engine::frame_loop::replay::{Replayed, replay};
 use toile_engine::frame_loop::sensor_thread::{Playback, SensorFrame, SensorThread};
 use toile_engine::frame_loop::simulate::simulate;
 use toile_engine::triple_buffer::TripleBuffer;
-use toile_sensors::clock::SECOND_NS;
-use toile_sensors::frame::Joints;
+use toile_sensors::filter::JointFilter;
 
 /// Length of the run (ns).
 const LENGTH_NS: u64 = 2 * SECOND_NS;
@@ -30,8 +29,8 @@ const MOVED: (u64, f32) = (30, 1e-3);
 
 /// The scene as its text in the recording says: whoever replays makes the very same.
 fn staged(size: &str, first: &Joints, workers: usize) -> Result<FrameScene, Box<dyn Error>> {
-    let body = Body::build(scene::SHOPPER.0, &scene::SHOPPER.1)?;
-    let rig = Rig::fit(&body);
+    let body = toile_assets::body::build(scene::SHOPPER.0, &scene::SHOPPER.1)?;
+    let rig = toile_assets::rig::fit(&body);
     let dress = wardrobe::style("sun-dress")?.dress(size, &body)?;
     let (mut frame, _snapshots) = Frame::new(body, &rig, vec![dress], Settings { workers, ..Settings::default() })?;
     frame.dress(first);
@@ -46,7 +45,7 @@ fn record(frames: &[Joints]) -> Result<Vec<u8>, Box<dyn Error>> {
     let clock = SimClock::default();
     let outlets = PhysicsOutputs { events: sender, recording: Some(recorder) };
     let mut physics = PhysicsThread::new(staged("38", &frames[0], 1)?, clock.clone(), 0, reader, outlets, NoCounters);
-    let mut sense = SensorThread::new(Playback::new(frames, 0, 1), clock.clone(), writer);
+    let mut sense = SensorThread::new(Playback::new(frames, 0, 1), JointFilter::default(), clock.clone(), writer);
     simulate(&clock, &mut [&mut sense, &mut physics], LENGTH_NS);
     let mut bytes = recording::header("38");
     recording::write(&Entry::Dressed(frames[0]), &mut bytes);
@@ -66,7 +65,7 @@ fn again(size: &str, entries: &[Entry], workers: usize) -> Result<Replayed, Box<
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let skeleton = Body::build(scene::SHOPPER.0, &scene::SHOPPER.1)?.skeleton;
+    let skeleton = toile_assets::body::build(scene::SHOPPER.0, &scene::SHOPPER.1)?.skeleton;
     let seen = |i: u64| {
         let at = JointFrames::new(&skeleton, &scene::shopper(&skeleton, 1.5 + i as f32 / 30.0)).position;
         Joints::seen(i * SECOND_NS / 30, at)

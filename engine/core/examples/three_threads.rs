@@ -7,11 +7,11 @@
 use std::error::Error;
 use std::time::Duration;
 
-use toile_assets::body::Body;
-use toile_assets::limits::STEP_HZ;
-use toile_assets::rig::Rig;
-use toile_assets::skeleton::Skeleton;
 use toile_assets::{scene, wardrobe};
+use toile_base::clock::{SECOND_NS, ticks_to_ns};
+use toile_base::frame::Joints;
+use toile_base::limits::STEP_HZ;
+use toile_base::skeleton::Skeleton;
 use toile_engine::body::JointFrames;
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::cloth::Settings;
@@ -24,8 +24,7 @@ use toile_engine::frame_loop::sensor_thread::{FrameSource, SensorFrame, SensorTh
 use toile_engine::frame_loop::thread_roles::ThreadRole;
 use toile_engine::frame_loop::threads::{self, Stop};
 use toile_engine::triple_buffer::TripleBuffer;
-use toile_sensors::clock::{SECOND_NS, ticks_to_ns};
-use toile_sensors::frame::Joints;
+use toile_sensors::filter::JointFilter;
 
 /// Length of the run (s).
 const SECONDS: u64 = 2;
@@ -75,8 +74,8 @@ impl Renderer for Display {
 
 fn main() -> Result<(), Box<dyn Error>> {
     // At load, on this thread.
-    let body = Body::build(scene::SHOPPER.0, &scene::SHOPPER.1)?;
-    let rig = Rig::fit(&body);
+    let body = toile_assets::body::build(scene::SHOPPER.0, &scene::SHOPPER.1)?;
+    let rig = toile_assets::rig::fit(&body);
     let dress = wardrobe::style("sun-dress")?.dress("38", &body)?;
     let skeleton = body.skeleton.clone();
     let (mut frame, snapshots) = Frame::new(body, &rig, vec![dress], Settings { workers: 1, ..Settings::default() })?;
@@ -89,7 +88,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (sender, mut events) = bounded(EVENTS_NAME, EVENTS);
     let clock = RealClock::default();
     let origin_ns = clock.now_ns() + SECOND_NS / 10;
-    let sense = SensorThread::new(Camera { skeleton, origin_ns, frames: 0 }, clock, writer);
+    let sense = SensorThread::new(Camera { skeleton, origin_ns, frames: 0 }, JointFilter::default(), clock, writer);
     let outlets = PhysicsOutputs { events: sender, recording: None };
     let physics =
         PhysicsThread::new(FrameScene::new(frame.with_workers(pool)), clock, origin_ns, reader, outlets, NoCounters);

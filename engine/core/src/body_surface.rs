@@ -8,10 +8,10 @@
 //! then never lies on the wrong side of an armpit or on the other leg.
 
 use glam::Vec3A;
-use toile_assets::body::Body;
-use toile_assets::garment::Part;
-use toile_assets::mesh::SkinWeights;
-use toile_assets::skeleton::{Joint, bone_joint};
+use toile_base::body::Body;
+use toile_base::garment::Part;
+use toile_base::mesh::SkinWeights;
+use toile_base::skeleton::{Joint, bone_joint};
 
 use crate::lanes::{Kernel, Lanes, MOST, ReadColumn, Store, V3, Width};
 use crate::skin::Posed;

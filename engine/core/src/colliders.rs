@@ -6,8 +6,8 @@
 
 use glam::{Affine3A, Vec3, Vec4, Vec4Swizzles};
 use thiserror::Error;
-use toile_assets::limits::{MAX_CAPSULES, MAX_PLANES, MAX_SPHERES, STEP_SECONDS};
-use toile_assets::skeleton::BONES;
+use toile_base::limits::{MAX_CAPSULES, MAX_PLANES, MAX_SPHERES, STEP_SECONDS};
+use toile_base::skeleton::BONES;
 
 use crate::body_surface::BodySurface;
 use crate::jump_filter::JumpFilter;

@@ -5,7 +5,7 @@
 //! Thread: any; body and colliders share it.
 
 use glam::{Vec3, Vec4, Vec4Swizzles};
-use toile_assets::skeleton::Skeleton;
+use toile_base::skeleton::Skeleton;
 
 /// Where unused spheres wait: far below, without radius, so that a loop over all of them stays finite.
 pub const PARKED: Vec4 = Vec4::new(0.0, -1000.0, 0.0, 0.0);
@@ -13,7 +13,7 @@ pub const PARKED: Vec4 = Vec4::new(0.0, -1000.0, 0.0, 0.0);
 /// A sphere that follows a bone, where it stands in the rest pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RestSphere {
-    /// The bone it follows, below [`toile_assets::skeleton::BONES`].
+    /// The bone it follows, below [`toile_base::skeleton::BONES`].
     pub bone: u8,
     /// Centre in the rest pose, world (m).
     pub centre: Vec3,

@@ -7,13 +7,13 @@
 mod meters;
 
 use glam::{Affine3A, Vec3};
-use toile_assets::body::Body;
-use toile_assets::garment::{Garment, Part};
-use toile_assets::limits::{STEP_HZ, STEP_SECONDS};
-use toile_assets::numeric::hash::Fnv1a;
-use toile_assets::rig::Rig;
-use toile_assets::skeleton::{BONES, Pose};
-use toile_sensors::frame::Joints;
+use toile_base::body::Body;
+use toile_base::frame::Joints;
+use toile_base::garment::{Garment, Part};
+use toile_base::limits::{STEP_HZ, STEP_SECONDS};
+use toile_base::numeric::hash::Fnv1a;
+use toile_base::rig::Rig;
+use toile_base::skeleton::{BONES, Pose};
 
 use crate::body::{Poser, palette};
 use crate::body_surface::BodySurface;
@@ -447,8 +447,8 @@ mod tests {
     #[test]
     fn settings_name_the_workers_that_there_are() {
         let (sex, measures) = scene::SHOPPER;
-        let body = Body::build(sex, &measures).unwrap();
-        let rig = Rig::fit(&body);
+        let body = toile_assets::body::build(sex, &measures).unwrap();
+        let rig = toile_assets::rig::fit(&body);
         for (asked, given) in [(0, 1), (1, 1), (2, 2), (9, SHARES)] {
             let settings = Settings { workers: asked, ..Settings::default() };
             let (frame, _reader) = Frame::new(body.clone(), &rig, Vec::new(), settings).unwrap();

@@ -6,7 +6,7 @@
 //! makes it worse. A sphere that is not finite is held for as long as that lasts.
 
 use glam::{Affine3A, Vec4, Vec4Swizzles};
-use toile_assets::limits::{MAX_SPHERES, STEP_SECONDS};
+use toile_base::limits::{MAX_SPHERES, STEP_SECONDS};
 
 use crate::cone::PARKED;
 

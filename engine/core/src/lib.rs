@@ -30,9 +30,10 @@ pub mod cloth;
 pub mod frame;
 pub mod lines;
 
+#[cfg(feature = "loop")]
 pub mod frame_loop;
 // Not within the room's own file, which the models of the hand-offs include (tests/models).
-#[cfg(test)]
+#[cfg(all(test, feature = "threads"))]
 #[path = "workers/tests.rs"]
 mod workers_tests;
 

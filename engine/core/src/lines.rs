@@ -1,8 +1,8 @@
 //! Debug lines, such as fibers and contacts. Filled outside of the frame, from its snapshot, into memory allocated at load.
 
 use glam::{Vec3, Vec4Swizzles};
-use toile_assets::garment::layout::Layout;
-use toile_assets::garment::{Garment, Solver};
+use toile_base::garment::layout::Layout;
+use toile_base::garment::{Garment, Solver};
 
 use crate::cloth::{Cloth, contact};
 use crate::colliders::Colliders;
@@ -36,7 +36,7 @@ pub struct Line {
     pub colour: Vec3,
 }
 
-toile_assets::named! {
+toile_base::named! {
     /// Kinds of lines.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
     pub enum Kind {
@@ -231,7 +231,7 @@ mod tests {
     fn a_capsule_is_drawn_around_its_own_radius() {
         let sphere = |x: f32| RestSphere { bone: 0, centre: Vec3::new(x, 1.0, 0.0), radius: 0.1 };
         let mut colliders = Colliders::new(&[sphere(0.0), sphere(0.5)], &[[0, 1]], true).unwrap();
-        colliders.place(&[glam::Affine3A::IDENTITY; toile_assets::skeleton::BONES]);
+        colliders.place(&[glam::Affine3A::IDENTITY; toile_base::skeleton::BONES]);
         let mut lines = Lines::new(1000);
         lines.add_colliders(&colliders);
         assert_eq!(lines.as_slice().len(), 2 * 3 * AROUND + 4);

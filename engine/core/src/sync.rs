@@ -10,6 +10,9 @@ use std::time::{Duration, Instant};
 pub use std::sync::atomic::{AtomicBool, AtomicPtr, AtomicU64, AtomicUsize};
 pub use std::thread::{self, JoinHandle};
 
+/// Whether a pool may have a helper thread.
+pub const HAS_THREADS: bool = cfg!(feature = "threads");
+
 /// Looks at the other's progress before the caller takes over a share that nobody has begun: about 1 us, six times what
 /// a meeting takes.
 pub const LOOKS_BEFORE_TAKING: u32 = 64;

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use toile_assets::numeric::statistics::median_of;
+use toile_base::numeric::statistics::median_of;
 use toile_engine::workers::WorkerPool;
 
 /// Runs before the first that counts: caches, branch predictors and the clock of the core settle in them.

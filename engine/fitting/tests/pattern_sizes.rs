@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use toile_assets::body::{Body, Measures as BodyMeasures, Sex};
 use toile_assets::draping::{PatternPackage, PatternSizes, SizedDraft, read_package};
 use toile_assets::sizes::{GarmentKind, SizeTable};
+use toile_base::body::{Body, Measures as BodyMeasures, Sex};
 use toile_fitting::dress::choice::{Choice, ChoiceSource, ShopChoice};
 use toile_track::estimate::Estimate;
 use toile_track::measure::{Measurements, Source};
@@ -28,7 +28,7 @@ fn package(name: &str, kind: GarmentKind, [small, large]: [&str; 2]) -> PatternP
 /// The body of a size, measured to a sigma (m).
 fn wearer(size: &str, sigma: f32) -> (Body, Measurements) {
     let table = SizeTable::embedded("freesewing-women").unwrap();
-    let body = Body::build(Sex::Female, &BodyMeasures::from(table.size_body(size).unwrap())).unwrap();
+    let body = toile_assets::body::build(Sex::Female, &BodyMeasures::from(table.size_body(size).unwrap())).unwrap();
     let e = |m: f32| Some(Estimate::new(m, sigma));
     let measures = Measures {
         stature: e(body.measures.stature),

@@ -12,8 +12,8 @@ use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
-use toile_assets::garment::Garment;
-use toile_assets::numeric::statistics::quantile;
+use toile_base::garment::Garment;
+use toile_base::numeric::statistics::quantile;
 use toile_engine::cloth::layers::Layers;
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::Colliders;
@@ -23,7 +23,7 @@ use crate::Adapter;
 use crate::cloth_batch::ClothBatch;
 use crate::graphics::{DeviceGarments, Graphics, StageTimes, StepWork};
 
-toile_assets::named! {
+toile_base::named! {
     /// Where garments are stepped.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
     pub enum Backend {
@@ -351,10 +351,10 @@ fn on_device(
 #[cfg(test)]
 mod tests {
     use glam::{Affine3A, Vec3};
-    use toile_assets::bake::bake;
-    use toile_assets::fabric::Fabric;
-    use toile_assets::garment::Shape;
-    use toile_assets::skeleton::BONES;
+    use toile_bake::bake;
+
+    use toile_bake::Shape;
+    use toile_base::skeleton::BONES;
 
     use super::*;
 
@@ -371,7 +371,7 @@ mod tests {
     /// A sheet that can meet itself, what keeps it out of itself, and what surrounds it.
     fn sheet() -> (Garment, Layers, Colliders) {
         let place = |row: u32, column: u32| (Vec3::new(column as f32, 1.0, row as f32) * 0.02, row == 0);
-        let fabric = Fabric::built_in("cotton-lawn").expect("it is built in");
+        let fabric = toile_assets::fabric::built_in("cotton-lawn").expect("it is built in");
         let garment = bake("sheet", "one", &Shape::sheet(6, 6, place), &fabric).expect("a sheet is cloth");
         let layers = Layers::new(std::slice::from_ref(&garment)).expect("it has faces");
         (garment, layers, Colliders::new(&[], &[], true).expect("a floor"))

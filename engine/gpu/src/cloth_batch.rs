@@ -1,6 +1,6 @@
 //! The garments that are stepped together, with the surroundings of each.
 
-use toile_assets::garment::Garment;
+use toile_base::garment::Garment;
 use toile_engine::cloth::{Cloth, Step};
 
 /// Garments that are stepped together.

@@ -15,7 +15,7 @@ use std::time::Instant;
 use glam::{DMat3, DVec3, Vec2};
 use image::RgbImage;
 use painted_face::{PaintedHead, Shot};
-use toile_assets::body::Sex;
+use toile_base::body::Sex;
 use toile_capture::face::{self, FaceView};
 use toile_kiosk::visitor::own_face::{FaceMaker, FaceTrouble, Portrait};
 use toile_pose::face_finder::{FaceFault, FaceFinder};

@@ -8,6 +8,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use toile_base::frame::Joints;
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::frame::{Frame, Snapshot, SnapshotTimes};
 use toile_engine::frame_loop::governor::Rung;
@@ -25,7 +26,6 @@ use toile_fitting::live::source::{Feed, Visits};
 use toile_kiosk::service::runner::{Service, ServiceEnvironment, ServiceOptions};
 use toile_kiosk::service::service_manager::{ServiceManager, ServiceStatus, StopSignal};
 use toile_kiosk::service::session::SessionTimes;
-use toile_sensors::frame::Joints;
 
 /// Hangs whoever passes it while it is shut.
 type Gate = Arc<AtomicBool>;

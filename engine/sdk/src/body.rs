@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use glam::Vec3;
-use toile_assets::body::{Body as BodyShape, BodyError, En, Readings, Sex, Wanted};
+use toile_assets::body::{BodyError, En, Readings, Wanted};
 use toile_assets::import::avatar::{self, ImportOptions};
 use toile_assets::sizes::Population;
+use toile_base::body::{Body as BodyShape, Sex};
 use toile_fitting::dress::{body as measured_body, measured};
 use toile_track::estimate::Estimate;
 use toile_track::fit::measuring::{FittedMeasure, MEASURES};
@@ -43,7 +44,7 @@ impl Body {
             }
             wanted = wanted.with(measure, (mm * 1e-3) as f32);
         }
-        let fitted = BodyShape::fitted(sex, &wanted).map_err(|error| in_millimetres(&error))?;
+        let fitted = toile_assets::body::fitted(sex, &wanted).map_err(|error| in_millimetres(&error))?;
         let mut known = by_tape(sex, &wanted)?;
         let m = &fitted.body.measures;
         let five = [m.stature, m.shoulder_breadth, m.chest_girth, m.waist_girth, m.hip_girth];
@@ -60,7 +61,7 @@ impl Body {
     /// # Errors
     /// None that a sound build has.
     pub fn average(sex: Sex) -> Result<Self> {
-        let m = toile_assets::body::Measures::average(sex);
+        let m = toile_base::body::Measures::average(sex);
         let five = [
             ("stature", m.stature),
             ("shoulder_breadth", m.shoulder_breadth),

@@ -3,11 +3,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use toile_assets::body::{Measures, Sex};
 use toile_assets::draping::{AS_DRAFTED, TO_MEASURE};
-use toile_assets::fabric::Fabric;
 use toile_assets::file::{self, FileKind};
 use toile_assets::{drafting, wardrobe};
+use toile_base::body::{Measures, Sex};
+use toile_base::fabric::Fabric;
 use toile_fitting::dress::choice::{Choice, ChoiceSource, ShopChoice};
 
 use crate::error::{Error, Result};
@@ -34,7 +34,7 @@ pub fn garment_names() -> Vec<&'static str> {
 
 /// Names of the fabrics that are built in.
 pub fn fabric_names() -> Vec<&'static str> {
-    Fabric::names()
+    toile_assets::fabric::names()
 }
 
 impl Garment {
@@ -124,14 +124,15 @@ impl Garment {
 }
 
 fn built_in(name: &str) -> Result<Fabric> {
-    Fabric::built_in(name).map_err(|error| Error::input(format!("{error}; there are {}", Fabric::names().join(", "))))
+    toile_assets::fabric::built_in(name)
+        .map_err(|error| Error::input(format!("{error}; there are {}", toile_assets::fabric::names().join(", "))))
 }
 
 fn read_fabric(path: &Path) -> Result<Fabric> {
     let text = file::read_text(path, &FABRIC_FILE).map_err(Error::input)?;
-    let mut fabric = Fabric::parse(&path.display().to_string(), &text).map_err(Error::input)?;
+    let mut fabric = toile_assets::fabric::parse(&path.display().to_string(), &text).map_err(Error::input)?;
     let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
     let picture = |name: &str| file::read(&folder.join(name), &FABRIC_FILE).map_err(|e| e.to_string());
-    fabric.read_picture(picture).map_err(Error::input)?;
+    toile_assets::fabric::read_picture(&mut fabric, picture).map_err(Error::input)?;
     Ok(fabric)
 }

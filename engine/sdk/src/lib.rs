@@ -85,11 +85,11 @@ mod try_on;
 
 pub use glam;
 
-pub use toile_assets::body::Sex;
 pub use toile_assets::scene_file::Wind;
-pub use toile_assets::skeleton::Joint;
+pub use toile_base::body::Sex;
+pub use toile_base::frame::{DepthFrame, HandState, Intrinsics, Joints, TrackedJoint};
+pub use toile_base::skeleton::Joint;
 pub use toile_engine::cloth::Quality;
-pub use toile_sensors::frame::{DepthFrame, HandState, Intrinsics, Joints, TrackedJoint};
 
 pub use body::Body;
 pub use error::{Error, ErrorKind, Result};

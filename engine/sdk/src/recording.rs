@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use toile_assets::body::Sex;
 use toile_assets::sizes::Population;
+use toile_base::body::Sex;
+use toile_base::frame::{DepthFrame, Joints};
 use toile_fitting::dress::measured::{self, ShopperFacts};
 use toile_fitting::dress::wish;
 use toile_fitting::dress::{body as measured_body, session};
-use toile_sensors::frame::{DepthFrame, Joints};
 use toile_sensors::source::Session;
 use toile_track::fit::measuring::FittedMeasures;
 use toile_track::measures::definition;

@@ -1,6 +1,5 @@
 //! What this crate gives is what the assembly below it gives, to the bit.
 
-use toile_assets::rig::Rig;
 use toile_assets::scene_file::{SceneFile, SceneSource};
 use toile_engine::cloth::Settings;
 use toile_engine::frame::Frame;
@@ -22,7 +21,7 @@ fn a_try_on_is_the_programs_own() {
     let (body, _) = body::build(sex, &measured.best, Some(sex).into()).unwrap();
     let worn = choice.put_on(None, &measured.best, &body, &[]).unwrap();
     let fit = worn.fit.clone().unwrap();
-    let rig = Rig::fit(&body);
+    let rig = toile_assets::rig::fit(&body);
     let (mut frame, mut reader) = Frame::new(body, &rig, worn.garments, Settings::default()).unwrap();
     let track = session::standing(&session).unwrap();
     frame.dress(&track[0]);
@@ -85,14 +84,14 @@ fn a_scene_file_runs_as_the_program_runs_it() {
 fn a_recommendation_is_for_the_body_as_it_is() {
     let mm = [("stature", 1680.0), ("shoulder_breadth", 370.0), ("chest", 960.0), ("waist", 800.0), ("hip", 1040.0)];
     let body = Body::from_measures_mm(Sex::Female, &mm).unwrap();
-    let direct = toile_assets::body::Measures {
+    let direct = toile_base::body::Measures {
         stature: 1.68,
         shoulder_breadth: 0.37,
         chest_girth: 0.96,
         waist_girth: 0.8,
         hip_girth: 1.04,
     };
-    let direct = toile_assets::body::Body::build(Sex::Female, &direct).unwrap();
+    let direct = toile_assets::body::build(Sex::Female, &direct).unwrap();
     assert_eq!(body.positions(), direct.mesh.positions, "the same body, to the bit");
     let fit = recommend(&body, &Garment::open("sun-dress").unwrap()).unwrap();
     let style = toile_assets::wardrobe::style("sun-dress").unwrap();

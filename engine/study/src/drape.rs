@@ -3,19 +3,19 @@
 use std::f32::consts::TAU;
 
 use glam::{Vec2, Vec3};
-use toile_assets::body::{Body, Region};
-use toile_assets::garment::{Garment, Part};
-use toile_assets::numeric::statistics::quantile;
-use toile_assets::rig::Rig;
 use toile_assets::sizes::Girth;
-use toile_assets::skeleton::Pose;
+use toile_base::body::{Body, Region};
+use toile_base::frame::Joints;
+use toile_base::garment::{Garment, Part};
+use toile_base::numeric::statistics::quantile;
+use toile_base::rig::Rig;
+use toile_base::skeleton::Pose;
 use toile_engine::cloth::{Cloth, Settings, measure};
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::triple_buffer::Reader;
 use toile_fitting::dress::player::Player;
 use toile_fitting::dress::session;
 use toile_fitting::wearing::{self, CoveredZone, poses};
-use toile_sensors::frame::Joints;
 
 use crate::error::{Result, StudyError};
 use crate::garments::{DrapeStart, TriedGarment};
@@ -32,7 +32,7 @@ const LEAST_SECTORS: u32 = 14;
 /// Share of a garment's particles that are its hem: the lowest as it is put on.
 const HEM: f32 = 0.03;
 
-toile_assets::named! {
+toile_base::named! {
     /// What is done in a garment.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
     pub enum TriedPose {

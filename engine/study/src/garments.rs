@@ -4,10 +4,9 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize};
-use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::draping::HungPattern;
-use toile_assets::fabric::Fabric;
 use toile_assets::sizes::{Girth, Population as MadeFor};
+use toile_base::body::{Body, Measures, Sex};
 use toile_fitting::dress::choice::{Choice, ShopChoice, Worn};
 use toile_fitting::dress::offer::GarmentOffer;
 
@@ -31,7 +30,7 @@ pub struct TriedGarment {
     hung: Vec<OnceLock<Option<HungPattern>>>,
 }
 
-toile_assets::named! {
+toile_base::named! {
     /// What draping begins with.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum DrapeStart {
@@ -97,15 +96,14 @@ impl TriedGarment {
         let found = if beside.is_file() { beside.display().to_string() } else { wanted.name.clone() };
         let mut choice = Choice::find(&found)?;
         if let Some(fabric) = &wanted.fabric {
-            let fabric = Some(
-                Fabric::built_in(fabric)
-                    .map_err(|e| StudyError::Input(format!("{e}; there are {}", Fabric::names().join(", "))))?,
-            );
+            let fabric = Some(toile_assets::fabric::built_in(fabric).map_err(|e| {
+                StudyError::Input(format!("{e}; there are {}", toile_assets::fabric::names().join(", ")))
+            })?);
             choice = Choice { own: ShopChoice { fabric, ..choice.own.clone() }, ..choice };
         }
         let made_for = choice.population()?;
         let sex = if made_for == MadeFor::Men { Sex::Male } else { Sex::Female };
-        let body = Body::build(sex, &Measures::average(sex)).map_err(StudyError::internal)?;
+        let body = toile_assets::body::build(sex, &Measures::average(sex)).map_err(StudyError::internal)?;
         let name = wanted.name.clone();
         let offer = choice.offer(&body)?.filter(|offer| !offer.is_single()).ok_or_else(|| {
             StudyError::Input(format!(

@@ -1,6 +1,6 @@
 //! What a sensor makes of true measures: normal errors of known deviations, by seed and number.
 
-use toile_assets::body::Measures;
+use toile_base::body::Measures;
 use toile_track::estimate::Estimate;
 use toile_track::measure::{Measurements, Source};
 use toile_track::measures::Measures as Estimates;

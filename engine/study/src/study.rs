@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use serde_json::json;
-use toile_assets::body::{Body, Measures};
-use toile_assets::limits::STEP_HZ;
-use toile_assets::rig::Rig;
 use toile_assets::sizes::Girth;
+use toile_base::body::{Body, Measures};
+use toile_base::limits::STEP_HZ;
+use toile_base::rig::Rig;
 use toile_engine::cloth::{Quality, Settings};
 use toile_track::estimate::Estimate;
 use toile_track::measure::Measurements;
@@ -262,7 +262,7 @@ impl Study {
     ) -> Result<()> {
         if kept.is_none() {
             let body = person.body()?;
-            let rig = Rig::fit(&body);
+            let rig = toile_assets::rig::fit(&body);
             *kept = Some((body, rig));
         }
         let Some((body, rig)) = kept else { return Ok(()) };
@@ -301,7 +301,7 @@ impl Study {
     pub fn worn_by(&self, person: u64, garment: usize, size: &str) -> Result<WornFrame> {
         let body = self.population.person(person).body()?;
         let Physics { start, settings, settle, .. } = &self.physics;
-        let on = (&body, &Rig::fit(&body));
+        let on = (&body, &toile_assets::rig::fit(&body));
         WornFrame::put_on(on, (&self.garments[garment], size, *start), TriedPose::Standing, (*settings, *settle))
     }
 }

@@ -1,6 +1,6 @@
 //! A measured length and its uncertainty.
 
-use toile_assets::numeric::statistics::median_of;
+use toile_base::numeric::statistics::median_of;
 
 /// A length with the standard deviation of its error.
 #[derive(Debug, Clone, Copy, PartialEq)]

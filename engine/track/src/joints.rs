@@ -1,8 +1,9 @@
 //! Measures from joints alone: lengths of the skeleton, and girths guessed from them.
 
-use toile_assets::limits::CONFIDENCE_GATE;
-use toile_assets::skeleton::Joint::{self, *};
-use toile_sensors::frame::Joints;
+use toile_base::frame::Joints;
+use toile_base::limits::CONFIDENCE_GATE;
+use toile_base::skeleton::Joint;
+use toile_base::skeleton::Joint::*;
 
 use crate::anthropometry::{regressions, stature};
 use crate::estimate::{Estimate, temporal_mean};

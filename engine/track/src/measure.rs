@@ -1,8 +1,8 @@
 //! The measures of the person before the sensor, each with its error, from one second of depth and joints.
 
-use toile_assets::numeric::statistics::median_of;
 use toile_assets::sizes::{Population, SizeBody};
-use toile_sensors::frame::{DepthFrame, Joints};
+use toile_base::frame::{DepthFrame, Joints};
+use toile_base::numeric::statistics::median_of;
 
 use crate::anthropometry::{self, GirthModel, SilhouetteModel, regressions};
 use crate::estimate::{Estimate, temporal_mean};

@@ -1,8 +1,8 @@
 //! The shopper of one depth frame after the other as world points: whoever the segmenter finds, and nothing else.
 
 use glam::Vec3;
-use toile_assets::numeric::statistics::quantile_of;
-use toile_sensors::frame::{DepthFrame, Intrinsics};
+use toile_base::frame::{DepthFrame, Intrinsics};
+use toile_base::numeric::statistics::quantile_of;
 use toile_sensors::segment::{Segmenter, Zone};
 
 /// Farther than this the Kinect's steps exceed 46 mm and a body has under 6,000 pixels (m).

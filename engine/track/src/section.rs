@@ -1,7 +1,7 @@
 //! One horizontal slice of a torso as a depth camera sees it: its front half, between two edges.
 
 use glam::{Mat3, Vec2, Vec3};
-use toile_assets::numeric::statistics::quantile_of;
+use toile_base::numeric::statistics::quantile_of;
 
 /// Columns in which a slice is sorted, to either side of the axis.
 const COLUMNS: usize = 60;

@@ -10,8 +10,8 @@ use crate::anthropometry::{LevelFractions, stature};
 use crate::estimate::Estimate;
 use crate::point_cloud::PersonCloud;
 use crate::section::{TorsoSection, measure_torso};
-use toile_assets::numeric::statistics::median_of;
 use toile_assets::sizes::Population;
+use toile_base::numeric::statistics::median_of;
 
 /// The floor counts as given by the camera's pose if the feet end this near to y = 0 (m).
 const FLOOR_NEAR: f32 = 0.12;

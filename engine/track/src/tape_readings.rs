@@ -2,9 +2,9 @@
 
 use std::sync::LazyLock;
 
-use toile_assets::body::Sex;
 use toile_assets::body::shape::Shapes;
 use toile_assets::sizes::Population;
+use toile_base::body::Sex;
 
 use crate::correlated::Correlated;
 use crate::estimate::Estimate;

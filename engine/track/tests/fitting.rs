@@ -5,10 +5,11 @@ mod recordings;
 
 use glam::{Affine3A, Quat, Vec3};
 use toile_assets::body::shape::Shapes;
-use toile_assets::body::{En, Sex, Wanted};
+use toile_assets::body::{En, Wanted};
 use toile_assets::sizes::Population;
-use toile_assets::skeleton::Joint;
-use toile_sensors::frame::{DepthFrame, Intrinsics};
+use toile_base::body::Sex;
+use toile_base::frame::{DepthFrame, Intrinsics};
+use toile_base::skeleton::Joint;
 use toile_sensors::source::synthetic::SyntheticCamera;
 use toile_sensors::source::{OpenOptions, open};
 use toile_track::fit::measuring::{self, MEASURES};
@@ -49,7 +50,7 @@ fn seen_before(walls: &[[Vec3; 3]], sex: Sex, wanted: &Wanted<En>, place: Affine
 
 /// What is true of the person in the picture.
 struct Truth {
-    joints: [Vec3; toile_assets::skeleton::JOINTS],
+    joints: [Vec3; toile_base::skeleton::JOINTS],
     measures: [f32; MEASURES.len()],
 }
 
@@ -208,7 +209,7 @@ fn who_turns_all_round_is_measured_from_all_sides_and_who_does_not_from_the_fron
 fn hostile_pictures_are_nobody_and_no_panic() {
     let (frame, _) = seen(Sex::Male, &Wanted::new(), turned(0.0, Vec3::ZERO));
     let n = frame.depth_mm.len();
-    let mut noise = toile_assets::numeric::random::SplitMix64::new(3);
+    let mut noise = toile_base::numeric::random::SplitMix64::new(3);
     let pictures: [Box<[u16]>; 4] = [
         vec![0; n].into_boxed_slice(),
         vec![u16::MAX; n].into_boxed_slice(),

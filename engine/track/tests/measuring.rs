@@ -4,10 +4,10 @@
 mod recordings;
 
 use glam::{Affine3A, Mat3, Vec3};
-use toile_assets::body::{Body, Measures as BodyMeasures, Sex};
 use toile_assets::sizes::Population;
-use toile_assets::skeleton::Joint;
-use toile_sensors::frame::{DepthFrame, Intrinsics, Joints, TrackedJoint};
+use toile_base::body::{Body, Measures as BodyMeasures, Sex};
+use toile_base::frame::{DepthFrame, Intrinsics, Joints, TrackedJoint};
+use toile_base::skeleton::Joint;
 use toile_sensors::source::synthetic::SyntheticCamera;
 use toile_sensors::source::{OpenOptions, open};
 use toile_track::fit::measuring::FRAMES;
@@ -28,7 +28,7 @@ fn joints_of(body: &Body) -> Vec<Joints> {
 #[test]
 fn joints_alone_give_stature_and_shoulders_within_their_sigma_and_girths_as_guesses() {
     for sex in [Sex::Female, Sex::Male] {
-        let body = Body::build(sex, &BodyMeasures::average(sex)).unwrap();
+        let body = toile_assets::body::build(sex, &BodyMeasures::average(sex)).unwrap();
         let m = measure(&joints_of(&body), &[], &Hint::default()).unwrap();
         assert_eq!((m.source, m.people, m.valid_pixels), (Source::Joints, 1, 0));
         let b = &body.measures;
@@ -43,7 +43,7 @@ fn joints_alone_give_stature_and_shoulders_within_their_sigma_and_girths_as_gues
 
 #[test]
 fn without_a_unit_the_stature_is_assumed_and_says_so() {
-    let body = Body::build(Sex::Female, &BodyMeasures::average(Sex::Female)).unwrap();
+    let body = toile_assets::body::build(Sex::Female, &BodyMeasures::average(Sex::Female)).unwrap();
     let mut joints = joints_of(&body);
     for j in joints.iter_mut().flat_map(|f| &mut f.joints) {
         j.position *= 39.37;
@@ -98,7 +98,7 @@ fn an_empty_room_and_a_cupboard_are_nobody() {
 
 #[test]
 fn who_stands_too_far_is_told_to_come_closer() {
-    let body = Body::build(Sex::Male, &BodyMeasures::average(Sex::Male)).unwrap();
+    let body = toile_assets::body::build(Sex::Male, &BodyMeasures::average(Sex::Male)).unwrap();
     let camera = SyntheticCamera::looking_at(Intrinsics::KINECT_V1, Vec3::new(0.0, 1.2, 5.5), Vec3::new(0.0, 1.2, 0.0));
     let mut image = vec![0.0; camera.intrinsics.pixels()];
     camera.render(&body.mesh.positions, &body.mesh.triangles, &mut image);

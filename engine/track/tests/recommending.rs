@@ -1,7 +1,7 @@
 //! Recommending: laws that a size must obey.
 
-use toile_assets::numeric::random::SplitMix64;
 use toile_assets::sizes::{GarmentKind, SizeTable};
+use toile_base::numeric::random::SplitMix64;
 use toile_track::estimate::Estimate;
 use toile_track::measure::{Measurements, Source};
 use toile_track::measures::Measures;

@@ -6,7 +6,7 @@
 use std::{error::Error, fs::File, io::BufWriter, path::Path, time::Instant};
 
 use glam::Vec3;
-use toile_assets::mesh::vertex_normals;
+use toile_base::mesh::vertex_normals;
 use toile_sculpt::{Drawn, draw};
 use toile_view::{
     contact_sheet,

@@ -6,7 +6,7 @@ use std::f32::consts::FRAC_PI_2;
 use std::{error::Error, fs::File, io::BufWriter};
 
 use glam::Vec3;
-use toile_assets::body::{Body, Measures, Sex};
+use toile_base::body::{Body, Measures, Sex};
 use toile_view::contact_sheet;
 use toile_view::figure::{Appearance, Figure, Hair, SkinTone};
 use toile_view::image::{Image, Size};
@@ -31,7 +31,7 @@ const SIDE: f32 = FRAC_PI_2;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).unwrap_or_else(|| "mannequins.png".to_owned());
-    let [woman, man] = Sex::ALL.map(|sex| Body::build(sex, &Measures::average(sex)));
+    let [woman, man] = Sex::ALL.map(|sex| toile_assets::body::build(sex, &Measures::average(sex)));
     let (woman, man) = (woman?, man?);
     let plain = Appearance::default();
     let tone = |skin| Appearance { skin, ..plain };

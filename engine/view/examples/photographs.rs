@@ -11,11 +11,11 @@ use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 use glam::{Vec2, Vec3};
-use toile_assets::body::{Body, Region};
 use toile_assets::catalogue::FittingLevel;
 use toile_assets::drafting;
-use toile_assets::garment::Garment;
-use toile_assets::mesh::vertex_normals;
+use toile_base::body::{Body, Region};
+use toile_base::garment::Garment;
+use toile_base::mesh::vertex_normals;
 use toile_view::cloth_look::GarmentLook;
 use toile_view::image::Size;
 use toile_view::scene::{Camera, Colours, MANNEQUIN, Material, Scene, Surface};

@@ -6,7 +6,8 @@
 
 use std::{error::Error, fs::File, io::BufWriter, path::Path};
 
-use toile_assets::body::{Ansur, Body, En, Sex, Wanted};
+use toile_assets::body::{Ansur, En, Wanted};
+use toile_base::body::{Body, Sex};
 use toile_view::{
     contact_sheet,
     image::{Image, Size},
@@ -50,7 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 .with(En::BustGirth, bust)
                 .with(En::WaistGirth, waist)
                 .with(En::HipGirth, hip);
-            sizes.push((format!("EN {code}"), Body::fitted(sex, &wanted)?.body));
+            sizes.push((format!("EN {code}"), toile_assets::body::fitted(sex, &wanted)?.body));
         }
         write(&folder, &format!("{name}-sizes"), &sizes)?;
         six.extend(sizes.into_iter().map(|(code, body)| (format!("{name} {code}"), body)));
@@ -64,7 +65,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 .with(Ansur::WaistCircumferenceOmphalion, at(girths[1], stout))
                 .with(Ansur::ButtockCircumference, at(girths[2], stout));
             let words = [["short", "tall"][usize::from(tall > 0.0)], ["slight", "stout"][usize::from(stout > 0.0)]];
-            ends.push((words.join(", "), Body::fitted(sex, &wanted)?.body));
+            ends.push((words.join(", "), toile_assets::body::fitted(sex, &wanted)?.body));
         }
         write(&folder, &format!("{name}-ends"), &ends)?;
     }

@@ -3,8 +3,8 @@
 //! It is no garment: it costs no step, and follows the skin wherever that goes.
 
 use glam::{Vec2, Vec3};
-use toile_assets::body::{Body, Region, Sex};
-use toile_assets::texture::Texture;
+use toile_base::body::{Body, Region, Sex};
+use toile_base::texture::Texture;
 
 use crate::cloth_look::{GarmentLook, TileLevels};
 
@@ -78,14 +78,14 @@ fn bandeau(body: &Body, p: Vec3) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use toile_assets::body::Measures;
+    use toile_base::body::Measures;
 
     use super::*;
 
     #[test]
     fn what_is_covered_is_covered_and_nothing_else() {
         for sex in [Sex::Female, Sex::Male] {
-            let body = Body::build(sex, &Measures::average(sex)).unwrap();
+            let body = toile_assets::body::build(sex, &Measures::average(sex)).unwrap();
             let inside = heights(&body);
             let near = |y: f32, x: f32| {
                 let trunk = (0..inside.len())

@@ -4,9 +4,9 @@ use std::fmt::{self, Debug, Formatter};
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3, Vec4};
-use toile_assets::fabric::Fabric;
-use toile_assets::garment::{Garment, Look};
-use toile_assets::texture::Texture;
+use toile_base::fabric::Fabric;
+use toile_base::garment::{Garment, Look};
+use toile_base::texture::Texture;
 
 use crate::image::linear;
 use crate::trim_look::{DrawnTrim, TrimmedPoint};

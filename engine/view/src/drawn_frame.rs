@@ -1,9 +1,9 @@
 //! A frame as it is drawn: body and garments, each beneath what is worn over it.
 
 use glam::Vec3;
-use toile_assets::body::Body;
-use toile_assets::garment::{Garment, Tuck};
-use toile_assets::mesh::vertex_normals;
+use toile_base::body::Body;
+use toile_base::garment::{Garment, Tuck};
+use toile_base::mesh::vertex_normals;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::skin::Posed;
 

@@ -1,8 +1,8 @@
 //! The fit map: how tight a garment sits at each place, in eight colours that a colour-blind reader can tell apart.
 
 use glam::Vec3;
-use toile_assets::garment::Garment;
 use toile_assets::sizes::Girth;
+use toile_base::garment::Garment;
 use toile_engine::cloth::{Cloth, measure};
 use toile_engine::frame::Frame;
 

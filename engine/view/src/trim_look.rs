@@ -1,8 +1,8 @@
 //! How trims show on the cloth: buttons, stitches, edges of what lies on it, strips, zips.
 
 use glam::{Vec2, Vec3};
-use toile_assets::garment::look::TRIM_SHADOW_M;
-use toile_assets::pattern::{ClothTrim, TrimKind};
+use toile_base::garment::look::TRIM_SHADOW_M;
+use toile_base::garment::trim::{ClothTrim, TrimKind};
 
 use crate::image::linear;
 

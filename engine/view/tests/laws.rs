@@ -113,7 +113,7 @@ impl Still {
             .flat_map(|a| [[a, a + 1, a + n + 1], [a + 1, a + n + 2, a + n + 1]])
             .collect();
         let mut normals = vec![Vec3::ZERO; positions.len()];
-        toile_assets::mesh::vertex_normals(&positions, &triangles, &mut normals);
+        toile_base::mesh::vertex_normals(&positions, &triangles, &mut normals);
         let colours = positions.iter().map(|p| (*p + 0.5).clamp(Vec3::ZERO, Vec3::ONE)).collect();
         Self { positions, normals, triangles, colours }
     }

@@ -7,15 +7,13 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use glam::{Affine3A, Mat3, Vec2, Vec3};
-use toile_assets::body::Body;
-use toile_assets::rig::Rig;
 use toile_assets::scene::{SHOPPER, shopper};
 use toile_assets::wardrobe;
+use toile_base::frame::{DepthFrame, Intrinsics, Joints};
 use toile_engine::body::JointFrames;
 use toile_engine::cloth::Settings;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_sensors::colour_camera::ColourCamera;
-use toile_sensors::frame::{DepthFrame, Intrinsics, Joints};
 use toile_sensors::lens::BrownConrady;
 use toile_sensors::person_mask::PersonMask;
 use toile_sensors::source::live::ColourImage;
@@ -90,9 +88,10 @@ fn camera(lens: Option<BrownConrady>) -> ColourCamera {
 
 #[test]
 fn a_picture_costs_no_allocation_once_one_was_drawn() {
-    let body = Body::build(SHOPPER.0, &SHOPPER.1).unwrap();
+    let body = toile_assets::body::build(SHOPPER.0, &SHOPPER.1).unwrap();
     let dress = wardrobe::style("sun-dress").unwrap().dress("38", &body).unwrap();
-    let (mut frame, mut reader) = Frame::new(body.clone(), &Rig::fit(&body), vec![dress], Settings::default()).unwrap();
+    let (mut frame, mut reader) =
+        Frame::new(body.clone(), &toile_assets::rig::fit(&body), vec![dress], Settings::default()).unwrap();
     let seen = moments(&mut frame, &mut || reader.latest().clone());
     let model = OwnPictureModel::of(frame.body(), frame.garments());
     let picture = ColourImage { width: 320, height: 240, rgb: [150, 140, 130].repeat(320 * 240) };

@@ -4,9 +4,10 @@ use std::time::Instant;
 
 use serde::Serialize;
 use thiserror::Error;
-use toile_assets::body::{Ansur, Body, BodyError, Fitted, Sex, Vocabulary, Wanted, sound};
-use toile_assets::mesh::Mesh;
-use toile_assets::numeric::statistics::quantile;
+use toile_assets::body::{Ansur, BodyError, Fitted, Vocabulary, Wanted, sound};
+use toile_base::body::{Body, Sex};
+use toile_base::mesh::Mesh;
+use toile_base::numeric::statistics::quantile;
 
 use super::survey::{Survey, SurveyError};
 use crate::random::CaseRandom;
@@ -158,13 +159,13 @@ pub fn study(survey: &Survey, count: usize, seed: u64, progress: &dyn Fn()) -> R
     if survey.people() == 0 {
         return Err(StudyError::Nobody);
     }
-    let base = Body::drawn(sex);
+    let base = toile_assets::body::drawn(sex);
     let mut built = Vec::new();
     for row in chosen(survey.people(), count, seed) {
         let metres = |k: usize| (columns[k][row] * 1e-3) as f32;
         let wanted = (0..GIVEN.len()).fold(Wanted::new(), |w, k| w.with(GIVEN[k].0, metres(k)));
         let begun = Instant::now();
-        let fitted = Body::fitted(sex, &wanted);
+        let fitted = toile_assets::body::fitted(sex, &wanted);
         let ms = begun.elapsed().as_secs_f64() * 1e3;
         let (fitted, reached) = match fitted {
             Ok(fitted) => (fitted, true),

@@ -7,8 +7,8 @@ use std::f32::consts::TAU;
 
 use glam::{DVec3, Vec3};
 use serde::Serialize;
-use toile_assets::numeric::random::SplitMix64;
-use toile_assets::numeric::statistics::quantile;
+use toile_base::numeric::random::SplitMix64;
+use toile_base::numeric::statistics::quantile;
 use toile_capture::body::{
     BodyFollower, FollowedFrame, SilhouetteBody, SilhouetteOptions, SilhouetteView, measure, overlay_png,
 };

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use toile_assets::numeric::statistics::median_of;
+use toile_base::numeric::statistics::median_of;
 use toile_engine::cloth::layers::Layers;
 use toile_engine::cloth::{Settings, Step};
 use toile_engine::colliders::Colliders;

@@ -1,6 +1,6 @@
 //! Order that was lost: the outer garment starts inside the inner one.
 
-use toile_assets::numeric::random::SplitMix64;
+use toile_base::numeric::random::SplitMix64;
 
 use super::row::{ContactError, ContactRow};
 use super::scenes::{self, play, runner};

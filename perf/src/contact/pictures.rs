@@ -4,8 +4,8 @@ use std::f32::consts::{FRAC_PI_2, PI};
 
 use glam::Vec3;
 use serde::Serialize;
-use toile_assets::limits::STEP_SECONDS;
-use toile_assets::skeleton::{Pose, Skeleton};
+use toile_base::limits::STEP_SECONDS;
+use toile_base::skeleton::{Pose, Skeleton};
 use toile_fitting::heap::HeapProbe;
 use toile_fitting::wearing::poses::{arms_down, arms_raised, sitting};
 use toile_view::contact_sheet;

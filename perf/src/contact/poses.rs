@@ -1,6 +1,6 @@
 //! The poses in which cloth is held against the skin.
 
-use toile_assets::skeleton::{Joint, Pose, Skeleton};
+use toile_base::skeleton::{Joint, Pose, Skeleton};
 use toile_fitting::wearing::poses::{arms_down, bent, sitting, with_arms};
 
 /// A pose by its name.
@@ -22,15 +22,15 @@ pub const POSES: [NamedPose; 4] = [
 #[cfg(test)]
 mod tests {
     use glam::{Affine3A, Vec3};
-    use toile_assets::body::{Body, Measures, Sex};
-    use toile_assets::skeleton::BONES;
+    use toile_base::body::{Measures, Sex};
+    use toile_base::skeleton::BONES;
     use toile_engine::body::palette;
 
     use super::*;
 
     #[test]
     fn limbs_are_where_the_poses_say() {
-        let skeleton = Body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap().skeleton;
+        let skeleton = toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap().skeleton;
         let limb = |pose: usize, from: Joint, to: Joint| {
             let mut bones = [Affine3A::IDENTITY; BONES];
             palette(&skeleton, &(POSES[pose].of)(&skeleton), &mut bones);

@@ -1,8 +1,8 @@
 //! Garments on the skin that is seen: what it costs over cones, and how much of them is outside of it.
 
 use glam::DVec3;
-use toile_assets::limits::STEP_SECONDS;
-use toile_assets::skeleton::Pose;
+use toile_base::limits::STEP_SECONDS;
+use toile_base::skeleton::Pose;
 use toile_engine::body_surface::BodyPart;
 use toile_fitting::heap::HeapProbe;
 

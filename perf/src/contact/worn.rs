@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use toile_assets::numeric::statistics::quantile;
+use toile_base::numeric::statistics::quantile;
 use toile_fitting::heap::HeapProbe;
 use toile_gpu::backend::Backend;
 

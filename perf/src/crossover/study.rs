@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 use toile_assets::put_line;
 
 use serde::Serialize;
-use toile_assets::numeric::statistics::median;
+use toile_base::numeric::statistics::median;
 use toile_fitting::heap::HeapProbe;
 use toile_gpu::backend::{Backend, Backends};
 

@@ -11,7 +11,7 @@ mod truth;
 use serde::Serialize;
 use toile_assets::body::BodyError;
 use toile_assets::put_line;
-use toile_sensors::frame::Intrinsics;
+use toile_base::frame::Intrinsics;
 
 pub use stages::StageTimes;
 pub use truth::DepthErrors;

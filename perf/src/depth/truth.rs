@@ -2,12 +2,13 @@
 
 use glam::{Quat, Vec3};
 use serde::Serialize;
-use toile_assets::body::{Body, BodyError, Measures, Sex};
-use toile_assets::numeric::random::SplitMix64;
+use toile_assets::body::BodyError;
+use toile_base::body::{Body, Measures, Sex};
+use toile_base::frame::{DepthFrame, Intrinsics};
+use toile_base::numeric::random::SplitMix64;
 use toile_sensors::depth::gaussian::Gaussian;
 use toile_sensors::depth::smooth::{EdgePreserving, plain};
 use toile_sensors::depth::{Clean, DepthSmoothing, SensorNoise};
-use toile_sensors::frame::{DepthFrame, Intrinsics};
 use toile_sensors::segment::{Segmenter, Zone};
 use toile_sensors::source::synthetic::room::{self, PERSON, RoomView};
 use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera};
@@ -52,7 +53,7 @@ pub struct DepthErrors {
 
 impl People {
     pub fn new() -> Result<Self, BodyError> {
-        let body = |sex| Body::build(sex, &Measures::average(sex));
+        let body = |sex| toile_assets::body::build(sex, &Measures::average(sex));
         Ok(Self([body(Sex::Female)?, body(Sex::Male)?]))
     }
 

@@ -1,7 +1,7 @@
 //! Laws of signed distance: exact on what has a formula, and the same as by looking at every triangle.
 
 use glam::DVec3;
-use toile_assets::body::{Body, Measures, Sex};
+use toile_base::body::{Measures, Sex};
 
 use super::DistanceMesh;
 use super::closest::{TrianglePart, closest_point};
@@ -56,7 +56,7 @@ fn a_sharp_fold_keeps_its_sign_beyond_its_edge() {
 
 #[test]
 fn the_tree_finds_what_every_triangle_has_on_a_body() {
-    let body = Body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
+    let body = toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
     let positions: Vec<DVec3> = body.mesh.positions.iter().map(|p| p.as_dvec3()).collect();
     let mesh = DistanceMesh::new(&positions, &body.mesh.triangles);
     assert_eq!(mesh.open_edges(), 0, "the body is a closed surface");

@@ -2,11 +2,14 @@
 
 use glam::{Affine3A, DVec2, DVec3, Vec3};
 use thiserror::Error;
-use toile_assets::bake::bake;
-use toile_assets::fabric::{Fabric, FabricError};
-use toile_assets::garment::{Garment, MeshError, Part, Shape};
-use toile_assets::mesh::{SkinWeights, vertex_normals};
-use toile_assets::skeleton::BONES;
+use toile_assets::fabric::FabricError;
+use toile_bake::Shape;
+use toile_bake::bake;
+use toile_bake::check::MeshError;
+use toile_base::fabric::Fabric;
+use toile_base::garment::{Garment, Part};
+use toile_base::mesh::{SkinWeights, vertex_normals};
+use toile_base::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Quality, Settings, Step};
 use toile_engine::colliders::{ColliderError, Colliders};
 use toile_view::image::{Image, Size, linear};
@@ -109,7 +112,7 @@ impl DrapedCloth {
 
     /// Median time of a step (us).
     pub fn step_us(&mut self) -> f64 {
-        toile_assets::numeric::statistics::median(&mut self.times_ns).map_or(0.0, |ns| ns as f64 * 1e-3)
+        toile_base::numeric::statistics::median(&mut self.times_ns).map_or(0.0, |ns| ns as f64 * 1e-3)
     }
 
     /// A picture of it, from above and before.

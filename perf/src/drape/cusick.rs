@@ -10,8 +10,8 @@ use std::f64::consts::TAU;
 use delaunator::{Point, triangulate};
 use glam::{DVec2, Vec3};
 use serde::Serialize;
-use toile_assets::fabric::Fabric;
-use toile_assets::garment::shape::NO_VERTEX;
+use toile_bake::shape::NO_VERTEX;
+use toile_base::fabric::Fabric;
 use toile_engine::cloth::Quality;
 use toile_engine::colliders::Colliders;
 use toile_view::image::{Image, Size};
@@ -203,7 +203,7 @@ mod tests {
     #[test]
     fn cloth_that_does_not_bend_drapes_little_and_paper_hardly_at_all() {
         let of = |bend: f32| {
-            let mut fabric = Fabric::built_in("cotton-lawn").unwrap();
+            let mut fabric = toile_assets::fabric::built_in("cotton-lawn").unwrap();
             (fabric.bend_warp_un_m, fabric.bend_weft_un_m) = (bend, bend);
             cusick(&fabric, 20.0, Quality::Shop, false).unwrap().drape_percent
         };

@@ -7,7 +7,7 @@
 
 use glam::{DVec2, DVec3, Vec3};
 use serde::Serialize;
-use toile_assets::fabric::Fabric;
+use toile_base::fabric::Fabric;
 use toile_engine::cloth::Quality;
 use toile_engine::colliders::{Colliders, RestSphere};
 use toile_view::image::{Image, Size};
@@ -218,7 +218,7 @@ mod tests {
 
     #[test]
     fn a_coarse_tablecloth_hangs_over_its_table() {
-        let fabric = Fabric::built_in("cotton-broad").unwrap();
+        let fabric = toile_assets::fabric::built_in("cotton-broad").unwrap();
         let study = tablecloth(&fabric, &["plain", "both"], 5.0, &mut |_| ()).unwrap();
         assert_eq!(study.rows.len(), 2);
         for row in study.rows {

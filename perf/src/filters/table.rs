@@ -4,7 +4,6 @@ use std::path::Path;
 use toile_assets::put_line;
 
 use serde::Serialize;
-use toile_assets::body::Body;
 use toile_assets::scene;
 use toile_sensors::source::{OpenOptions, Session, open};
 
@@ -46,7 +45,7 @@ pub struct FilterTable {
 /// # Errors
 /// Where the scene's shopper cannot be built, or a recording cannot be read.
 pub fn run(data: Option<&Path>, all: bool, progress: &mut dyn FnMut(&str)) -> Result<FilterTable, FiltersError> {
-    let body = Body::build(scene::SHOPPER.0, &scene::SHOPPER.1)?.skeleton;
+    let body = toile_assets::body::build(scene::SHOPPER.0, &scene::SHOPPER.1)?.skeleton;
     let sessions = |files: &[&str]| -> Result<Vec<Session>, FiltersError> {
         let Some(data) = data else { return Ok(Vec::new()) };
         files.iter().map(|file| Ok(open(&data.join(file), &OpenOptions::default())?)).collect()

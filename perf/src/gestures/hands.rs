@@ -3,12 +3,12 @@
 use std::f32::consts::TAU;
 
 use glam::{Quat, Vec3};
-use toile_assets::numeric::random::SplitMix64;
-use toile_sensors::frame::{DepthFrame, Intrinsics};
+use toile_base::frame::{DepthFrame, Intrinsics};
+use toile_base::numeric::random::SplitMix64;
 use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera};
 use toile_track::gesture::{Grip, HandRegion, HandSegmenter, HandShape};
 
-toile_assets::named! {
+toile_base::named! {
     /// What a hand is like.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum HandPose {

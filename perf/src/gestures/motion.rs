@@ -1,7 +1,7 @@
 //! What a simulated shopper does: keys in time for both wrists and the trunk, minimum-jerk between them.
 
 use glam::Vec3;
-use toile_assets::numeric::random::SplitMix64;
+use toile_base::numeric::random::SplitMix64;
 use toile_track::gesture::Gesture;
 
 /// A moment of a motion.

@@ -1,6 +1,6 @@
 //! How full everything was that has a bound: the queues, the schedule, the frame's capacities.
 
-use toile_assets::limits::{MAX_CAPSULES, MAX_PLANES, MAX_SPHERES};
+use toile_base::limits::{MAX_CAPSULES, MAX_PLANES, MAX_SPHERES};
 use toile_engine::cloth::layers::MOST_CROSSINGS;
 use toile_engine::cloth::settings::MAX_SUBSTEPS;
 use toile_engine::cloth::{Cloth, stiff_bending};

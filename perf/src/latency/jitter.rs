@@ -3,7 +3,7 @@
 use std::thread;
 use std::time::Duration;
 
-use toile_assets::limits::STEP_HZ;
+use toile_base::limits::STEP_HZ;
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::frame_loop::ThreadLoop;
 use toile_engine::frame_loop::schedule::{Due, Schedule};

@@ -2,7 +2,7 @@
 //! it holds for 68 of 100 of them, and how it then holds for people of the other.
 
 use serde::Serialize;
-use toile_assets::numeric::statistics::quantile;
+use toile_base::numeric::statistics::quantile;
 use toile_track::fit::measuring::{MEASURES, model_error};
 
 use super::study::{MeasuringStudy, StatedError};

@@ -9,12 +9,12 @@ use std::path::Path;
 
 use glam::{Quat, Vec2, Vec3};
 use toile_assets::body::tape::{girth, hull, perimeter, slice};
-use toile_assets::body::{Body, Region, Sex};
 use toile_assets::import::avatar::{AvatarError, ImportOptions};
 use toile_assets::import::makehuman::{self, MakehumanOptions};
-use toile_assets::numeric::random::SplitMix64;
-use toile_assets::numeric::statistics::quantile;
-use toile_assets::skeleton::{Joint, Pose};
+use toile_base::body::{Body, Region, Sex};
+use toile_base::numeric::random::SplitMix64;
+use toile_base::numeric::statistics::quantile;
+use toile_base::skeleton::{Joint, Pose};
 use toile_track::fit::measuring::MEASURES;
 
 use super::standing::{Breathing, Motion, StudyPerson, TapeMeasures};

@@ -4,10 +4,11 @@ use std::f32::consts::TAU;
 
 use glam::{Quat, Vec3};
 use toile_assets::body::shape::Shapes;
-use toile_assets::body::{Ansur, Body, BodyError, Region, Sex, Wanted};
-use toile_assets::mesh::vertex_normals;
-use toile_assets::numeric::random::SplitMix64;
-use toile_assets::skeleton::{Joint, Pose};
+use toile_assets::body::{Ansur, BodyError, Wanted};
+use toile_base::body::{Body, Region, Sex};
+use toile_base::mesh::vertex_normals;
+use toile_base::numeric::random::SplitMix64;
+use toile_base::skeleton::{Joint, Pose};
 use toile_track::fit::measuring::MEASURES;
 
 use super::standing::{Motion, StudyPerson};

@@ -1,14 +1,14 @@
 //! The two depth cameras of the study, each with small errors of its calibration.
 
 use glam::{Affine3A, Quat, Vec3};
-use toile_assets::numeric::random::SplitMix64;
-use toile_sensors::frame::{DepthFrame, Intrinsics};
+use toile_base::frame::{DepthFrame, Intrinsics};
+use toile_base::numeric::random::SplitMix64;
 use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera};
 
 use super::second_noise;
 use super::standing::{JointPositions, Moment, StudyPerson};
 
-toile_assets::named! {
+toile_base::named! {
     /// A kind of depth camera.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum Sensor {

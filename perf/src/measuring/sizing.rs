@@ -1,7 +1,7 @@
 //! How often measured people get the size that their true measures get.
 
 use serde::Serialize;
-use toile_assets::body::Sex;
+use toile_base::body::Sex;
 use toile_track::estimate::Estimate;
 use toile_track::fit::measuring::MEASURES;
 

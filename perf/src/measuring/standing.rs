@@ -3,9 +3,10 @@
 use std::f32::consts::TAU;
 
 use glam::{Affine3A, Quat, Vec3};
-use toile_assets::body::{Body, Region, Sex, tape};
-use toile_assets::numeric::random::SplitMix64;
-use toile_assets::skeleton::{BONES, JOINTS, Joint, Pose};
+use toile_assets::body::tape;
+use toile_base::body::{Body, Region, Sex};
+use toile_base::numeric::random::SplitMix64;
+use toile_base::skeleton::{BONES, JOINTS, Joint, Pose};
 use toile_engine::body::{JointFrames, palette};
 use toile_track::fit::measuring::MEASURES;
 

@@ -3,8 +3,8 @@
 use std::f32::consts::FRAC_PI_2;
 
 use glam::{Quat, Vec3};
-use toile_assets::mesh::vertex_normals;
-use toile_assets::numeric::random::SplitMix64;
+use toile_base::mesh::vertex_normals;
+use toile_base::numeric::random::SplitMix64;
 use toile_fitting::dress::depth::posed;
 use toile_track::fit::measuring::FittedMeasures;
 use toile_view::contact_sheet::contact_sheet;

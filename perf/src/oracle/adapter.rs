@@ -1,7 +1,7 @@
 //! From the engine's colliders and positions to the oracle's: the one place that knows both, and it copies numbers only.
 
 use glam::{DVec3, Vec3A, Vec4, Vec4Swizzles};
-use toile_assets::garment::Garment;
+use toile_base::garment::Garment;
 use toile_engine::cloth::contact;
 use toile_engine::colliders::Colliders;
 

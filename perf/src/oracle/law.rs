@@ -5,8 +5,8 @@
 //! link itself solves e + give T(e) = y, on one of five lines. Where it sticks moves after a step, as far as friction lets it.
 
 use glam::DVec3;
-use toile_assets::fabric::friction_element::STICKING;
-use toile_assets::fabric::link_law::LinkLaw;
+use toile_base::fabric::friction_element::STICKING;
+use toile_base::fabric::link_law::LinkLaw;
 
 use super::problem::Link;
 

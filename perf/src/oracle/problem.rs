@@ -1,10 +1,10 @@
 //! The discretisation in f64: particles, links, bending stencils; plain data, or what a baked garment holds.
 
 use glam::DVec3;
-use toile_assets::fabric::link_law::LinkLaw;
-use toile_assets::garment::Garment;
-use toile_assets::garment::layout::{Bends, Diagonals, ENDED, FiberLists, Fibers, Hubs, Links};
-use toile_assets::garment::link_laws::LawTable;
+use toile_base::fabric::link_law::LinkLaw;
+use toile_base::garment::Garment;
+use toile_base::garment::layout::{Bends, Diagonals, ENDED, FiberLists, Fibers, Hubs, Links};
+use toile_base::garment::link_laws::LawTable;
 
 use super::error::OracleError;
 

@@ -1,7 +1,7 @@
 //! The solver: rounds of the method of multipliers around Newton's method, and one step of implicit Euler by it.
 
 use glam::DVec3;
-use toile_assets::fabric::link_law::LinkLaw;
+use toile_base::fabric::link_law::LinkLaw;
 
 use super::energy::TotalEnergy;
 use super::energy::contact::Contact;

@@ -6,7 +6,7 @@ mod laws;
 mod sliding;
 
 use glam::DVec3;
-use toile_assets::numeric::random::SplitMix64;
+use toile_base::numeric::random::SplitMix64;
 
 use super::*;
 

@@ -3,8 +3,10 @@
 use std::path::Path;
 use std::time::Instant;
 
-use toile_assets::body::Measures;
 use toile_assets::scene::SHOPPER;
+use toile_base::body::Measures;
+use toile_base::clock::ticks_to_ns;
+use toile_base::frame::{DepthFrame, Joints};
 use toile_engine::cloth::Quality;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::frame_loop::motion_input::MotionInput;
@@ -15,10 +17,8 @@ use toile_fitting::dress::recipe::Recipe;
 use toile_fitting::dress::session;
 use toile_fitting::dress::wish::Wish;
 use toile_fitting::live::webcam::{WebcamJoints, WebcamOptions};
-use toile_sensors::clock::ticks_to_ns;
 use toile_sensors::colour_camera::ColourCamera;
 use toile_sensors::filter::JointFilter;
-use toile_sensors::frame::{DepthFrame, Joints};
 use toile_sensors::person_mask::PersonMask;
 use toile_sensors::segment::Zone;
 use toile_track::fit::FitOptions;
@@ -39,7 +39,7 @@ const WEBCAM_NS: u64 = 8_000_000;
 /// Steps whose snapshots are kept.
 const KEPT: usize = 16;
 
-toile_assets::named! {
+toile_base::named! {
     /// What sees somebody.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum Seer {

@@ -4,9 +4,9 @@ use std::f32::consts::{PI, TAU};
 
 use glam::{Quat, Vec3};
 use toile_assets::scene::shopper;
-use toile_assets::skeleton::{Joint, Pose, Skeleton};
+use toile_base::frame::Joints;
+use toile_base::skeleton::{Joint, Pose, Skeleton};
 use toile_engine::body::JointFrames;
-use toile_sensors::frame::Joints;
 
 /// Time in which they stand still first, and in which they begin to move (s).
 const STILL_S: f32 = 1.2;
@@ -17,7 +17,7 @@ const SPEED: f32 = 1.0;
 const ASIDE: f32 = 0.5;
 const STEPS_HZ: f32 = 0.9;
 
-toile_assets::named! {
+toile_base::named! {
     /// What somebody does.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum OwnMotion {
@@ -129,11 +129,11 @@ fn lead_arms(joints: &mut Joints, skeleton: &Skeleton, share: f32, arms: &ArmWay
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_assets::body::{Body, Measures, Sex};
+    use toile_base::body::{Measures, Sex};
 
     #[test]
     fn whoever_walks_walks_at_a_metre_a_second_and_no_limb_changes_its_length() {
-        let body = Body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
+        let body = toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
         let skeleton = &body.skeleton;
         for motion in OwnMotion::ALL {
             let (mut fastest, mut before) = (0.0_f32, motion.joints(skeleton, 2.0, 0));

@@ -5,9 +5,9 @@
 //! Every coarse particle is one of the fine ones, and distances are between those alone that hang.
 
 use glam::{DVec3, Vec3};
-use toile_assets::fabric::Fabric;
-use toile_assets::garment::{Part, Shape};
-use toile_assets::mesh::SkinWeights;
+use toile_bake::Shape;
+use toile_base::garment::Part;
+use toile_base::mesh::SkinWeights;
 use toile_engine::cloth::Quality;
 use toile_engine::colliders::{Colliders, RestSphere};
 
@@ -97,7 +97,7 @@ fn tablecloth(cells: usize, seconds: f64) -> Result<MeshedScene, ParetoError> {
             shape.faces.push([at(row + 1, column), at(row + 1, column + 1), at(row, column + 1), at(row, column)]);
         }
     }
-    let mut fabric = Fabric::built_in("cotton-lawn")?;
+    let mut fabric = toile_assets::fabric::built_in("cotton-lawn")?;
     fabric.damping_per_s = DAMPING_PER_S;
     let below = -(EDGE_M as f32 + fabric.contact_offset_mm * 1e-3);
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];

@@ -1,19 +1,21 @@
 //! A scene as data: a shape in a fabric, and what the surroundings do at a time.
 
 use glam::{Affine3A, DVec3, Vec4};
-use toile_assets::bake::bake;
-use toile_assets::fabric::Fabric;
-use toile_assets::garment::{Garment, Overrides, Shape, Solver};
-use toile_assets::limits::STEP_SECONDS;
 use toile_assets::scene::skirt::{self, Motion};
-use toile_assets::skeleton::{BONES, Pose, Skeleton};
+use toile_bake::Shape;
+use toile_bake::bake;
+use toile_bake::overrides::Overrides;
+use toile_base::fabric::Fabric;
+use toile_base::garment::{Garment, Solver};
+use toile_base::limits::STEP_SECONDS;
+use toile_base::skeleton::{BONES, Pose, Skeleton};
 use toile_engine::body::palette;
 use toile_engine::colliders::Colliders;
 
 use super::error::ParetoError;
 use crate::worn::on_the_way;
 
-toile_assets::named! {
+toile_base::named! {
     /// What fibers are solved by.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum SolverChoice {

@@ -3,11 +3,11 @@
 use std::time::Instant;
 
 use glam::{Affine3A, DVec3, Vec3A};
-use toile_assets::garment::Garment;
-use toile_assets::garment::layout::OWNERS;
-use toile_assets::limits::STEP_SECONDS;
-use toile_assets::numeric::statistics::median;
-use toile_assets::skeleton::BONES;
+use toile_base::garment::Garment;
+use toile_base::garment::layout::OWNERS;
+use toile_base::limits::STEP_SECONDS;
+use toile_base::numeric::statistics::median;
+use toile_base::skeleton::BONES;
 use toile_engine::cloth::program::{self, Stage};
 use toile_engine::cloth::{Cloth, Quality, Settings, Step, measure};
 use toile_engine::colliders::Colliders;

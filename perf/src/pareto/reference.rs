@@ -1,7 +1,7 @@
 //! x*: the oracle's equilibrium, or what a moment of a run becomes with very many substeps.
 
 use glam::DVec3;
-use toile_assets::garment::Garment;
+use toile_base::garment::Garment;
 use toile_engine::cloth::Quality;
 
 use super::error::ParetoError;

@@ -1,7 +1,7 @@
 //! All settings of a scene, one after the other.
 
-use toile_assets::garment::Garment;
-use toile_assets::numeric::statistics::median_of;
+use toile_base::garment::Garment;
+use toile_base::numeric::statistics::median_of;
 use toile_engine::cloth::Quality;
 use toile_fitting::plan::scene::spacing_mm;
 

@@ -5,9 +5,9 @@ use std::time::Instant;
 
 use glam::Affine3A;
 use serde::Serialize;
-use toile_assets::numeric::statistics::median;
 use toile_assets::put_line;
-use toile_assets::skeleton::BONES;
+use toile_base::numeric::statistics::median;
+use toile_base::skeleton::BONES;
 use toile_engine::lanes::Width;
 use toile_engine::skin::{Blend, SkinningJob};
 use toile_engine::workers::WorkerPool;

@@ -17,7 +17,7 @@ use std::hint::black_box;
 
 use serde::Serialize;
 use toile_assets::body::BodyError;
-use toile_assets::numeric::statistics::median_of;
+use toile_base::numeric::statistics::median_of;
 use toile_engine::lanes::Width;
 use toile_engine::skin::{Blend, Padding, Posed, SkinningJob};
 use toile_engine::workers::WorkerPool;

@@ -1,8 +1,8 @@
 //! The f64 oracle of both blends, vertex after vertex, regardless of speed.
 
 use glam::{Affine3A, DMat3, DQuat, DVec3, DVec4, Vec3};
-use toile_assets::mesh::SkinWeights;
-use toile_assets::skeleton::{BONE_CHAIN, BONES};
+use toile_base::mesh::SkinWeights;
+use toile_base::skeleton::{BONE_CHAIN, BONES};
 use toile_engine::skin::{Blend, Posed};
 
 use toile_fitting::scene::surface::Surface;

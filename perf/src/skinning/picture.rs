@@ -1,10 +1,10 @@
 //! The picture of the twist test: the shopper's forearm with its hand turned, by each blend, split and not.
 
 use glam::{Affine3A, Quat, Vec3};
-use toile_assets::body::Body;
-use toile_assets::mesh::{SkinWeights, vertex_normals};
 use toile_assets::scene;
-use toile_assets::skeleton::{BONES, Joint, Pose};
+use toile_base::body::Body;
+use toile_base::mesh::{SkinWeights, vertex_normals};
+use toile_base::skeleton::{BONES, Joint, Pose};
 use toile_engine::body::palette;
 use toile_engine::skin::Blend;
 use toile_view::contact_sheet;
@@ -35,7 +35,7 @@ const COLUMNS: [(&str, Blend, bool); 4] = [
 /// Where the shopper cannot be built.
 pub fn twist_picture() -> Result<Image, SkinningError> {
     let (sex, measures) = scene::SHOPPER;
-    let body = Body::build(sex, &measures)?;
+    let body = toile_assets::body::build(sex, &measures)?;
     let plain: Vec<SkinWeights> = body.weights.iter().map(unsplit).collect();
     let (mut images, mut captions) = (Vec::new(), Vec::new());
     for degrees in TURNS {

@@ -3,10 +3,11 @@
 
 use glam::{Affine3A, Quat, Vec3};
 use serde::Serialize;
-use toile_assets::body::{Body, Region};
-use toile_assets::mesh::{Influences, SkinWeights, WideWeights};
 use toile_assets::scene;
-use toile_assets::skeleton::{self, BONES, Joint, Pose};
+use toile_base::body::{Body, Region};
+use toile_base::mesh::{Influences, SkinWeights, WideWeights};
+use toile_base::skeleton;
+use toile_base::skeleton::{BONES, Joint, Pose};
 use toile_engine::body::{JointFrames, palette};
 use toile_engine::skin::{Blend, SkinningJob, SweptSkin};
 
@@ -80,7 +81,7 @@ pub struct Shapes {
 /// Where the shopper cannot be built.
 pub fn shapes() -> Result<Shapes, SkinningError> {
     let (sex, measures) = scene::SHOPPER;
-    let body = Body::build(sex, &measures)?;
+    let body = toile_assets::body::build(sex, &measures)?;
     let mut twists = Vec::new();
     for degrees in [90.0, 120.0, 180.0] {
         twists.push(twist("cylinder", degrees, |split, blend| cylinder(degrees, split, blend))?);

@@ -3,9 +3,8 @@
 use glam::{Affine3A, DMat3, DQuat, DVec3, Vec3};
 use serde::Serialize;
 use std::hint::black_box;
-use toile_assets::body::Body;
 use toile_assets::scene;
-use toile_assets::skeleton::{BONES, Twist};
+use toile_base::skeleton::{BONES, Twist};
 use toile_engine::body::palette;
 use toile_engine::skin::{Blend, SkinningJob, SweepBinding, SweptLimb, SweptSkin};
 use toile_fitting::scene::yardstick::{self, Yardstick};
@@ -47,7 +46,7 @@ pub struct SweepTiming {
 /// Where the shopper cannot be built.
 pub fn sweep_timing() -> Result<SweepTiming, SkinningError> {
     let (sex, measures) = scene::SHOPPER;
-    let body = Body::build(sex, &measures)?;
+    let body = toile_assets::body::build(sex, &measures)?;
     let (points, normals) = (&body.mesh.positions, &body.normals);
     let job = SkinningJob::new(points, normals, &body.weights)?;
     let sweep = SweptSkin::new(&body.skeleton, points, normals, &body.weights);

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 use toile_assets::body::BodyError;
-use toile_assets::garment::MeshError;
+use toile_bake::check::MeshError;
 use toile_engine::colliders::ColliderError;
 use toile_engine::workers::WorkerPoolError;
 

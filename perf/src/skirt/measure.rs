@@ -2,8 +2,8 @@
 
 use std::time::Instant;
 
-use toile_assets::garment::Shape;
-use toile_assets::numeric::statistics::{median, quantile};
+use toile_bake::Shape;
+use toile_base::numeric::statistics::{median, quantile};
 use toile_fitting::heap::HeapProbe;
 use toile_fitting::scene::StepTimes;
 use toile_fitting::scene::yardstick::Yardstick;

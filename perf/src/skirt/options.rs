@@ -7,7 +7,7 @@ use toile_gpu::backend::Backend;
 
 use super::error::SkirtError;
 
-toile_assets::named! {
+toile_base::named! {
     /// How the skirt is meshed.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
     pub enum SkirtMesh {
@@ -87,7 +87,7 @@ impl Default for SkirtOptions {
             lanes: None,
             quality: None,
             substeps: None,
-            step_s: toile_assets::limits::STEP_SECONDS,
+            step_s: toile_base::limits::STEP_SECONDS,
             runs: 5,
             steps: 600,
             backend: Backend::Cpu,

@@ -1,6 +1,6 @@
 //! What can go wrong in a soak, and by what it is seen to be over.
 
-use toile_assets::numeric::random::SplitMix64;
+use toile_base::numeric::random::SplitMix64;
 use toile_sensors::source::live::fault_injection::CameraFault;
 
 use super::options::SoakCamera;
@@ -11,7 +11,7 @@ const FAULT_S: [f32; 2] = [0.5, 3.0];
 /// Length of a stall (s).
 const STALL_S: f32 = 2.0;
 
-toile_assets::named! {
+toile_base::named! {
     /// What goes wrong. `until` is the end of the fault: from then on the time to its recovery counts.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
     pub enum FaultKind {

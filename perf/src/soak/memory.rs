@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use toile_assets::numeric::statistics::quantile;
+use toile_base::numeric::statistics::quantile;
 use toile_fitting::heap::HeapProbe;
 
 /// What the process held at one moment; none where the system does not say.

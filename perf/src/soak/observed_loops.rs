@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::sync::atomic::Ordering::Relaxed;
 
+use toile_base::filter::Filter;
 use toile_engine::clock::Clock;
 use toile_engine::frame::Snapshot;
 use toile_engine::frame_loop::ThreadLoop;
@@ -143,7 +144,7 @@ impl<T: ObservedLoop, C: Clock> ThreadLoop for ScriptedLoop<T, C> {
     }
 }
 
-impl<S: FrameSource, C: Clock> ObservedLoop for SensorThread<S, C> {
+impl<S: FrameSource, F: Filter, C: Clock> ObservedLoop for SensorThread<S, F, C> {
     fn observation(&mut self) -> Option<Observation> {
         None
     }

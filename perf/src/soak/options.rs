@@ -31,7 +31,7 @@ pub struct SoakOptions {
     pub workers: usize,
 }
 
-toile_assets::named! {
+toile_base::named! {
     /// How heavy the scenes are.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
@@ -43,7 +43,7 @@ toile_assets::named! {
     }
 }
 
-toile_assets::named! {
+toile_base::named! {
     /// What sees the shoppers, and so what can be wrong with it.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]

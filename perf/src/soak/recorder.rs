@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, Write};
 use std::sync::Arc;
 
-use toile_assets::numeric::hash::Fnv1a;
+use toile_base::numeric::hash::Fnv1a;
 use toile_engine::clock::Clock;
 use toile_engine::frame_loop::ThreadLoop;
 use toile_engine::frame_loop::flight_recorder::FlightRecorder;

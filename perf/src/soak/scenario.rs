@@ -3,14 +3,14 @@
 use std::f64::consts::TAU;
 
 use glam::Vec3;
-use toile_assets::body::{Body, Measures, Sex};
-use toile_assets::numeric::random::SplitMix64;
 use toile_assets::scene;
 use toile_assets::sizes::Population;
-use toile_assets::skeleton::{JOINTS, Skeleton};
 use toile_assets::wardrobe;
+use toile_base::body::{Measures, Sex};
+use toile_base::clock::SECOND_NS;
+use toile_base::numeric::random::SplitMix64;
+use toile_base::skeleton::{JOINTS, Skeleton};
 use toile_engine::body::JointFrames;
-use toile_sensors::clock::SECOND_NS;
 
 use super::error::SoakError;
 use super::fault_kind::FaultKind;
@@ -177,7 +177,7 @@ impl Wardrobe {
         }
         let average = |sex| {
             let measures = Measures::average(sex);
-            Body::build(sex, &measures).map(|b| (measures.stature, b.skeleton)).map_err(|e| wrong(&e))
+            toile_assets::body::build(sex, &measures).map(|b| (measures.stature, b.skeleton)).map_err(|e| wrong(&e))
         };
         Ok(Self { outfits, skeletons: [average(Sex::Female)?, average(Sex::Male)?] })
     }

@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use toile_assets::body::Body;
-use toile_assets::garment::Garment;
-use toile_assets::rig::Rig;
 use toile_assets::wardrobe;
+use toile_base::body::Body;
+use toile_base::frame::Joints;
+use toile_base::garment::Garment;
+use toile_base::rig::Rig;
 use toile_engine::cloth::{Quality, Settings};
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::triple_buffer::Reader;
-use toile_sensors::frame::Joints;
 
 use super::error::SoakError;
 use super::options::SceneWeight;
@@ -62,15 +62,15 @@ impl SceneMaker {
         if self.last.as_ref().is_none_or(|(last, ..)| *last != visit) {
             let who = &self.scenario.visits[visit];
             // Not every set of measures goes together; those of a size do.
-            let built = who.measures.iter().find_map(|m| Body::build(who.sex, m).ok());
+            let built = who.measures.iter().find_map(|m| toile_assets::body::build(who.sex, m).ok());
             let body = match built {
                 Some(body) => body,
                 None => {
-                    let average = toile_assets::body::Measures::average(who.sex);
-                    Body::build(who.sex, &average).map_err(|e| e.to_string())?
+                    let average = toile_base::body::Measures::average(who.sex);
+                    toile_assets::body::build(who.sex, &average).map_err(|e| e.to_string())?
                 }
             };
-            let rig = Rig::fit(&body);
+            let rig = toile_assets::rig::fit(&body);
             self.last = Some((visit, body, rig));
         }
         self.last.as_ref().map(|(_, body, rig)| (body, rig)).ok_or_else(String::new)

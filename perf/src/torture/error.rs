@@ -1,7 +1,7 @@
 //! Why a case cannot be run.
 
 use thiserror::Error;
-use toile_assets::garment::MeshError;
+use toile_bake::check::MeshError;
 
 use crate::oracle::OracleError;
 

@@ -4,7 +4,7 @@
 //! engine's own error.
 
 use glam::{DVec3, Vec3A};
-use toile_assets::garment::Garment;
+use toile_base::garment::Garment;
 use toile_engine::cloth::{Cloth, Settings};
 use toile_engine::colliders::Colliders;
 

@@ -157,7 +157,7 @@ fn uncrossed(mut trial: Trial<'_>, pieces: &Pieces) -> TrialFindings {
 
 #[cfg(test)]
 mod tests {
-    use toile_assets::garment::Face;
+    use toile_bake::shape::Face;
 
     use super::*;
     use crate::torture::crossed::CrossedEdges;

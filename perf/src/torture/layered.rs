@@ -1,7 +1,7 @@
 //! Cases of cloths over one another: in the wrong order, and thrown at each other.
 
 use glam::{Quat, Vec2, Vec3};
-use toile_assets::garment::MeshError;
+use toile_bake::check::MeshError;
 
 use super::layer_trial::LayerTrial;
 use super::outcome::TrialFindings;

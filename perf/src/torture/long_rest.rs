@@ -4,7 +4,7 @@
 use std::time::Instant;
 
 use glam::Vec3;
-use toile_assets::numeric::statistics::median;
+use toile_base::numeric::statistics::median;
 
 use super::outcome::TrialFindings;
 use super::pieces::Pieces;

@@ -3,11 +3,12 @@
 use std::f32::consts::TAU;
 
 use glam::{Affine3A, DVec3, Vec3, Vec3A};
-use toile_assets::bake::bake;
-use toile_assets::fabric::Fabric;
-use toile_assets::garment::{Garment, Part, Shape};
-use toile_assets::mesh::SkinWeights;
-use toile_assets::skeleton::BONES;
+use toile_bake::Shape;
+use toile_bake::bake;
+use toile_base::fabric::Fabric;
+use toile_base::garment::{Garment, Part};
+use toile_base::mesh::SkinWeights;
+use toile_base::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::Colliders;
 
@@ -102,7 +103,7 @@ fn settled(garment: &Garment, settings: &Settings) -> Cloth {
 /// # Panics
 /// Where the fabric is not built in, which its own tests rule out.
 pub fn lawn() -> Fabric {
-    let lawn = Fabric::built_in("cotton-lawn").expect("a fabric that is built in");
+    let lawn = toile_assets::fabric::built_in("cotton-lawn").expect("a fabric that is built in");
     Fabric { damping_per_s: DAMPING_PER_S, ..lawn }
 }
 

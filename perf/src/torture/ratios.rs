@@ -1,10 +1,11 @@
 //! Cases of masses and stiffnesses far apart, with the two chains and the strand that others have published.
 
 use glam::{Quat, Vec3};
-use toile_assets::bake::bake;
-use toile_assets::fabric::Fabric;
-use toile_assets::garment::{Garment, Part, Shape};
-use toile_assets::mesh::SkinWeights;
+use toile_bake::Shape;
+use toile_bake::bake;
+use toile_base::fabric::Fabric;
+use toile_base::garment::{Garment, Part};
+use toile_base::mesh::SkinWeights;
 use toile_engine::cloth::Settings;
 
 use super::outcome::TrialFindings;

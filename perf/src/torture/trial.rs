@@ -1,8 +1,8 @@
 //! One trial: a cloth, what is done to it, and what is seen of it from the first step on.
 
 use glam::{Affine3A, Vec3, Vec3A, Vec4};
-use toile_assets::garment::Garment;
-use toile_assets::skeleton::BONES;
+use toile_base::garment::Garment;
+use toile_base::skeleton::BONES;
 use toile_engine::cloth::guard::GuardEvents;
 use toile_engine::cloth::layers::Layers;
 use toile_engine::cloth::{Cloth, Settings, Step};

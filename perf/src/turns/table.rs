@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
-use toile_assets::numeric::statistics::median;
+use toile_base::numeric::statistics::median;
 use toile_engine::cloth::program::METERED_STAGES;
 
 use super::case::TurnCase;

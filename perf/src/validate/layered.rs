@@ -3,10 +3,11 @@
 use std::time::Instant;
 
 use glam::{Affine3A, DVec3};
-use toile_assets::bake::bake;
-use toile_assets::garment::{Garment, Shape};
-use toile_assets::numeric::statistics::median_of;
-use toile_assets::skeleton::BONES;
+use toile_bake::Shape;
+use toile_bake::bake;
+use toile_base::garment::Garment;
+use toile_base::numeric::statistics::median_of;
+use toile_base::skeleton::BONES;
 use toile_engine::cloth::layers::Layers;
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::Colliders;

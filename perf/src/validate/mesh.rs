@@ -6,13 +6,15 @@
 
 use delaunator::{Point, triangulate};
 use glam::{DVec2, DVec3};
-use toile_assets::fabric::loop_widths::LoopWidths;
-use toile_assets::fabric::stretch_curve::{ShearLock, StretchCurve, StretchCurves};
-use toile_assets::fabric::{Fabric, USUAL_SHEEN, USUAL_THREADS, Weave};
-use toile_assets::garment::shape::{NO_VERTEX, Part};
-use toile_assets::garment::{Face, Shape};
-use toile_assets::mesh::SkinWeights;
-use toile_assets::numeric::random::SplitMix64;
+use toile_bake::Shape;
+use toile_bake::shape::Face;
+use toile_bake::shape::NO_VERTEX;
+use toile_base::fabric::loop_widths::LoopWidths;
+use toile_base::fabric::stretch_curve::{ShearLock, StretchCurve, StretchCurves};
+use toile_base::fabric::{Fabric, USUAL_SHEEN, USUAL_THREADS, Weave};
+use toile_base::garment::Part;
+use toile_base::mesh::SkinWeights;
+use toile_base::numeric::random::SplitMix64;
 
 /// How a strip is meshed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -295,7 +297,7 @@ impl CaseFabric {
             friction: self.friction as f32,
             damping_per_s: self.damping as f32,
             contact_offset_mm: 1.0,
-            thickness_mm: toile_assets::fabric::USUAL_THICKNESS_MM,
+            thickness_mm: toile_base::fabric::USUAL_THICKNESS_MM,
             comfortable_stretch: 0.1,
             colour: [0.5; 3],
             weave: Weave::Plain,

@@ -13,13 +13,14 @@ use std::time::Instant;
 use glam::Vec3;
 use serde::Serialize;
 use toile_assets::body::BodyError;
-use toile_assets::numeric::statistics::quantile_of;
 use toile_assets::put_line;
-use toile_assets::skeleton::Joint::{self, *};
+use toile_base::frame::Joints;
+use toile_base::numeric::statistics::quantile_of;
+use toile_base::skeleton::Joint;
+use toile_base::skeleton::Joint::*;
 use toile_fitting::live::webcam::{WebcamJoints, WebcamOptions};
 use toile_pose::files::PoseError;
 use toile_pose::tracker::PoseModel;
-use toile_sensors::frame::Joints;
 use toile_sensors::segment::Zone;
 use toile_track::fit::FitOptions;
 use toile_track::fit::tracker::BodyTracker;
@@ -268,7 +269,7 @@ mod tests {
 
     #[test]
     fn what_is_seen_as_it_is_has_no_angle_and_a_quarter_has_ninety_degrees() {
-        let mut places = [Vec3::ZERO; toile_assets::skeleton::JOINTS];
+        let mut places = [Vec3::ZERO; toile_base::skeleton::JOINTS];
         places[LeftElbow.index()] = Vec3::X;
         let truth = Joints::seen(0, places);
         places[LeftElbow.index()] = Vec3::Y * 0.3;

@@ -1,11 +1,10 @@
 //! A mannequin of average measures, and garments of the wardrobe in the size nearest to it.
 
-use toile_assets::body::{Body, Measures, Sex};
-use toile_assets::fabric::Fabric;
-use toile_assets::garment::Shape;
-use toile_assets::rig::Rig;
 use toile_assets::sizes::{Population, SizeTable};
 use toile_assets::wardrobe;
+use toile_bake::Shape;
+use toile_base::body::{Body, Measures, Sex};
+use toile_base::fabric::Fabric;
 use toile_engine::colliders::{Colliders, RestSphere};
 
 use super::error::WornError;
@@ -28,7 +27,7 @@ impl AverageBody {
         let table = wardrobe::style(garment)?.sizes()?;
         let sex = if table.population == Population::Men { Sex::Male } else { Sex::Female };
         let measures = Measures::average(sex);
-        Ok(Self { body: Body::build(sex, &measures)?, measures })
+        Ok(Self { body: toile_assets::body::build(sex, &measures)?, measures })
     }
 
     /// Its spheres and capsules, and the floor, before their first placement.
@@ -36,9 +35,8 @@ impl AverageBody {
     /// # Errors
     /// Where the engine does not take them.
     pub fn colliders(&self) -> Result<Colliders, WornError> {
-        let rig = Rig::fit(&self.body);
-        let sphere =
-            |s: &toile_assets::rig::Sphere| RestSphere::on_bone(&self.body.skeleton, s.bone, s.offset, s.radius);
+        let rig = toile_assets::rig::fit(&self.body);
+        let sphere = |s: &toile_base::rig::Sphere| RestSphere::on_bone(&self.body.skeleton, s.bone, s.offset, s.radius);
         let spheres = rig.spheres.each_ref().map(sphere);
         Ok(Colliders::new(&spheres, &rig.capsules, true)?)
     }
@@ -51,7 +49,7 @@ impl AverageBody {
         let style = wardrobe::style(garment)?;
         let size = nearest(&style.sizes()?, &self.measures)?;
         let shape = style.draft(&size, &self.body)?;
-        let fabric = Fabric::built_in(&style.fabric)?;
+        let fabric = toile_assets::fabric::built_in(&style.fabric)?;
         Ok((size, shape, fabric))
     }
 }

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use toile_assets::numeric::statistics::{median, quantile};
+use toile_base::numeric::statistics::{median, quantile};
 use toile_engine::cloth::measure as engine;
 use toile_fitting::heap::HeapProbe;
 use toile_fitting::scene::StepTimes;
@@ -42,7 +42,7 @@ pub fn measure(options: &WornOptions, heap: &HeapProbe) -> Result<WornReport, Wo
     let p50 = median(&mut medians.clone()).unwrap_or(0.0);
     let mut time = |part| quantile(&mut times, part).unwrap_or(0.0);
     let step_us = StepTimes { p50, p99: time(0.99), p999: time(0.999), max: time(1.0) };
-    let moving = |g: &toile_assets::garment::Garment| g.inverse_mass.iter().filter(|w| **w > 0.0).count();
+    let moving = |g: &toile_base::garment::Garment| g.inverse_mass.iter().filter(|w| **w > 0.0).count();
     let frames = sums.frames.max(1) as f64;
     Ok(WornReport {
         garments: options.garments.clone(),

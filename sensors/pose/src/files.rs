@@ -32,7 +32,7 @@ pub const FETCH_FACE: &str = "cd $(mktemp -d) && npm pack --silent @mediapipe/fa
                               /usr/local/lib/toile/pose package/face_mesh_solution_packed_assets.data && \
                               sudo chmod --recursive a+rX /usr/local/lib/toile/pose";
 
-toile_assets::named! {
+toile_base::named! {
     /// Networks, each of which comes in a package of its own.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
     pub enum NetworkPackage {
@@ -69,7 +69,7 @@ impl NetworkPackage {
     }
 }
 
-toile_assets::named! {
+toile_base::named! {
     /// Files of the networks.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
     pub enum PoseFile {

@@ -5,11 +5,12 @@
 //! the wrong way, and never be stretched.
 
 use glam::{Mat3, Quat, Vec2, Vec3};
+use toile_assets::body::En;
 use toile_assets::body::shape::Shapes;
-use toile_assets::body::{En, Sex};
-use toile_assets::skeleton::{Joint, Skeleton};
+use toile_base::body::Sex;
+use toile_base::frame::{Joints, TrackedJoint};
+use toile_base::skeleton::{Joint, Skeleton};
 use toile_sensors::filter::one_euro::{OneEuro, OneEuroSettings};
-use toile_sensors::frame::{Joints, TrackedJoint};
 use toile_sensors::source::joint_map::{Format, JointMap};
 
 use crate::landmarks::{Landmarks, POINTS};

@@ -11,9 +11,9 @@
 //! which are linear in t. What is left of each limb's end is taken out in the plane of the picture, a little way at most.
 
 use glam::{Affine3A, Mat3, Vec2, Vec3};
-use toile_assets::skeleton::Joint;
+use toile_base::frame::{Intrinsics, Joints};
+use toile_base::skeleton::Joint;
 use toile_sensors::colour_camera::ColourCamera;
-use toile_sensors::frame::{Intrinsics, Joints};
 
 use crate::landmarks::Landmarks;
 use crate::scale::WebcamMount;
@@ -202,8 +202,8 @@ fn aside(points: &[(Joint, Vec2, Vec3)], k: &Intrinsics, depth: f32) -> Vec2 {
 mod tests {
     use super::*;
     use crate::landmarks::{POINTS, PoseLandmark};
-    use toile_assets::body::Sex;
     use toile_assets::body::shape::Shapes;
+    use toile_base::body::Sex;
 
     /// Landmarks of joints as a camera sees them.
     fn seen(joints: &Joints, camera: &ColourCamera) -> Landmarks {

@@ -11,7 +11,7 @@
 //! Eyes are at 0.936 of the stature (Drillis and Contini 1966).
 
 use glam::Vec2;
-use toile_assets::numeric::statistics::median;
+use toile_base::numeric::statistics::median;
 
 use crate::landmarks::Landmarks;
 
@@ -57,7 +57,7 @@ impl Default for WebcamMount {
     }
 }
 
-toile_assets::named! {
+toile_base::named! {
     /// Where a stature comes from.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum StatureSource {

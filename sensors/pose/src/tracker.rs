@@ -1,6 +1,7 @@
 //! Somebody followed from picture to picture: found once in the whole of it, then in the region where the last one had them.
 
-use toile_sensors::limits::{MAX_COLOUR_PIXELS, MAX_SIDE};
+use toile_base::limits::MAX_SIDE;
+use toile_sensors::limits::MAX_COLOUR_PIXELS;
 use toile_sensors::person_mask::PersonMask;
 use toile_sensors::source::live::ColourImage;
 
@@ -20,7 +21,7 @@ const LEAST_PRESENCE: f32 = 0.5;
 /// Pictures in which somebody was implausible, one after the other, after which they are sought anew.
 const IMPLAUSIBLE: u32 = 5;
 
-toile_assets::named! {
+toile_base::named! {
     /// Which of the two networks finds the landmarks.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum PoseModel {

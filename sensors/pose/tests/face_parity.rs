@@ -10,7 +10,7 @@ use std::env;
 use std::ops::Range;
 use std::time::Instant;
 
-use toile_assets::numeric::random::SplitMix64;
+use toile_base::numeric::random::SplitMix64;
 use toile_pose::face_finder::{DETECTOR, MESH};
 use toile_pose::files::{self, NetworkPackage, PoseFile};
 use toile_pose::network::{Network, logistic};

@@ -10,8 +10,8 @@ use std::path::Path;
 use std::time::Instant;
 
 use common::network_folder;
-use toile_assets::numeric::random::SplitMix64;
-use toile_assets::numeric::statistics::median_of;
+use toile_base::numeric::random::SplitMix64;
+use toile_base::numeric::statistics::median_of;
 use toile_pose::files::PoseFile;
 use toile_pose::network::Network;
 

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::limits::{MAX_COORDINATE, MAX_SIDE};
+use toile_base::limits::{MAX_COORDINATE, MAX_SIDE};
 
 /// Largest distortion coefficient of a lens that is no fisheye.
 const LARGEST_DISTORTION: f64 = 10.0;

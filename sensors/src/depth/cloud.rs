@@ -3,8 +3,8 @@
 use glam::{Affine3A, Vec3, Vec3A};
 
 use super::fill::Validity;
-use crate::frame::{DepthFrame, Intrinsics};
 use crate::segment::same_surface;
+use toile_base::frame::{DepthFrame, Intrinsics};
 
 /// What the camera sees of the shopper, clean.
 #[derive(Debug, Clone, PartialEq, Default)]

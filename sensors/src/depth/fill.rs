@@ -4,8 +4,8 @@
 //! interpolations, each weighted by the inverse of its length. What is seen through a gap (between arm and body) was
 //! measured and is never filled; a shadow at the outline is open to one side and is not filled either.
 
-use crate::frame::DepthFrame;
 use crate::segment::same_surface;
+use toile_base::frame::DepthFrame;
 
 /// Widest hole that is filled (mm): a crease, a button, a lock of hair.
 const WIDEST_MM: f32 = 60.0;

@@ -10,11 +10,11 @@ pub mod gaussian;
 pub mod noise;
 pub mod smooth;
 
-use crate::frame::DepthFrame;
 use crate::segment::{Person, Segmenter, Zone};
 pub use cloud::Cloud;
 pub use fill::Validity;
 pub use noise::SensorNoise;
+use toile_base::frame::DepthFrame;
 
 /// How depth is smoothed.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,12 +5,12 @@
 //! Where the body is posed the same is done to joint rotations; this is its form for positions.
 
 use glam::{Quat, Vec3};
-use toile_assets::skeleton::{JOINTS, Joint};
+use toile_base::skeleton::{JOINTS, Joint};
 
 use super::Filter;
 use super::gate::{anchor, in_the_room};
-use crate::clock::seconds_between;
-use crate::frame::Joints;
+use toile_base::clock::seconds_between;
+use toile_base::frame::Joints;
 
 /// Shortest bone that has a direction (m).
 const SHORTEST: f32 = 1e-3;
@@ -71,7 +71,7 @@ fn turned(from: Vec3, to: Vec3, share: f32) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::TrackedJoint;
+    use toile_base::frame::TrackedJoint;
 
     fn arm(ms: u64, angle: f32) -> Joints {
         let mut f = Joints::absent(ms * 1_000_000);

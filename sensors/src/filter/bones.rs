@@ -4,7 +4,7 @@
 //! from the pelvis outward, so that directions stay exactly as they were seen.
 
 use glam::Vec3;
-use toile_assets::skeleton::Joint;
+use toile_base::skeleton::Joint;
 
 /// Largest step of the estimate in its first frame (m); the n-th frame moves it by this over n at most.
 const FIRST_STEP: f32 = 0.05;
@@ -60,7 +60,7 @@ impl BoneLength {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_assets::numeric::random::SplitMix64;
+    use toile_base::numeric::random::SplitMix64;
 
     #[test]
     fn the_estimate_is_the_median_and_outliers_do_not_count_more() {

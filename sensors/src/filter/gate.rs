@@ -1,12 +1,12 @@
 //! Which joints are believed: the confidence gate of the live filter, and confidence derived where a format has none.
 
 use glam::Vec3;
-use toile_assets::numeric::statistics::quantile_of;
-use toile_assets::skeleton::{JOINTS, Joint};
+use toile_base::numeric::statistics::quantile_of;
+use toile_base::skeleton::{JOINTS, Joint};
 
-use crate::clock::seconds_between;
-use crate::frame::{Joints, TrackedJoint};
-use crate::limits::MAX_COORDINATE;
+use toile_base::clock::seconds_between;
+use toile_base::frame::{Joints, TrackedJoint};
+use toile_base::limits::MAX_COORDINATE;
 
 /// Fastest that a joint moves (m/s): a thrown punch reaches 11 m/s, a swiping hand 3 m/s.
 pub const MAX_JOINT_SPEED: f32 = 10.0;
@@ -72,7 +72,7 @@ pub fn derive_confidence(frames: &mut [Joints], notes: &mut Vec<String>) {
             let derived = if spikes[joint.index()] { 0.0 } else { bone_confidence(&seen, joint, &medians) };
             let tracked = frame.at_mut(joint);
             if derived < tracked.confidence {
-                lowered += usize::from(tracked.is_believed() && derived < toile_assets::limits::CONFIDENCE_GATE);
+                lowered += usize::from(tracked.is_believed() && derived < toile_base::limits::CONFIDENCE_GATE);
                 tracked.confidence = derived;
             }
         }

@@ -101,7 +101,7 @@ impl Holt {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_assets::numeric::random::SplitMix64;
+    use toile_base::numeric::random::SplitMix64;
 
     fn step(holt: &mut Holt, measured: Vec3, dt: f32, settings: &HoltSettings) {
         let trust = holt.trust(measured, dt, settings);

@@ -13,13 +13,14 @@ pub mod predict;
 pub mod smoothing;
 
 use glam::Vec3;
-use toile_assets::skeleton::{JOINTS, Joint, Skeleton};
+use toile_base::skeleton::{JOINTS, Joint, Skeleton};
 
-use crate::clock::seconds_between;
-use crate::frame::{Joints, TrackedJoint};
 use bones::BoneLength;
 use hold::Hold;
 use smoothing::{Smoother, Smoothing};
+use toile_base::clock::seconds_between;
+use toile_base::filter::Filter;
+use toile_base::frame::{Joints, TrackedJoint};
 
 pub use hold::HELD_CONFIDENCE;
 
@@ -28,16 +29,6 @@ const LONGEST_SILENCE: f32 = 1.0;
 
 /// Shortest step between two frames (s); a frame that comes no later than the one before counts as this much later.
 const SHORTEST_STEP: f32 = 1e-3;
-
-/// Anything that makes joints more believable, frame by frame, with a memory of a fixed size and no allocation.
-pub trait Filter {
-    /// Takes a frame and gives the filtered one of the same time. Frames may come at any interval, twice, or late, and
-    /// hold positions that are NaN: what is given is finite wherever its confidence is not 0. Hand states pass through.
-    fn push(&mut self, frame: &Joints) -> Joints;
-
-    /// Forgets the shopper.
-    fn reset(&mut self);
-}
 
 /// Settings of the joint filter.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,12 +4,12 @@
 //! frames handed in, smoothed once more, for what is added is noise too; and joints that are not seen stay.
 
 use glam::Vec3;
-use toile_assets::skeleton::JOINTS;
+use toile_base::skeleton::JOINTS;
 
 use super::Filter;
 use super::gate::in_the_room;
-use crate::clock::seconds_between;
-use crate::frame::Joints;
+use toile_base::clock::seconds_between;
+use toile_base::frame::Joints;
 
 /// Time constant of the velocity (s): two frames at 30 Hz.
 const VELOCITY_SECONDS: f32 = 0.066;
@@ -83,7 +83,7 @@ impl Filter for Predictor {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::TrackedJoint;
+    use toile_base::frame::TrackedJoint;
 
     fn at(ms: u64, x: f32) -> Joints {
         let joints = [TrackedJoint { position: Vec3::new(x, 1.0, 0.0), confidence: 1.0 }; JOINTS];

@@ -3,8 +3,8 @@
 
 use glam::{Affine3A, Mat3, Vec3};
 
-use crate::frame::DepthFrame;
-use toile_assets::numeric::random::SplitMix64;
+use toile_base::frame::DepthFrame;
+use toile_base::numeric::random::SplitMix64;
 
 /// Planes that are tried where none is known, through points of the lower half of what is seen: where the floor holds a
 /// quarter of that half, all tries miss it once in a hundred times; half of it, which is usual, never.

@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use super::floor::{Floor, sigma};
-use crate::frame::{DepthFrame, Intrinsics};
+use toile_base::frame::{DepthFrame, Intrinsics};
 
 /// The image is searched in cells so that about this many stand side by side: a finger at 1 m, a wrist at 4 m.
 const CELLS_ACROSS: usize = 320;

@@ -17,10 +17,10 @@ mod pieces;
 
 use glam::{Vec2, Vec3};
 
-use crate::frame::DepthFrame;
 use floor::{Floor, FloorFinder};
 use grid::Grid;
 use people::PeopleFinder;
+use toile_base::frame::DepthFrame;
 
 pub use grid::same_surface;
 pub use people::Person;
@@ -61,7 +61,7 @@ const LONGEST_STEP: f32 = 0.6;
 const SIZE_WEIGHT: f32 = 0.5;
 
 /// A shopper not seen for so long has left (ns).
-const FORGOTTEN_NS: u64 = crate::clock::SECOND_NS / 2;
+const FORGOTTEN_NS: u64 = toile_base::clock::SECOND_NS / 2;
 
 /// What a frame shows.
 #[derive(Debug, Clone, Copy, PartialEq)]

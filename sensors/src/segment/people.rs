@@ -1,7 +1,7 @@
 //! Which pieces are people, and what else belongs to the shopper.
 
 use glam::{Vec2, Vec3};
-use toile_assets::numeric::statistics::quantile;
+use toile_base::numeric::statistics::quantile;
 
 use super::floor::sigma;
 use super::grid::Grid;

@@ -3,10 +3,10 @@
 use std::io::Cursor;
 
 use glam::{Affine3A, Mat3A, Vec3, Vec3A};
-use toile_assets::skeleton::JOINTS;
+use toile_base::skeleton::JOINTS;
 
 use super::recording::DepthRoom;
-use crate::frame::{DepthFrame, HandState, Intrinsics, Joints, TrackedJoint, pose_fault};
+use toile_base::frame::{DepthFrame, HandState, Intrinsics, Joints, TrackedJoint, pose_fault};
 
 /// Version of the recording's format; another one is refused.
 pub(super) const VERSION: u32 = 1;

@@ -8,8 +8,8 @@ use super::layout::{self, DEPTH_TOPIC, ENCODING, HANDS_TOPIC, JOINTS_TOPIC, META
 use super::recording::{DepthRoom, Session, too_many};
 use super::unpack::Zstd;
 use crate::error::{Fault, Place, SourceError};
-use crate::frame::HandState;
 use crate::limits::{MAX_CHANNELS, MAX_CHUNK_BYTES, MAX_DEPTH_FRAMES, MAX_JOINT_FRAMES};
+use toile_base::frame::HandState;
 
 const CURE: &str = "record it again, or restore the file from a copy";
 

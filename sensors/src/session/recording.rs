@@ -1,9 +1,9 @@
 //! What a session holds, and what it promises.
 
-use crate::clock::SECOND_NS;
 use crate::error::{Fault, Place, SourceError};
-use crate::frame::{DepthFrame, Intrinsics, Joints};
 use crate::limits::{MAX_DEPTH_BYTES, MAX_DEPTH_FRAMES, MAX_DURATION_NS, MAX_GAP_NS, MAX_JOINT_FRAMES};
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::{DepthFrame, Intrinsics, Joints};
 
 /// What a sensor saw of one shopper. World: metres, y up, floor at y = 0, the shopper faces +z near x = z = 0.
 #[derive(Debug, Clone, PartialEq, Default)]

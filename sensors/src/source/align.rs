@@ -4,11 +4,11 @@
 //! is upright, in the median of the recording. Where a tracker has no neck, its chest or head does as well.
 
 use glam::{Quat, Vec3};
-use toile_assets::numeric::statistics::{median_of, quantile_of};
-use toile_assets::skeleton::Joint;
+use toile_base::numeric::statistics::{median_of, quantile_of};
+use toile_base::skeleton::Joint;
 
 use crate::error::{Fault, Place};
-use crate::frame::Joints;
+use toile_base::frame::Joints;
 
 /// Tilt below which a recording is left as it is (rad): 4 degrees, the lean of a relaxed stance.
 const SMALLEST_TILT: f32 = 4.0 * std::f32::consts::PI / 180.0;

@@ -12,9 +12,10 @@ use super::joint_map::{Format, JointMap};
 use super::{align, tidy};
 use crate::error::{Fault, Place};
 use crate::filter::gate::derive_confidence;
-use crate::frame::TrackedJoint;
-use crate::limits::{MAX_COORDINATE, MAX_JOINT_FRAMES};
+use crate::limits::MAX_JOINT_FRAMES;
 use crate::session::{Session, too_many};
+use toile_base::frame::TrackedJoint;
+use toile_base::limits::MAX_COORDINATE;
 
 const POINTS: usize = Format::Azure32.points();
 

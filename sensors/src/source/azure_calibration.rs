@@ -5,8 +5,8 @@ use serde::Deserialize;
 
 use super::camera::Camera;
 use crate::colour_camera::ColourCamera;
-use crate::frame::Intrinsics;
 use crate::lens::BrownConrady;
+use toile_base::frame::Intrinsics;
 
 /// A mode of a camera: its images, the sensor as binned, the image's corner on that (px).
 type Mode = ([u32; 2], [f32; 2], [f32; 2]);

@@ -3,7 +3,7 @@
 //! The classic error is off by one along the arm: `LeftShoulder` is the clavicle where there is a `LeftArm`, and the
 //! shoulder joint where there is a `LeftElbow`; `LeftHip` and `LeftUpLeg` are the same joint.
 
-use toile_assets::skeleton::{JOINTS, Joint};
+use toile_base::skeleton::{JOINTS, Joint};
 
 use super::bvh_file::Node;
 use crate::error::{Fault, Place};

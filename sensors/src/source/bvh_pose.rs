@@ -1,16 +1,16 @@
 //! BVH motion capture: forward kinematics, which way is up, how long a unit is, where the person looks.
 
 use glam::{DMat3, DQuat, DVec3};
-use toile_assets::skeleton::{JOINTS, Joint};
+use toile_base::skeleton::{JOINTS, Joint};
 
 use super::align;
 use super::bvh_file::{Bvh, Channel};
 use super::bvh_names::Names;
-use crate::clock::SECOND_NS;
 use crate::error::{Fault, Place};
-use crate::frame::{Joints, TrackedJoint};
-use crate::limits::MAX_COORDINATE;
 use crate::session::Session;
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::{Joints, TrackedJoint};
+use toile_base::limits::MAX_COORDINATE;
 
 /// Units that a file may be in, and their length (m).
 const UNITS: [(&str, f64); 4] = [("metres", 1.0), ("centimetres", 0.01), ("inches", 0.0254), ("millimetres", 0.001)];

@@ -5,8 +5,8 @@ use glam::{Affine3A, Mat3A, Vec3, Vec3A};
 use serde::Deserialize;
 
 use crate::error::{Fault, Place};
-use crate::frame::{Intrinsics, pose_fault};
 use crate::lens::BrownConrady;
+use toile_base::frame::{Intrinsics, pose_fault};
 
 /// A depth camera as described beside its images.
 #[derive(Debug, Clone, Copy, PartialEq)]

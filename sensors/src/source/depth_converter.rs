@@ -3,7 +3,7 @@
 use super::camera::Camera;
 use super::straighten::Straighten;
 use crate::error::{Fault, Place};
-use crate::frame::Intrinsics;
+use toile_base::frame::Intrinsics;
 
 /// Converts the images of one camera, one after the other.
 pub(super) struct DepthConverter {

@@ -11,11 +11,11 @@ use toile_assets::file;
 use super::camera::{self, Camera};
 use super::files::{OpenOptions, count_bytes, shown};
 use super::sequence::Sequence;
-use crate::clock::SECOND_NS;
 use crate::error::{Fault, Place, SourceError};
-use crate::frame::Intrinsics;
 use crate::limits::{CAMERA, MAX_FOLDER_FILES, RECORDING};
 use crate::session::Session;
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::Intrinsics;
 
 /// The list of a recording's files.
 pub(super) const INDEX: &str = "INDEX.txt";

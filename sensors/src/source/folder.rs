@@ -11,10 +11,10 @@ use super::files::{OpenOptions, count_bytes, shown};
 use super::raw_depth::{assumed_camera, samples};
 use super::sequence::{Sequence, assumed_time, untimed};
 use super::{fakenect, png_depth};
-use crate::clock::SECOND_NS;
 use crate::error::{Fault, Place, SourceError};
 use crate::limits::{CAMERA, MAX_FOLDER_FILES, RECORDING};
 use crate::session::Session;
+use toile_base::clock::SECOND_NS;
 
 /// Endings of raw 16-bit images.
 const RAW: [&str; 5] = ["u16le", "raw", "bin", "depth", "z16"];

@@ -5,13 +5,13 @@
 //! A chest has two rows, for trackers differ in which of the two they give: that of ours by place comes first.
 
 use glam::Vec3;
-use toile_assets::skeleton::{JOINTS, Joint};
+use toile_base::skeleton::{JOINTS, Joint};
 
-use crate::frame::{Joints, TrackedJoint};
+use toile_base::frame::{Joints, TrackedJoint};
 
 const TABLE: &str = include_str!("../../data/joint_map.csv");
 
-toile_assets::named! {
+toile_base::named! {
     /// A tracker's set of points.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum Format {

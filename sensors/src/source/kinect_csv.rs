@@ -11,9 +11,10 @@ use super::joint_map::{Format, JointMap};
 use super::kinect2::turned;
 use super::{align, tidy};
 use crate::error::{Fault, Place};
-use crate::frame::{Joints, TrackedJoint};
-use crate::limits::{MAX_COORDINATE, MAX_JOINT_FRAMES};
+use crate::limits::MAX_JOINT_FRAMES;
 use crate::session::{Session, too_many};
+use toile_base::frame::{Joints, TrackedJoint};
+use toile_base::limits::MAX_COORDINATE;
 
 /// Most joints of a line.
 const MOST_JOINTS: usize = Format::Kinect25.points();
@@ -131,7 +132,7 @@ fn clip(field: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_assets::skeleton::Joint;
+    use toile_base::skeleton::Joint;
 
     fn line(ticks: &str, x: &str, state: &str, joints: usize) -> String {
         let mut line = format!("{ticks},");

@@ -5,16 +5,17 @@
 
 use glam::Vec3;
 use serde::Deserialize;
-use toile_assets::skeleton::Joint;
+use toile_base::skeleton::Joint;
 
 use super::joint_map::{Format, JointMap};
 use super::kinect2::{KINECT_JOINTS, turned};
 use super::{align, tidy};
 use crate::error::{Fault, Place};
 use crate::filter::gate::derive_confidence;
-use crate::frame::{HandState, Joints, TrackedJoint};
-use crate::limits::{MAX_COORDINATE, MAX_JOINT_FRAMES};
+use crate::limits::MAX_JOINT_FRAMES;
 use crate::session::{Session, too_many};
+use toile_base::frame::{HandState, Joints, TrackedJoint};
+use toile_base::limits::MAX_COORDINATE;
 
 /// Confidence of a hand that the sensor itself has lost.
 const UNKNOWN_HAND_CONFIDENCE: f32 = 0.4;

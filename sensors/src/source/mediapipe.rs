@@ -14,9 +14,10 @@ use super::mediapipe_landmarks::{Image, Landmark, LandmarkPerson, POINTS};
 use super::mediapipe_place as place;
 use super::{align, tidy};
 use crate::error::{Fault, Place};
-use crate::frame::Joints;
-use crate::limits::{MAX_JOINT_FRAMES, MAX_SIDE};
+use crate::limits::MAX_JOINT_FRAMES;
 use crate::session::{Session, too_many};
+use toile_base::frame::Joints;
+use toile_base::limits::MAX_SIDE;
 
 /// Image size that is taken where none is given (px): that of most webcams.
 const ASSUMED_SIZE: [f32; 2] = [1280.0, 720.0];

@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3};
 use serde::Deserialize;
 
 use super::joint_map::Format;
-use crate::frame::TrackedJoint;
+use toile_base::frame::TrackedJoint;
 
 /// Landmarks of a pose.
 pub(super) const POINTS: usize = Format::MediaPipe33.points();

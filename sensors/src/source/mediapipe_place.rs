@@ -5,10 +5,10 @@
 //! jump is seen. Without world landmarks the image's own x, y and z are taken, in the unit that makes a plausible leg.
 
 use glam::{Vec2, Vec3};
-use toile_assets::numeric::statistics::median_of;
+use toile_base::numeric::statistics::median_of;
 
 use super::mediapipe_landmarks::{FOCAL, Image, Landmark, LandmarkPerson, POINTS, tracked};
-use crate::frame::TrackedJoint;
+use toile_base::frame::TrackedJoint;
 
 /// Landmarks of shoulders and hips, the steadiest ones: the scale is taken from the whole body, seen at least so far.
 const VISIBLE: f32 = 0.5;

@@ -11,7 +11,7 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError};
 
 use super::live::library::{Library, LibraryName, functions};
 use crate::error::{Fault, Place};
-use crate::frame::Intrinsics;
+use toile_base::frame::Intrinsics;
 
 pub(super) const LIBRARY: LibraryName = LibraryName {
     camera: "camera of OpenNI 2",

@@ -2,10 +2,10 @@
 //! frames in the same way.
 
 use glam::{Affine3A, Mat3, Vec3};
-use toile_assets::numeric::statistics::quantile_of;
+use toile_base::numeric::statistics::quantile_of;
 
-use crate::frame::DepthFrame;
 use crate::segment::floor::{Floor, FloorFinder};
+use toile_base::frame::DepthFrame;
 
 /// Height of a camera of unknown pose above the floor (m): the middle of the 0.6 .. 1.8 m that Kinect's makers advise.
 const ASSUMED_CAMERA_HEIGHT: f32 = 1.2;

@@ -6,8 +6,8 @@ use super::camera::Camera;
 use super::raw_depth::assumed_camera;
 use super::sequence::{Sequence, assumed_time};
 use crate::error::{Fault, Place};
-use crate::frame::Intrinsics;
 use crate::session::Session;
+use toile_base::frame::Intrinsics;
 
 /// First bytes of a PNG.
 pub(super) const MAGIC: &[u8] = b"\x89PNG\r\n\x1a\n";

@@ -3,9 +3,9 @@
 use super::camera::Camera;
 use super::sequence::{Sequence, assumed_time, untimed};
 use crate::error::{Fault, Place};
-use crate::frame::Intrinsics;
 use crate::limits::MAX_DEPTH_FRAMES;
 use crate::session::{Session, too_many};
+use toile_base::frame::Intrinsics;
 
 /// Bytes of an image of the Kinect v1, by which a file without a camera is recognised.
 pub(super) const KINECT_V1_BYTES: u64 = 640 * 480 * 2;

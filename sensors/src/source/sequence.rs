@@ -5,11 +5,11 @@ use glam::{Affine3A, Vec3};
 use super::camera::Camera;
 use super::depth_converter::DepthConverter;
 use super::placement::{self, Placement};
-use crate::clock::SECOND_NS;
 use crate::error::{Fault, Place};
-use crate::frame::{DepthFrame, Intrinsics};
 use crate::limits::MAX_DURATION_NS;
 use crate::session::{DepthRoom, Session};
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::{DepthFrame, Intrinsics};
 
 /// Rate assumed of images without times (Hz): that of the Kinects.
 const ASSUMED_HZ: u64 = 30;

@@ -1,7 +1,7 @@
 //! The table by which images of a lens that bends straight lines become those of a pinhole.
 
-use crate::frame::Intrinsics;
 use crate::lens::BrownConrady;
+use toile_base::frame::Intrinsics;
 
 /// A straightened image is at most so much wider or higher than the bent one, or narrower or lower: more bends no lens.
 const LARGEST_GROWTH: f32 = 1.5;

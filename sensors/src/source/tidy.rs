@@ -1,12 +1,12 @@
 //! Times corrected: from 0, strictly increasing, bursts merged.
 
-use toile_assets::numeric::statistics::quantile_of;
+use toile_base::numeric::statistics::quantile_of;
 
-use crate::clock::SECOND_NS;
 use crate::error::{Fault, Place};
-use crate::frame::Joints;
 use crate::limits::{MAX_DURATION_NS, MAX_JOINT_FRAMES};
 use crate::session::too_many;
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::Joints;
 
 /// Makes times start at 0 and strictly increase. A frame that follows within a third of the nominal period (the median
 /// distance) takes the place of the one before: such pairs are late frames handed over in a burst, and the last is

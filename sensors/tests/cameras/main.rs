@@ -14,8 +14,8 @@ use std::time::{Duration, Instant};
 use std::{env, fs};
 
 use glam::{Affine3A, Vec3};
+use toile_base::frame::DepthFrame;
 use toile_sensors::colour_camera::ColourCamera;
-use toile_sensors::frame::DepthFrame;
 use toile_sensors::session::Session;
 use toile_sensors::source::live::{self, Arrival, CameraFrame, CameraKind, CameraOptions, CameraRecorder, LiveDepth};
 use toile_sensors::source::{OpenOptions, open};

@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use toile_sensors::frame::DepthFrame;
+use toile_base::frame::DepthFrame;
 
 const NODE_ADDED: u32 = 0x0d;
 const INTEGER: u32 = 0x03;

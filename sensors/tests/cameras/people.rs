@@ -5,9 +5,9 @@ use std::fs;
 use std::path::Path;
 
 use glam::Vec3;
-use toile_assets::body::{Body, Measures, Sex};
-use toile_sensors::clock::SECOND_NS;
-use toile_sensors::frame::{DepthFrame, Intrinsics};
+use toile_base::body::{Measures, Sex};
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::{DepthFrame, Intrinsics};
 use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera, room};
 
 /// Ticks of a Kinect's clock in a frame of 30 Hz.
@@ -18,7 +18,7 @@ const BEGIN_S: f64 = 1_300_399_331.5;
 
 /// So many images of somebody who stands in a room, each with noise of its own.
 pub fn frames(count: u64) -> Vec<DepthFrame> {
-    let body = Body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
+    let body = toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
     let camera =
         SyntheticCamera::looking_at(Intrinsics::KINECT_V1, Vec3::new(0.0, 1.0, 2.4), Vec3::new(0.0, 0.95, 0.0));
     let view = room::view(&camera, -1.2, &[(&body.mesh.positions, &body.mesh.triangles)]);

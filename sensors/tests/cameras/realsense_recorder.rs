@@ -9,8 +9,9 @@ use std::{fs, ptr, thread};
 
 use glam::{Mat3, Quat, Vec3};
 use libloading::{Library, Symbol};
+use toile_base::frame;
+use toile_base::frame::DepthFrame;
 use toile_sensors::colour_camera::ColourCamera;
-use toile_sensors::frame::{self, DepthFrame};
 use toile_sensors::lens::BrownConrady;
 use toile_sensors::source::live::{CameraKind, ColourImage};
 

@@ -9,10 +9,10 @@ pub mod skeletons;
 
 use std::path::{Path, PathBuf};
 
-use toile_assets::numeric::statistics::median_of;
-use toile_assets::skeleton::Joint;
+use toile_base::frame::Joints;
+use toile_base::numeric::statistics::median_of;
+use toile_base::skeleton::Joint;
 use toile_sensors::filter::JointFilter;
-use toile_sensors::frame::Joints;
 use toile_sensors::session::Session;
 use toile_sensors::source::{OpenOptions, open};
 

@@ -1,9 +1,9 @@
 //! Small recordings of every kind, made here.
 
 use glam::{Affine3A, Vec3};
-use toile_assets::numeric::random::SplitMix64;
-use toile_assets::skeleton::Joint;
-use toile_sensors::frame::{DepthFrame, Intrinsics, Joints, TrackedJoint};
+use toile_base::frame::{DepthFrame, Intrinsics, Joints, TrackedJoint};
+use toile_base::numeric::random::SplitMix64;
+use toile_base::skeleton::Joint;
 use toile_sensors::session::Session;
 use toile_sensors::source::synthetic::JointNoise;
 

@@ -1,8 +1,8 @@
 //! Small recordings of skeleton trackers, made here: somebody who stands before the camera, 2.5 m away and 1 m below it.
 
 use glam::Vec3;
-use toile_assets::skeleton::Joint;
-use toile_sensors::frame::Joints;
+use toile_base::frame::Joints;
+use toile_base::skeleton::Joint;
 use toile_sensors::source::joint_map::{Format, JointMap, Source};
 
 use super::samples::standing;

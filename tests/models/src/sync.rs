@@ -6,6 +6,9 @@ use std::time::Duration;
 pub use loom::sync::atomic::{AtomicBool, AtomicPtr, AtomicU64, AtomicUsize};
 pub use loom::thread::{self, JoinHandle};
 
+/// A model tries the pool with its helper.
+pub const HAS_THREADS: bool = true;
+
 /// One look, as more of them are the same to a model.
 pub const LOOKS_BEFORE_TAKING: u32 = 1;
 

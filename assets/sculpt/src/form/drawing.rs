@@ -5,7 +5,7 @@ use serde::Deserialize;
 
 use super::group::{Frame, Group, GroupRow};
 use super::parts::{smooth_max, smooth_min};
-use toile_assets::skeleton::{JOINTS, Joint, Skeleton};
+use toile_base::skeleton::{JOINTS, Joint, Skeleton};
 
 /// One sex's drawing; lengths in millimetres, x left, y up, z forwards.
 #[derive(Debug, Deserialize)]

@@ -4,7 +4,7 @@ use glam::{EulerRot, Mat3, Quat, Vec3};
 use serde::Deserialize;
 
 use super::spline::Spline;
-use toile_assets::cone::round_cone;
+use toile_base::cone::round_cone;
 
 /// A limb or trunk: superellipse sections across a straight axis.
 #[derive(Debug, Deserialize)]

@@ -6,7 +6,7 @@ use super::cage::{ABOVE_HOLE, ARM, HALF, HOLE, HOLE_ROWS, Lattice, cast};
 use super::chart::Chart;
 use super::digit::Digit;
 use crate::form::Form;
-use toile_assets::body::Region;
+use toile_base::body::Region;
 
 impl Lattice {
     pub(super) fn lay_arm(&mut self, form: &Form, trunk: &[[u32; HALF]]) {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::Vec3;
-use toile_assets::body::Region;
+use toile_base::body::Region;
 
 use super::chart::Chart;
 

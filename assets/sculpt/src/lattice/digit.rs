@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::cage::Lattice;
 use super::chart::Chart;
-use toile_assets::body::Region;
+use toile_base::body::Region;
 
 /// A finger or toe to be laid.
 pub(super) struct Digit<'a> {

@@ -8,7 +8,7 @@ use super::cage::{HALF, LEG, Lattice, cast};
 use super::chart::Chart;
 use super::digit::Digit;
 use crate::form::Form;
-use toile_assets::body::Region;
+use toile_base::body::Region;
 
 impl Lattice {
     pub(super) fn lay_leg(&mut self, form: &Form, low: &[u32; HALF]) {

@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3};
 use super::cage::{ABOVE_HOLE, HALF, HOLE, HOLE_ROWS, Lattice, cast};
 use super::chart::Chart;
 use crate::form::{Form, GridRow};
-use toile_assets::body::Region;
+use toile_base::body::Region;
 
 /// The ear's column of quads and its rows, in the head's rings.
 const EAR_COLUMN: usize = 8;

@@ -8,7 +8,7 @@ use super::super::landmarks::{LANDMARKS, Landmark};
 use super::super::sound::crossings;
 use super::super::tape::{hull, perimeter, slice};
 use super::*;
-use crate::mesh::Mesh;
+use toile_base::mesh::Mesh;
 
 fn both() -> [BaseBody; 2] {
     [BaseBody::new(Sex::Female), BaseBody::new(Sex::Male)]
@@ -201,8 +201,8 @@ fn survey(base: &BaseBody) -> Vec<Row> {
     };
     let knee = pick(449.0, 488.4);
     let arm = |way: f32| {
-        let at = |j: crate::skeleton::Joint| base.skeleton.at(j) * 1e3;
-        use crate::skeleton::Joint::{LeftElbow, LeftShoulder, LeftWrist};
+        let at = |j: toile_base::skeleton::Joint| base.skeleton.at(j) * 1e3;
+        use toile_base::skeleton::Joint::{LeftElbow, LeftShoulder, LeftWrist};
         let (a, b, t) =
             if way < 1.0 { (at(LeftShoulder), at(LeftElbow), way) } else { (at(LeftElbow), at(LeftWrist), way - 1.0) };
         section(base, &[Region::LeftArm], a.lerp(b, t), (b - a).normalize())[2]
@@ -283,7 +283,7 @@ fn foot(base: &BaseBody, along: impl Fn(&Vec3) -> f32) -> f32 {
 }
 
 fn hand(base: &BaseBody) -> f32 {
-    use crate::skeleton::Joint::{LeftElbow, LeftWrist};
+    use toile_base::skeleton::Joint::{LeftElbow, LeftWrist};
     let (elbow, wrist) = (base.skeleton.at(LeftElbow), base.skeleton.at(LeftWrist));
     let way = (wrist - elbow).normalize();
     let arm = base.positions.iter().zip(&base.regions).filter(|(_, r)| **r == Region::LeftArm);

@@ -2,9 +2,9 @@
 
 use super::super::sound;
 use super::*;
-use crate::body::Region;
 use crate::body::reading::{Ansur, READINGS};
-use crate::numeric::random::SplitMix64;
+use toile_base::body::Region;
+use toile_base::numeric::random::SplitMix64;
 
 const SEXES: [Sex; 2] = [Sex::Female, Sex::Male];
 
@@ -21,7 +21,7 @@ fn somebody(sex: Sex, random: &mut SplitMix64) -> Fitted {
         .with(En::InsideLegHeight, around(m.stature * 0.48, 0.07))
         .with(En::ArmLength, around(m.stature * 0.365, 0.06))
         .with(En::CalfGirth, around(0.375 * stout, 0.08));
-    Body::fitted(sex, &wanted).expect("people of these measures exist")
+    fitted(sex, &wanted).expect("people of these measures exist")
 }
 
 #[test]
@@ -36,7 +36,7 @@ fn any_subset_of_a_bodys_own_measures_is_met() {
                     wanted = wanted.with(m, person.readings.of(m));
                 }
             }
-            let fitted = Body::fitted(sex, &wanted).unwrap();
+            let fitted = fitted(sex, &wanted).unwrap();
             for &(m, value) in wanted.given() {
                 let off = (fitted.readings.of(m) - value).abs();
                 assert!(off < TOLERANCE, "{sex:?}: {} is off by {off} m of {wanted:?}", m.name());
@@ -47,11 +47,11 @@ fn any_subset_of_a_bodys_own_measures_is_met() {
 
 /// Moves one measure at a time by 4 % each way.
 fn each_alone<V: Vocabulary>(sex: Sex) {
-    let mean = Body::fitted(sex, &Wanted::<V>::new()).unwrap();
+    let mean = fitted(sex, &Wanted::<V>::new()).unwrap();
     for &m in V::ALL {
         for by in [0.96, 1.04] {
             let value = mean.readings.of(m) * by;
-            let fitted = Body::fitted(sex, &Wanted::new().with(m, value)).unwrap();
+            let fitted = fitted(sex, &Wanted::new().with(m, value)).unwrap();
             assert!((fitted.readings.of(m) - value).abs() < TOLERANCE, "{sex:?} {} x {by}", m.name());
         }
     }
@@ -71,13 +71,12 @@ fn what_is_not_given_follows_as_in_people() {
         let m = Measures::average(sex);
         let hips = |chest: f32| {
             let wanted = Wanted::new().with(En::Stature, m.stature).with(En::BustGirth, chest);
-            Body::fitted(sex, &wanted).unwrap().readings.of(En::HipGirth)
+            fitted(sex, &wanted).unwrap().readings.of(En::HipGirth)
         };
         let [slight, stout] = [0.85, 1.15].map(|by| hips(m.chest_girth * by));
         assert!(stout - slight > 0.1, "{sex:?}: broad chests go with broad hips: {slight} {stout}");
-        let arm = |stature: f32| {
-            Body::fitted(sex, &Wanted::new().with(En::Stature, stature)).unwrap().readings.of(En::ArmLength)
-        };
+        let arm =
+            |stature: f32| fitted(sex, &Wanted::new().with(En::Stature, stature)).unwrap().readings.of(En::ArmLength);
         assert!(arm(m.stature * 1.08) - arm(m.stature * 0.92) > 0.05, "{sex:?}: tall people have long arms");
     }
 }
@@ -165,7 +164,7 @@ fn soles_stay_on_the_floor() {
 fn morphed_bodies_stay_smooth_and_whole() {
     let mut random = SplitMix64::new(8);
     for sex in SEXES {
-        let drawn = Body::drawn(sex);
+        let drawn = drawn(sex);
         for _ in 0..6 {
             let body = somebody(sex, &mut random).body;
             let ratio = sound::roughness(&body.mesh) / sound::roughness(&drawn.mesh);
@@ -178,7 +177,7 @@ fn morphed_bodies_stay_smooth_and_whole() {
 
 #[test]
 fn roughness_knows_a_dent() {
-    let mut body = Body::drawn(Sex::Female);
+    let mut body = drawn(Sex::Female);
     let smooth = sound::roughness(&body.mesh);
     assert!(sound::unevenness(&body.mesh, &body.mesh) == 0.0);
     let drawn = body.mesh.clone();
@@ -194,8 +193,7 @@ fn roughness_knows_a_dent() {
 fn what_nobody_has_together_gives_the_nearest_body() {
     for sex in SEXES {
         let wanted = Wanted::new().with(En::Stature, 1.5).with(En::InsideLegHeight, 1.1);
-        let Err(BodyError::Unreachable { measure, value, reached, against, nearest }) = Body::fitted(sex, &wanted)
-        else {
+        let Err(BodyError::Unreachable { measure, value, reached, against, nearest }) = fitted(sex, &wanted) else {
             panic!("legs of 1.1 m on a person of 1.5 m");
         };
         let pair = [measure, against.expect("each of the two can be had alone").0];
@@ -203,7 +201,7 @@ fn what_nobody_has_together_gives_the_nearest_body() {
         assert!(["stature", "inside leg height"].contains(&measure) && (value - reached).abs() > TOLERANCE);
         assert!(nearest.body.mesh.positions.iter().all(|p| p.is_finite()));
         assert!(nearest.readings.of(En::InsideLegHeight) > 0.8, "it goes as far as it can");
-        let message = Body::fitted(sex, &wanted).unwrap_err().to_string();
+        let message = fitted(sex, &wanted).unwrap_err().to_string();
         assert!(message.contains(measure) && message.contains("check") && !message.contains('\n'), "{message}");
     }
 }
@@ -215,11 +213,11 @@ fn out_of_range_is_refused_by_the_name_of_the_measure() {
         (Wanted::new().with(En::ArmLength, f32::NAN), "arm length"),
         (Wanted::new().with(En::WaistGirth, f32::INFINITY), "waist girth"),
     ] {
-        let message = Body::fitted(Sex::Female, &wanted).unwrap_err().to_string();
+        let message = fitted(Sex::Female, &wanted).unwrap_err().to_string();
         assert!(message.contains(name), "{message}");
     }
     let wanted = Wanted::new().with(Ansur::WaistCircumferenceOmphalion, 0.1);
-    assert!(Body::fitted(Sex::Male, &wanted).unwrap_err().to_string().contains("omphalion"));
+    assert!(fitted(Sex::Male, &wanted).unwrap_err().to_string().contains("omphalion"));
 }
 
 #[test]
@@ -227,10 +225,10 @@ fn other_units_are_recognised_and_told() {
     for (value, expected) in
         [(66.0, "as inches it would be 1.676 m"), (168.0, "as centimetres"), (1680.0, "as millimetres")]
     {
-        let message = Body::fitted(Sex::Female, &Wanted::new().with(En::Stature, value)).unwrap_err().to_string();
+        let message = fitted(Sex::Female, &Wanted::new().with(En::Stature, value)).unwrap_err().to_string();
         assert!(message.contains(expected) && message.ends_with("so give metres"), "{message}");
     }
-    let message = Body::fitted(Sex::Male, &Wanted::new().with(En::Stature, -1.7)).unwrap_err().to_string();
+    let message = fitted(Sex::Male, &Wanted::new().with(En::Stature, -1.7)).unwrap_err().to_string();
     assert!(message.ends_with("check the measure and its unit"), "{message}");
 }
 
@@ -243,7 +241,7 @@ fn measures_that_contradict_each_other_are_told_by_name() {
     ];
     for sex in SEXES {
         for wanted in &contradictions {
-            let Err(error @ BodyError::Unreachable { .. }) = Body::fitted(sex, wanted) else {
+            let Err(error @ BodyError::Unreachable { .. }) = fitted(sex, wanted) else {
                 panic!("{sex:?} {wanted:?} was met");
             };
             let message = error.to_string();
@@ -257,7 +255,7 @@ fn measures_that_contradict_each_other_are_told_by_name() {
 
 #[test]
 fn folds_are_told_from_contact() {
-    let drawn = Body::drawn(Sex::Male);
+    let drawn = drawn(Sex::Male);
     let knee = drawn.levels.knee;
     // Both knees pushed inwards until they pass through each other.
     let mut touching = drawn.mesh.clone();

@@ -10,9 +10,9 @@ use glam::Vec3;
 
 use super::raw::{RawBody, RawInfluences};
 use super::rest::carriers;
-use crate::limits::INFLUENCES;
-use crate::mesh::SkinWeights;
-use crate::skeleton::{BONES, Joint, Skeleton, TWISTS};
+use toile_base::limits::INFLUENCES;
+use toile_base::mesh::SkinWeights;
+use toile_base::skeleton::{BONES, Joint, Skeleton, TWISTS};
 
 /// What pruning to four influences cost.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

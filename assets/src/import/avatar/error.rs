@@ -1,6 +1,6 @@
 //! What can be wrong with an imported body: one sentence each, which names the element and the cure.
 
-use crate::limits::{MAX_BODY_BYTES, MAX_BODY_VERTICES};
+use toile_base::limits::{MAX_BODY_BYTES, MAX_BODY_VERTICES};
 
 /// Why a file does not become a body.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -1,7 +1,7 @@
 //! What an import gives: a body, and what was found in its file.
 
 use super::carry::PruningLoss;
-use crate::body::Body;
+use toile_base::body::Body;
 
 /// A body, and what was found in its file.
 #[derive(Debug, Clone, PartialEq)]

@@ -23,12 +23,8 @@ use std::path::{Path, PathBuf};
 
 use glam::Vec3;
 
-use crate::body::{Body, Region, Sex};
 use crate::file::{self, FileError, FileKind};
 use crate::import::gltf::file::GltfFile;
-use crate::limits::MAX_BODY_BYTES;
-use crate::mesh::{Mesh, vertex_normals};
-use crate::skeleton::{Joint, Skeleton};
 use animation::GltfClip;
 pub use carry::PruningLoss;
 pub use error::{AvatarError, Flaw};
@@ -37,6 +33,10 @@ pub use moving::MovingBody;
 use moving::MovingSkin;
 use raw::RawBody;
 use surface::SurfaceCheck;
+use toile_base::body::{Body, Region, Sex};
+use toile_base::limits::MAX_BODY_BYTES;
+use toile_base::mesh::{Mesh, vertex_normals};
+use toile_base::skeleton::{Joint, Skeleton};
 
 /// How a body is to be imported.
 #[derive(Debug, Clone, PartialEq)]

@@ -13,8 +13,8 @@ use super::error::Flaw;
 use super::imported::ImportedBody;
 use super::raw::{RawBody, RawInfluences};
 use super::skinned::BoundJoints;
-use crate::limits::STEP_HZ;
-use crate::skeleton::{JOINTS, Joint, Pose, Skeleton};
+use toile_base::limits::STEP_HZ;
+use toile_base::skeleton::{JOINTS, Joint, Pose, Skeleton};
 
 /// How much a joint's own rotation counts where it is laid by its children (m2): as axes of 5 mm, so that children in one line
 /// leave no turn about it open.

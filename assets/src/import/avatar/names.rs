@@ -3,7 +3,7 @@
 //! Standards: ISO/IEC 19774 (H-Anim) versions 1 and 2, VRM 0.x and 1.0 humanoid; habits: Mixamo and the FBX rigs named
 //! alike, Unreal (also MakeHuman's game engine rig), MakeHuman's CMU rig, and the BVH files of the CMU database.
 
-use crate::skeleton::{JOINTS, Joint};
+use toile_base::skeleton::{JOINTS, Joint};
 
 /// How one family of tools names the joints.
 #[derive(Debug)]

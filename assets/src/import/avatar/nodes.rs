@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use super::error::Flaw;
 use crate::import::gltf::file::{index, list, transform};
-use crate::limits::MAX_BODY_NODES;
+use toile_base::limits::MAX_BODY_NODES;
 
 /// All nodes, each with its parent and its place in the scene.
 pub(super) struct GltfNodes {

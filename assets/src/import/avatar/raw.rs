@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3};
 
 use super::error::Flaw;
 use super::names::{self, NamedJoints};
-use crate::limits::{IMPORT_INFLUENCES, MAX_BODY_VERTICES};
+use toile_base::limits::{IMPORT_INFLUENCES, MAX_BODY_VERTICES};
 
 /// Furthest that the weights of a vertex may sum from 1: bytes round each of four by up to 1/510.
 const SUM_TOLERANCE: f32 = 0.02;

@@ -5,7 +5,7 @@ use glam::{DMat4, DVec3, Mat3, Vec3};
 use super::error::Flaw;
 use super::names::{HANIM, NEEDED};
 use super::raw::RawBody;
-use crate::skeleton::{JOINTS, Joint, Skeleton};
+use toile_base::skeleton::{JOINTS, Joint, Skeleton};
 
 /// Units a file may be in: metres a unit, and what the unit is called.
 const UNITS: [(f32, &str); 4] = [(1.0, "metres"), (0.1, "decimetres"), (0.01, "centimetres"), (0.001, "millimetres")];

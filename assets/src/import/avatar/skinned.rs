@@ -16,8 +16,8 @@ use super::names;
 use super::nodes::GltfNodes;
 use super::raw::{RawBody, RawInfluences, RawJoint};
 use crate::import::gltf::file::{GltfFile, index, list};
-use crate::limits::MAX_BODY_VERTICES;
-use crate::skeleton::Joint;
+use toile_base::limits::MAX_BODY_VERTICES;
+use toile_base::skeleton::Joint;
 
 /// Attribute sets of joints and weights that are read: eight influences.
 const SETS: [[&str; 2]; 2] = [["JOINTS_0", "WEIGHTS_0"], ["JOINTS_1", "WEIGHTS_1"]];

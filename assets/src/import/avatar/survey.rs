@@ -8,9 +8,10 @@
 use glam::Vec3;
 
 use super::error::Flaw;
-use crate::body::{Body, Levels, Measures, Region, Sex, tape};
-use crate::mesh::{Mesh, SkinWeights};
-use crate::skeleton::{BONES, Joint, Skeleton, TWISTS};
+use crate::body::tape;
+use toile_base::body::{Levels, Measures, Region, Sex};
+use toile_base::mesh::{Mesh, SkinWeights};
+use toile_base::skeleton::{BONES, Joint, Skeleton, TWISTS};
 
 /// How far around an acromion its height is looked for (share of the stature).
 const ACROMION_NEAR: f32 = 0.015;
@@ -28,7 +29,7 @@ pub(super) struct BodySurvey {
 
 /// Reads levels, regions and measures.
 pub(super) fn survey(mesh: &Mesh, weights: &[SkinWeights], skeleton: &Skeleton, sex: Sex) -> Result<BodySurvey, Flaw> {
-    let ours = Body::proportions(sex);
+    let ours = crate::body::proportions(sex);
     let limbs = bone_regions();
     let regions: Vec<Region> = weights.iter().map(|w| region(w, &limbs)).collect();
     let crotch = crotch(mesh, &regions, skeleton)?;

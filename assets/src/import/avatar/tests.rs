@@ -6,16 +6,16 @@ use glam::{Mat4, Vec3};
 use serde_json::{Value, json};
 
 use super::*;
-use crate::body::Measures;
 use crate::export::{DressedBody, glb};
-use crate::limits::MAX_BODY_VERTICES;
+use toile_base::body::Measures;
+use toile_base::limits::MAX_BODY_VERTICES;
 
 mod animation;
 mod damage;
 
 /// Our own female body, and its GLB file: every import test begins with it.
 static OURS: LazyLock<Body> =
-    LazyLock::new(|| Body::build(Sex::Female, &Measures::average(Sex::Female)).expect("an average body"));
+    LazyLock::new(|| crate::body::build(Sex::Female, &Measures::average(Sex::Female)).expect("an average body"));
 static FILE: LazyLock<Vec<u8>> = LazyLock::new(|| glb(&DressedBody { body: &OURS, palette: None, worn: &[] }));
 
 /// A GLB file taken apart, to be changed.
@@ -130,7 +130,7 @@ fn moved() -> Vec3 {
 fn our_own_body_comes_back() {
     let ImportedBody { body, report } = GltfEdit::new().import().unwrap();
     assert_eq!((report.dialect, report.parts, report.boundary_edges), ("H-Anim 2", 1, 0));
-    assert_eq!(report.joints.len(), crate::skeleton::JOINTS);
+    assert_eq!(report.joints.len(), toile_base::skeleton::JOINTS);
     assert!(report.notes.is_empty(), "{:?}", report.notes);
     assert_eq!(body.mesh.triangles, OURS.mesh.triangles);
     let shift = moved();

@@ -11,10 +11,10 @@ use glam::Vec3;
 use super::MakehumanOptions;
 use super::files::targets;
 use super::mesh::MakehumanMesh;
-use crate::body::Sex;
 use crate::file::{self, FileKind};
 use crate::import::avatar::{AvatarError, Flaw};
-use crate::numeric::statistics::median;
+use toile_base::body::Sex;
+use toile_base::numeric::statistics::median;
 
 /// Vertices of the base mesh `hm08`, helpers and cubes included.
 const BASE_VERTICES: u32 = 19_158;

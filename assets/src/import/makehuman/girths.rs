@@ -9,8 +9,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::Vec3;
 
-use crate::garment::shape::NO_VERTEX;
 use crate::import::avatar::Flaw;
+use toile_bake::shape::NO_VERTEX;
 
 /// Girths and height of a body (m).
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -6,9 +6,9 @@ use std::path::Path;
 use glam::Vec3;
 
 use super::files::text;
-use crate::garment::shape::NO_VERTEX;
 use crate::import::avatar::{AvatarError, Flaw};
 use crate::import::plain::parse_obj;
+use toile_bake::shape::NO_VERTEX;
 
 /// Vertices of the body: those after them are helpers, eyes, teeth and the cubes that mark joints.
 pub const BODY_VERTICES: usize = 13_380;

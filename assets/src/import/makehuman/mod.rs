@@ -1,4 +1,4 @@
-//! MakeHuman's base mesh `hm08`, its targets, rigs and weights, as our [`Body`](crate::body::Body).
+//! MakeHuman's base mesh `hm08`, its targets, rigs and weights, as our [`Body`](toile_base::body::Body).
 //!
 //! Reads: a folder with `base.obj`, `rig.<name>.json`, `weights.<name>.json.gz` and `*.target.gz` files, which the user
 //! has; nothing of it is part of this program. Writes: a body with its report, and the girths that MakeHuman shows.
@@ -17,12 +17,12 @@ use glam::{Vec2, Vec3};
 
 use super::avatar::raw::{RawBody, RawInfluences, RawJoint};
 use super::avatar::{AvatarError, Flaw, ImportOptions, ImportedBody, names, settle};
-use crate::garment::shape::NO_VERTEX;
-use crate::limits::IMPORT_INFLUENCES;
 use files::{json_gz, targets};
 use girths::MakehumanGirths;
 pub use mesh::BODY_VERTICES;
 use mesh::MakehumanMesh;
+use toile_bake::shape::NO_VERTEX;
+use toile_base::limits::IMPORT_INFLUENCES;
 
 /// What a body is made of.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,7 +67,7 @@ pub fn read(folder: &Path, choice: &MakehumanOptions, options: &ImportOptions) -
 ///
 /// # Errors
 /// As [`read`].
-pub fn origin(folder: &Path, choice: &MakehumanOptions, body: &crate::body::Body) -> Result<Vec3, AvatarError> {
+pub fn origin(folder: &Path, choice: &MakehumanOptions, body: &toile_base::body::Body) -> Result<Vec3, AvatarError> {
     let mut base = MakehumanMesh::read(folder)?;
     targets(folder, &choice.targets, &mut base.positions)?;
     Ok(base.positions[0] * girths::DECIMETRE - body.mesh.positions[0])

@@ -9,7 +9,7 @@ use super::files::text;
 use super::mesh::MakehumanMesh;
 use crate::import::avatar::raw::RawJoint;
 use crate::import::avatar::{AvatarError, Flaw};
-use crate::limits::MAX_BODY_NODES;
+use toile_base::limits::MAX_BODY_NODES;
 
 /// The bones of a rig, each where it begins on the base (dm).
 pub(super) fn joints(path: &Path, base: &MakehumanMesh) -> Result<Vec<RawJoint>, AvatarError> {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::*;
 use crate::import::avatar::surface::SurfaceCheck;
-use crate::skeleton::Joint;
+use toile_base::skeleton::Joint;
 
 fn folder() -> Option<PathBuf> {
     Some(crate::recordings::folder()?.join("body/makehuman-hm08"))

@@ -10,7 +10,8 @@ use super::error::{Fault, meant};
 use super::json::{index, list, name, pair, text, triple};
 use super::trims;
 use crate::pattern::limits::{MAX_PANEL_EDGES, MAX_PANELS, MAX_SEAMS};
-use crate::pattern::{Curve, MAX_TRIMS, Panel, PanelEdge, Pattern, PatternFlaw, Placement, Seam, SeamSide};
+use crate::pattern::{Curve, Panel, PanelEdge, Pattern, PatternFlaw, Placement, Seam, SeamSide};
+use toile_base::garment::trim::MAX_TRIMS;
 
 /// What a stitch says whose outside meets an inside: it is sewn from both beginnings.
 const RIGHT_TO_WRONG: &str = "right_wrong";

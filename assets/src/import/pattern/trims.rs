@@ -5,8 +5,9 @@ use serde_json::Value;
 
 use super::error::{Fault, meant};
 use super::json::{list, name, pair};
+use crate::pattern::Trim;
 use crate::pattern::limits::MAX_REACH_M;
-use crate::pattern::{Trim, TrimKind};
+use toile_base::garment::trim::TrimKind;
 
 /// Widest trim (m): half of a coat's facing.
 const MAX_HALF_M: f64 = 0.15;

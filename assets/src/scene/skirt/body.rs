@@ -67,7 +67,7 @@ const RAMP_S: f64 = 1.0;
 /// How far the root rises and falls, twice a cycle (m).
 const BOB_M: f64 = 0.02;
 
-named! {
+toile_base::named! {
     /// Motion of the body.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
     pub enum Motion {

@@ -10,9 +10,9 @@ use delaunator::{Point, triangulate};
 use glam::DVec3;
 
 use super::surface::{HEIGHT, RADIUS, hem, point, push};
-use crate::garment::Shape;
-use crate::garment::shape::NO_VERTEX;
-use crate::numeric::random::SplitMix64;
+use toile_bake::Shape;
+use toile_bake::shape::NO_VERTEX;
+use toile_base::numeric::random::SplitMix64;
 
 /// Part of the spacing of the densest packing at which sampling starts; random points never pack more densely.
 const FIRST_SPACING: f64 = 0.85;
@@ -153,8 +153,8 @@ mod tests {
     use std::collections::BTreeMap;
 
     use super::*;
-    use crate::garment::check;
-    use crate::garment::check::corners;
+    use toile_bake::check;
+    use toile_bake::check::corners;
 
     #[test]
     fn it_is_one_closed_band_of_sound_triangles() {

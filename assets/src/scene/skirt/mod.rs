@@ -15,10 +15,10 @@ use std::f64::consts::TAU;
 
 use glam::Vec3;
 
-use crate::fabric::loop_widths::LoopWidths;
-use crate::fabric::stretch_curve::{ShearLock, StretchCurve, StretchCurves};
-use crate::fabric::{Fabric, USUAL_SHEEN, USUAL_THREADS, Weave};
-use crate::garment::Shape;
+use toile_bake::Shape;
+use toile_base::fabric::loop_widths::LoopWidths;
+use toile_base::fabric::stretch_curve::{ShearLock, StretchCurve, StretchCurves};
+use toile_base::fabric::{Fabric, USUAL_SHEEN, USUAL_THREADS, Weave};
 
 pub use body::{CAPSULES, JOINTS, Motion, SPHERES, root, spheres};
 pub use irregular::irregular;
@@ -34,7 +34,7 @@ pub const WIND: (Vec3, f32, f32) = (Vec3::new(1.0, 0.0, 0.5), 0.1, 0.05);
 /// Part of its speed that the cloth keeps after a second in the air.
 const KEPT_AFTER_1_S: f32 = 0.35;
 
-named! {
+toile_base::named! {
     /// How the skirt's threads stretch.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
     pub enum Stretch {
@@ -110,7 +110,7 @@ pub fn fabric(shape: &Shape, stretch: Stretch) -> Fabric {
         friction: 0.3,
         damping_per_s: -KEPT_AFTER_1_S.ln(),
         contact_offset_mm: 1.0,
-        thickness_mm: crate::fabric::USUAL_THICKNESS_MM,
+        thickness_mm: toile_base::fabric::USUAL_THICKNESS_MM,
         comfortable_stretch: 0.05,
         colour: [0.24, 0.42, 0.55],
         weave: Weave::Plain,
@@ -130,8 +130,8 @@ pub fn fabric(shape: &Shape, stretch: Stretch) -> Fabric {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bake::bake;
-    use crate::garment::check;
+    use toile_bake::bake;
+    use toile_bake::check;
 
     #[test]
     fn the_grid_is_the_scenes() {
@@ -184,7 +184,7 @@ mod tests {
         heavy.heavier = vec![1.0; n * n];
         heavy.heavier[hem(n)].fill(1_000.0);
         let fabric = fabric(&plain, Stretch::Physical);
-        let [light, heavy] = [plain, heavy].map(|s| bake("skirt", "one", &s, &fabric).unwrap().inverse_mass);
+        let [light, heavy] = [plain, heavy].map(|s| bake("skirt", "one", &s, &fabric).unwrap().inverse_mass.clone());
         let ratio = |v: usize| light[v] / heavy[v];
         assert!((n..hem(n).start).all(|v| ratio(v) == 1.0));
         assert!(hem(n).all(|v| (ratio(v) - 1_000.0).abs() < 0.01));

@@ -4,8 +4,9 @@ use std::ops::Range;
 
 use glam::{DVec3, Vec3};
 
-use crate::garment::{Part, Shape};
-use crate::mesh::SkinWeights;
+use toile_bake::Shape;
+use toile_base::garment::Part;
+use toile_base::mesh::SkinWeights;
 
 /// Radius at the pinned ring (m), and how much wider the hem is.
 pub(super) const RADIUS: [f64; 2] = [0.18, 0.24];

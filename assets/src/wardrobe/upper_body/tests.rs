@@ -1,15 +1,15 @@
 use std::collections::BTreeMap;
 
 use super::*;
-use crate::body::{Measures, Sex};
-use crate::garment::shape::NO_VERTEX;
 use crate::wardrobe;
+use toile_bake::shape::NO_VERTEX;
+use toile_base::body::{Measures, Sex};
 
 const GARMENTS: [&str; 2] = ["t-shirt", "jacket"];
 
 #[test]
 fn the_coarsest_mesh_that_a_file_may_ask_for_is_drafted() {
-    let shopper = Body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
+    let shopper = crate::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
     for name in GARMENTS {
         let style = Style { columns: 16, spacing_mm: 60.0, ..wardrobe::style(name).unwrap() };
         assert!(style.draft("M", &shopper).unwrap().faces.len() > 100, "{name}");
@@ -34,7 +34,7 @@ fn no_size_has_needles_or_gaps() {
     for (name, sex) in GARMENTS.iter().flat_map(|name| [(name, Sex::Female), (name, Sex::Male)]) {
         let style = wardrobe::style(name).unwrap();
         let spacing = style.spacing_mm * 1e-3;
-        let shopper = Body::build(sex, &Measures::average(sex)).unwrap();
+        let shopper = crate::body::build(sex, &Measures::average(sex)).unwrap();
         for size in style.sizes().unwrap().codes() {
             let shape = style.draft(size, &shopper).unwrap();
             let length = |[a, b]: &[u32; 2]| shape.cut[*a as usize].distance(shape.cut[*b as usize]);
@@ -53,7 +53,7 @@ fn no_size_has_needles_or_gaps() {
 
 #[test]
 fn a_closed_garment_has_four_borders_and_an_open_one_three() {
-    let shopper = Body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
+    let shopper = crate::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
     // Neck, hem and both sleeves; where it is open, one border runs from the neck down one edge, along the hem and up again.
     for (name, wanted) in [("t-shirt", 4), ("jacket", 3)] {
         let shape = wardrobe::style(name).unwrap().draft("M", &shopper).unwrap();
@@ -79,7 +79,7 @@ fn a_closed_garment_has_four_borders_and_an_open_one_three() {
 fn an_open_jacket_hangs_from_its_yoke_with_its_edges_free_and_apart() {
     let style = wardrobe::style("jacket").unwrap();
     for sex in [Sex::Female, Sex::Male] {
-        let shopper = Body::build(sex, &Measures::average(sex)).unwrap();
+        let shopper = crate::body::build(sex, &Measures::average(sex)).unwrap();
         let shape = style.draft("M", &shopper).unwrap();
         let held: Vec<usize> = (0..shape.fixed.len()).filter(|&i| shape.fixed[i]).collect();
         assert!(held.len() * 10 < shape.fixed.len(), "{} of {} are held", held.len(), shape.fixed.len());
@@ -95,7 +95,7 @@ fn an_open_jacket_hangs_from_its_yoke_with_its_edges_free_and_apart() {
 
 #[test]
 fn a_jacket_is_worn_over_a_t_shirt_and_reaches_the_wrists() {
-    let shopper = Body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
+    let shopper = crate::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
     let shape = wardrobe::style("jacket").unwrap().draft("M", &shopper).unwrap();
     let reach = shape.worn.iter().map(|p| p.x).fold(0.0, f32::max);
     let wrist = shopper.skeleton.at(Joint::LeftWrist).x;

@@ -13,9 +13,9 @@ use std::{env, fs};
 
 use garments::{GARMENTS, ShopGarment};
 use toile_assets::catalogue::package;
+use toile_base::frame::Joints;
 use toile_fitting::dress::wish::Wish;
 use toile_fitting::dress::{dressed, session};
-use toile_sensors::frame::Joints;
 use toile_view::drawn_frame::{self, DrawnFrame};
 use toile_view::figure::Appearance;
 use toile_view::image::{Size, linear};

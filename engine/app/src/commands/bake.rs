@@ -6,16 +6,17 @@ use std::time::Instant;
 
 use serde::Serialize;
 use toile_assets::adapt::{OwnMesh, source};
-use toile_assets::bake;
-use toile_assets::bake::survey::{MeshSurvey, survey};
-use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::drafting;
 use toile_assets::draping::{self, PatternPackage};
-use toile_assets::fabric::Fabric;
 use toile_assets::file::{self, FileKind};
-use toile_assets::garment::{Garment, Shape};
 use toile_assets::sizes::Population;
 use toile_assets::wardrobe::{self, WardrobeError, own};
+use toile_bake;
+use toile_bake::Shape;
+use toile_bake::survey::{MeshSurvey, survey};
+use toile_base::body::{Measures, Sex};
+use toile_base::fabric::Fabric;
+use toile_base::garment::Garment;
 
 use crate::exit::AppError;
 use crate::report::Document;
@@ -197,9 +198,9 @@ struct DraftedShape {
 fn bake(args: &BakeArgs) -> Result<BakeReport, AppError> {
     let named = args.fabric.as_deref().map(fabric).transpose()?;
     let drafted = draft(args)?;
-    let fabric = named.map_or_else(|| Fabric::built_in(&drafted.fabric).map_err(AppError::input), Ok)?;
+    let fabric = named.map_or_else(|| toile_assets::fabric::built_in(&drafted.fabric).map_err(AppError::input), Ok)?;
     let start = Instant::now();
-    let garment = bake::bake(&drafted.name, &drafted.size, &drafted.shape, &fabric)
+    let garment = toile_bake::bake(&drafted.name, &drafted.size, &drafted.shape, &fabric)
         .map_err(|source| AppError::input(WardrobeError::Mesh { name: drafted.name.clone(), source }))?;
     let bake_ms = start.elapsed().as_secs_f64() * 1e3;
     let mut report = report(&garment, survey(&drafted.shape, &fabric), bake_ms);
@@ -226,7 +227,7 @@ fn draft(args: &BakeArgs) -> Result<DraftedShape, AppError> {
         }
         let own = OwnMesh::read(Path::new(name)).map_err(AppError::input)?;
         let sex = own.sex.unwrap_or(Sex::Female);
-        let body = Body::build(sex, &Measures::average(sex)).map_err(AppError::internal)?;
+        let body = toile_assets::body::build(sex, &Measures::average(sex)).map_err(AppError::internal)?;
         let drafted = own::draft(&own, None, &body).map_err(AppError::input)?;
         let (fabric, notes) = (drafted.fabric.name, drafted.worn.report.lines());
         return Ok(DraftedShape {
@@ -249,7 +250,8 @@ fn draft(args: &BakeArgs) -> Result<DraftedShape, AppError> {
 
 /// Drapes a pattern or a package on the average woman, or in a size on the body that it is for.
 fn draft_pattern(package: PatternPackage, size: Option<String>) -> Result<DraftedShape, AppError> {
-    let average = Body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(AppError::internal)?;
+    let average =
+        toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(AppError::internal)?;
     let (size, body) = match size {
         None => (package.own_size().to_owned(), average),
         Some(size) => {
@@ -257,7 +259,7 @@ fn draft_pattern(package: PatternPackage, size: Option<String>) -> Result<Drafte
             (size, body)
         }
     };
-    let fabric = Fabric::built_in(&package.fabric).map_err(AppError::input)?;
+    let fabric = toile_assets::fabric::built_in(&package.fabric).map_err(AppError::input)?;
     let shape = package.draft(&size, &body, &fabric).map_err(AppError::input)?;
     Ok(DraftedShape { name: package.name, size, fabric: package.fabric, shape, notes: Vec::new() })
 }
@@ -266,17 +268,20 @@ fn draft_pattern(package: PatternPackage, size: Option<String>) -> Result<Drafte
 fn fabric(name: &str) -> Result<Fabric, AppError> {
     let path = Path::new(name);
     if !path.exists() && !name.to_lowercase().ends_with(".toml") {
-        return Fabric::built_in(name).map_err(AppError::input);
+        return toile_assets::fabric::built_in(name).map_err(AppError::input);
     }
     let text = file::read_text(path, &FABRIC_FILE).map_err(AppError::input)?;
-    Fabric::parse(name, &text).map_err(AppError::input)
+    toile_assets::fabric::parse(name, &text).map_err(AppError::input)
 }
 
 fn report(garment: &Garment, found: MeshSurvey, bake_ms: f64) -> BakeReport {
     let covered = &found.coverage;
     let layout = garment.layout();
-    let solver =
-        |s: &bake::survey::SolverCount| SolverCounts { solver: s.solver.name(), fibers: s.fibers, edges: s.edges };
+    let solver = |s: &toile_bake::survey::SolverCount| SolverCounts {
+        solver: s.solver.name(),
+        fibers: s.fibers,
+        edges: s.edges,
+    };
     BakeReport {
         garment: garment.name.clone(),
         size: garment.size.clone(),

@@ -5,16 +5,15 @@ use std::path::{Path, PathBuf};
 
 use clap::ArgAction;
 use glam::Affine3A;
-use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::export::{DressedBody, glb};
 use toile_assets::import::{avatar, makehuman};
-use toile_assets::rig::Rig;
 use toile_assets::scene;
-use toile_assets::skeleton::BONES;
+use toile_base::body::{Body, Measures, Sex};
+use toile_base::frame::Joints;
+use toile_base::skeleton::BONES;
 use toile_engine::body::{JointFrames, Poser, palette};
 use toile_engine::frame::BLEND;
 use toile_engine::skin::SkinningJob;
-use toile_sensors::frame::Joints;
 use toile_view::contact_sheet;
 use toile_view::figure::SkinTone;
 use toile_view::image::Size;
@@ -198,7 +197,7 @@ fn title(args: &BodyArgs, body: &Body) -> String {
 /// The body in a pose of the embedded shopper, taken over as from a sensor.
 fn walking(body: &Body) -> Result<Body, AppError> {
     let (sex, measures) = scene::SHOPPER;
-    let shopper = Body::build(sex, &measures).map_err(AppError::internal)?.skeleton;
+    let shopper = toile_assets::body::build(sex, &measures).map_err(AppError::internal)?.skeleton;
     let seen = JointFrames::new(&shopper, &scene::shopper(&shopper, WALK_S)).position;
     let joints = Joints::seen(0, seen);
     let pose = Poser::new(&body.skeleton).pose(&joints, 0.0);
@@ -280,7 +279,7 @@ fn report(
             crowded_edges: report.crowded_edges,
         },
         makehuman_mm: rows,
-        colliders: Followed::of(&Rig::fit(body).report(body)),
+        colliders: Followed::of(&toile_assets::rig::report(&toile_assets::rig::fit(body), body)),
         notes: report.notes.clone(),
         files,
     }

@@ -7,15 +7,15 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
-use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::catalogue::{
     Catalogue, CatalogueItem, GarmentManifest, GarmentPackage, ShopTheme, ThemeColours, contrast, package, word,
 };
 use toile_assets::wardrobe::own;
+use toile_base::body::{Measures, Sex};
+use toile_base::frame::Joints;
 use toile_fitting::dress::choice::Choice;
 use toile_fitting::dress::wish::Wish;
 use toile_fitting::dress::{dressed, session};
-use toile_sensors::frame::Joints;
 use toile_view::contact_sheet;
 use toile_view::drawn_frame::{self, DrawnFrame};
 use toile_view::figure::Appearance;
@@ -201,7 +201,8 @@ fn opened(path: &Path) -> Result<(Choice, Vec<String>), AppError> {
 }
 
 fn sizes(choice: &Choice) -> Result<Vec<String>, AppError> {
-    let average = Body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(AppError::internal)?;
+    let average =
+        toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(AppError::internal)?;
     choice.fabric()?;
     let offer = choice.offer(&average)?;
     let unsized_code = || vec![own::UNKNOWN.to_owned()];

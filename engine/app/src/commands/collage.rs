@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
-use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::catalogue::{CollageGarment, CollagePictures, limits};
 use toile_assets::file::{self, FileKind};
 use toile_assets::sizes::SizeTable;
+use toile_base::body::{Body, Measures, Sex};
 use toile_view::collage::{BodyLayers, CollageError, CollageSide, WornPhotographs, collage};
 use toile_view::contact_sheet::contact_sheet;
 use toile_view::image::Image;
@@ -146,7 +146,7 @@ fn body(args: &CollageArgs) -> Result<(Body, String), AppError> {
             (Measures::from(table.size_body(size).map_err(AppError::input)?), format!("size {size}"))
         }
     };
-    Ok((Body::build(args.sex, &measures).map_err(AppError::input)?, called))
+    Ok((toile_assets::body::build(args.sex, &measures).map_err(AppError::input)?, called))
 }
 
 /// A garment's file, and the pictures beside it.

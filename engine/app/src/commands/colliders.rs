@@ -7,9 +7,9 @@ use std::time::Instant;
 
 use glam::Vec3;
 use serde::Serialize;
-use toile_assets::body::Body;
-use toile_assets::numeric::statistics::quantile;
-use toile_assets::rig::{MEAN_GOAL_MM, P95_GOAL_MM, Rig};
+use toile_assets::rig::{MEAN_GOAL_MM, P95_GOAL_MM};
+use toile_base::body::Body;
+use toile_base::numeric::statistics::quantile;
 use toile_perf::people;
 use toile_view::contact_sheet;
 use toile_view::image::Size;
@@ -134,20 +134,20 @@ fn ours(args: &BodyArgs, words: &Words) -> Result<(Vec<FittedColliders>, Shown),
 
 fn fitted(name: String, body: &Body, stranger: bool) -> FittedColliders {
     let begun = Instant::now();
-    let rig = Rig::fit(body);
+    let rig = toile_assets::rig::fit(body);
     let fit_ms = (begun.elapsed().as_secs_f64() * 1e5).round() / 100.0;
     let m = &body.measures;
     let measures_mm =
         [m.stature, m.chest_girth, m.waist_girth, m.hip_girth].map(|m| (f64::from(m) * 1e4).round() / 10.0);
-    FittedColliders { name, measures_mm, fit_ms, zones: Followed::of(&rig.report(body)), stranger }
+    FittedColliders { name, measures_mm, fit_ms, zones: Followed::of(&toile_assets::rig::report(&rig, body)), stranger }
 }
 
 fn report(bodies: Vec<FittedColliders>, files: Vec<PathBuf>) -> CollidersReport {
     let zones = bodies.iter().flat_map(|b| b.zones.iter().map(move |z| (b, z)));
     let missed = zones.filter(|(_, z)| z.meets == Some(false)).map(|(b, z)| [b.name.clone(), z.zone.to_owned()]);
     CollidersReport {
-        spheres: toile_assets::rig::SPHERES,
-        capsules: toile_assets::limits::MAX_CAPSULES,
+        spheres: toile_base::rig::SPHERES,
+        capsules: toile_base::limits::MAX_CAPSULES,
         mean_goal_mm: MEAN_GOAL_MM,
         p95_goal_mm: P95_GOAL_MM,
         missed: missed.collect(),
@@ -232,10 +232,10 @@ fn worst(text: &mut String, report: &CollidersReport, paint: Paint) {
 
 /// Above, the skin by its distance from the union: red stands out of it, blue lies below. Below, the capsules.
 fn drawn(body: &Body) -> toile_view::image::Image {
-    let rig = Rig::fit(body);
+    let rig = toile_assets::rig::fit(body);
     let towards = |d: f32| CLOSE.lerp(if d > 0.0 { PROUD } else { BELOW }, (d.abs() / FULL).min(1.0));
     let skin: Vec<Vec3> = body.mesh.positions.iter().map(|p| towards(rig.distance(body, *p))).collect();
-    let shell = rig.shell(body);
+    let shell = toile_assets::rig::shell(&rig, body);
     let painted: Vec<Vec3> = shell.capsules.iter().map(|c| CAPSULES[usize::from(*c) / 2 % CAPSULES.len()]).collect();
     let surfaces = [
         Surface {

@@ -48,7 +48,7 @@ pub struct ConvertArgs {
     printing: Printing,
 }
 
-toile_assets::named! {
+toile_base::named! {
     /// Which depth a converted session keeps.
     #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
     pub enum KeptDepth {

@@ -1,7 +1,7 @@
 //! Crossings of what is played, counted every tenth step for the reports.
 
 use glam::Vec3;
-use toile_assets::garment::Garment;
+use toile_base::garment::Garment;
 use toile_engine::cloth::Cloth;
 use toile_perf::crossings::{CrossingFigures, CrossingWatch};
 

@@ -8,10 +8,10 @@ mod loops;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
-use toile_assets::fabric::Fabric;
 use toile_assets::fabric::sheet::MeasuredSheet;
 use toile_assets::file::{self, FileKind};
 use toile_assets::put_line;
+use toile_base::fabric::Fabric;
 
 use crate::arguments::Printing;
 use crate::exit::AppError;
@@ -206,7 +206,7 @@ pub(crate) fn run(command: &FabricCommand) -> Result<(), AppError> {
 
 fn list(printing: Printing) -> Result<(), AppError> {
     let fabrics: Vec<FabricReport> =
-        Fabric::all().map_err(AppError::internal)?.iter().map(FabricReport::from).collect();
+        toile_assets::fabric::all().map_err(AppError::internal)?.iter().map(FabricReport::from).collect();
     if printing.json {
         return terminal::print_json(&Document::new("fabric", FabricList { fabrics }));
     }
@@ -225,9 +225,9 @@ fn list(printing: Printing) -> Result<(), AppError> {
 /// A built-in fabric, or one of a file.
 fn fabric(name: &str) -> Result<Fabric, AppError> {
     if !Path::new(name).extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) {
-        return Fabric::built_in(name).map_err(AppError::input);
+        return toile_assets::fabric::built_in(name).map_err(AppError::input);
     }
-    Fabric::parse(name, &text_of(Path::new(name))?).map_err(AppError::input)
+    toile_assets::fabric::parse(name, &text_of(Path::new(name))?).map_err(AppError::input)
 }
 
 /// What is read as a fabric's file or a sheet.
@@ -265,7 +265,7 @@ fn import(args: &ImportArgs) -> Result<(), AppError> {
     let of_file = args.sheet.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
     let source = args.source.as_deref().unwrap_or(&of_file);
     let text = sheet.file(&args.name, args.title.as_deref().unwrap_or(&args.name), &args.base, source);
-    let fabric = Fabric::parse(&args.name, &text).map_err(|e| wrong(&e))?;
+    let fabric = toile_assets::fabric::parse(&args.name, &text).map_err(|e| wrong(&e))?;
     let files = OutputFile::prepare(&args.out, Inputs::new([&args.sheet]))?.write(text.as_bytes())?;
     finish(&fabric, files, args.printing)
 }

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use clap::value_parser;
 use serde::Serialize;
-use toile_assets::body::Sex;
+use toile_base::body::Sex;
 use toile_engine::clock::RealClock;
 use toile_engine::frame_loop::governor::LADDER;
 use toile_engine::frame_loop::recording::{self, Entry};

@@ -8,7 +8,7 @@ use toile_track::estimate::Estimate;
 use toile_track::fit::measuring::{FittedMeasures, MEASURES};
 use toile_track::measures;
 
-use toile_assets::body::Sex;
+use toile_base::body::Sex;
 
 use crate::arguments::{Printing, TapeArgs, one_of};
 use crate::exit::AppError;

@@ -179,7 +179,7 @@ fn worn(
     let before = probe.read();
     let parts = recipe.parts()?;
     let made = probe.read();
-    let baked: usize = parts.garments.iter().map(toile_assets::garment::Garment::bytes).sum();
+    let baked: usize = parts.garments.iter().map(toile_base::garment::Garment::bytes).sum();
     let body = before.zip(made).map_or(0, |(a, b)| (b.live_bytes - a.live_bytes - baked as i64).max(0));
     let costs = calibrate::measure(Some((&parts.body, &parts.rig, &track)), workers).map_err(AppError::internal)?;
     let frame = frame_bytes(&parts, &probe)?;

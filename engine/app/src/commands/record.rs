@@ -4,14 +4,14 @@ use std::path::PathBuf;
 
 use clap::value_parser;
 use glam::{Affine3A, Vec3};
-use toile_assets::body::Body;
 use toile_assets::scene;
-use toile_assets::skeleton::{BONES, JOINTS, Pose};
+use toile_base::body::Body;
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::{Intrinsics, Joints};
+use toile_base::skeleton::{BONES, JOINTS, Pose};
 use toile_engine::body::{JointFrames, palette};
 use toile_engine::frame::BLEND;
 use toile_engine::skin::SkinningJob;
-use toile_sensors::clock::SECOND_NS;
-use toile_sensors::frame::{Intrinsics, Joints};
 use toile_sensors::session::Session;
 use toile_sensors::source::live::CameraName;
 use toile_sensors::source::synthetic::{JointNoise, KinectNoise, SyntheticCamera};
@@ -98,7 +98,7 @@ pub fn run(args: &RecordArgs) -> Result<(), AppError> {
 /// Lets the shopper of the scene perform before the synthetic camera. The same seed gives the same bits.
 pub fn perform(seed: u64, frames: u64, mut done: impl FnMut()) -> Result<Session, AppError> {
     let (sex, measures) = scene::SHOPPER;
-    let body = Body::build(sex, &measures).map_err(AppError::internal)?;
+    let body = toile_assets::body::build(sex, &measures).map_err(AppError::internal)?;
     let job = SkinningJob::new(&body.mesh.positions, &body.normals, &body.weights).map_err(AppError::internal)?;
     let camera = SyntheticCamera::looking_at(CAMERA, scene::CAMERA[0], scene::CAMERA[1]);
     let (mut depth_noise, mut joint_noise) = (KinectNoise::new(seed), JointNoise::new(seed ^ 0x5eed));

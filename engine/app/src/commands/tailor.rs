@@ -12,12 +12,11 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use serde::Serialize;
-use toile_assets::body::Sex;
 use toile_assets::drafting;
 use toile_assets::draping::{self, DrapedPattern, PatternPackage};
-use toile_assets::fabric::Fabric;
 use toile_assets::sizes::GarmentKind;
 use toile_assets::tailor::PanelQuality;
+use toile_base::body::Sex;
 use toile_view::figure::Figure;
 
 use crate::arguments::{AppearanceArgs, Printing, one_of};
@@ -134,7 +133,7 @@ pub fn run(args: &TailorArgs) -> Result<(), AppError> {
     let mut package = read(args)?;
     package.spacing_mm = args.spacing.unwrap_or(package.spacing_mm);
     package.fabric = args.fabric.clone().unwrap_or(package.fabric);
-    let fabric = Fabric::built_in(&package.fabric).map_err(AppError::input)?;
+    let fabric = toile_assets::fabric::built_in(&package.fabric).map_err(AppError::input)?;
     if let Some(size) = &args.drafted_for {
         let choice = drafts::DraftChoice {
             size,

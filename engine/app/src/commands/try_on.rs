@@ -10,18 +10,17 @@ use clap::builder::RangedI64ValueParser;
 use clap::{ArgAction, value_parser};
 use std::path::Path;
 use std::path::PathBuf;
-use toile_assets::body::Sex;
+use toile_base::body::Sex;
 use toile_engine::cloth::Quality;
 
 use glam::Affine3A;
 use toile_assets::adapt::MeshReport;
-use toile_assets::body::Body;
 use toile_assets::export::{self, DressedBody, glb};
 use toile_assets::import::avatar::MovingBody;
-use toile_assets::limits::STEP_SECONDS;
-use toile_assets::rig::Rig;
-use toile_assets::skeleton::{BONES, Joint};
 use toile_assets::{drafting, wardrobe};
+use toile_base::body::Body;
+use toile_base::limits::STEP_SECONDS;
+use toile_base::skeleton::{BONES, Joint};
 use toile_engine::body::palette;
 use toile_engine::cloth::Settings;
 use toile_engine::frame::{Frame, Snapshot};
@@ -227,7 +226,7 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     meshes.iter().flat_map(MeshReport::lines).for_each(|line| words.print_line(&line));
     let garments = outfit.garments;
 
-    let rig = Rig::fit(&body);
+    let rig = toile_assets::rig::fit(&body);
     let settings = LADDER[usize::from(args.rung)].of(&Settings { quality: args.quality, ..Settings::default() });
     let poses = if args.poses { wearing::in_poses(&body, &rig, &garments, &settings)? } else { Vec::new() };
     let (mut frame, mut reader) = Frame::new(body, &rig, garments, settings).map_err(AppError::internal)?;

@@ -1,6 +1,6 @@
 //! The GPU renderer, off the screen, for the pictures of a try-on.
 
-use toile_assets::garment::Garment;
+use toile_base::garment::Garment;
 use toile_engine::lines::Line;
 use toile_view::figure::Figure;
 use toile_view::image::{Image, Size};

@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use glam::Vec3;
-use toile_assets::body::{Body, Measures, Sex};
-use toile_sensors::frame::Intrinsics;
+use toile_base::body::{Measures, Sex};
+use toile_base::frame::Intrinsics;
 use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera, room};
 
 /// Folders in which Debian's package freenect puts that library.
@@ -21,7 +21,7 @@ pub const IMAGES: usize = 36;
 /// Writes a recording as `fakenect-record` does, of somebody who stands in a room: so many frames, the images again and again.
 pub fn write_recording(folder: &Path, frames: usize) {
     fs::create_dir_all(folder).unwrap();
-    let body = Body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
+    let body = toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
     let at = (Vec3::new(0.0, 1.0, 2.4), Vec3::new(0.0, 0.95, 0.0));
     let camera = SyntheticCamera::looking_at(Intrinsics::KINECT_V1, at.0, at.1);
     let view = room::view(&camera, -1.2, &[(&body.mesh.positions, &body.mesh.triangles)]);

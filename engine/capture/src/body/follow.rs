@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use glam::{DVec3, Quat};
-use toile_assets::skeleton::JOINTS;
+use toile_base::skeleton::JOINTS;
 use toile_track::fit::FitState;
 
 use super::fit::BodyFitter;

@@ -1,7 +1,7 @@
 //! Joints that were found in the same pictures as the silhouettes.
 
 use glam::DVec3;
-use toile_assets::skeleton::Joint;
+use toile_base::skeleton::Joint;
 use toile_sensors::source::openpose::Point;
 
 /// A joint that was found in pictures.

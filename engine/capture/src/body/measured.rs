@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use glam::{DMat3, DQuat, DVec3, Quat, Vec3};
 use toile_assets::body::shape::Shapes;
-use toile_assets::body::{En, Fitted, Measures, Sex};
-use toile_assets::mesh::vertex_normals;
-use toile_assets::skeleton::Pose;
+use toile_assets::body::{En, Fitted};
+use toile_base::body::{Measures, Sex};
+use toile_base::mesh::vertex_normals;
+use toile_base::skeleton::Pose;
 use toile_sensors::calibration::CalibratedCamera;
 use toile_sensors::masks::Mask;
 use toile_track::correlated::Correlated;

@@ -1,7 +1,7 @@
 //! The start of a fit without anybody's help: from the visual hull or from joints, the way somebody faces and how they hold their arms.
 
 use glam::{DVec3, Quat, Vec3};
-use toile_assets::skeleton::{JOINTS, Joint};
+use toile_base::skeleton::{JOINTS, Joint};
 use toile_track::fit::{ARMS, FitState, of_stature, set_arm};
 
 use super::fit::{BodyFitter, COARSE, FINE};

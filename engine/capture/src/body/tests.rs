@@ -1,6 +1,7 @@
 use glam::{DMat3, DVec3, Quat};
-use toile_assets::body::{Body, En, Sex, Wanted};
-use toile_assets::skeleton::{Joint, Pose};
+use toile_assets::body::{En, Wanted};
+use toile_base::body::{Body, Sex};
+use toile_base::skeleton::{Joint, Pose};
 use toile_sensors::calibration::CalibratedCamera;
 use toile_sensors::masks::Mask;
 use toile_track::fit::measuring::MEASURES;
@@ -36,8 +37,8 @@ fn moved(body: &Body, turned: f32, by: f32) -> Vec<DVec3> {
     pose.local[Joint::RightElbow.index()] = Quat::from_rotation_x(-by);
     pose.local[Joint::LeftHip.index()] = Quat::from_rotation_x(-0.5 * by);
     pose.local[Joint::LeftKnee.index()] = Quat::from_rotation_x(0.5 * by);
-    let mut place = [glam::Vec3::ZERO; toile_assets::skeleton::JOINTS];
-    let mut spin = [Quat::IDENTITY; toile_assets::skeleton::JOINTS];
+    let mut place = [glam::Vec3::ZERO; toile_base::skeleton::JOINTS];
+    let mut spin = [Quat::IDENTITY; toile_base::skeleton::JOINTS];
     for joint in Joint::ALL {
         let i = joint.index();
         match joint.parent().map(Joint::index) {
@@ -48,9 +49,9 @@ fn moved(body: &Body, turned: f32, by: f32) -> Vec<DVec3> {
             }
         }
     }
-    let by = |(p, weights): (&glam::Vec3, &toile_assets::mesh::SkinWeights)| {
+    let by = |(p, weights): (&glam::Vec3, &toile_base::mesh::SkinWeights)| {
         let parts = weights.iter().map(|(bone, w)| {
-            let j = toile_assets::skeleton::bone_joint(bone as usize).map_or(0, Joint::index);
+            let j = toile_base::skeleton::bone_joint(bone as usize).map_or(0, Joint::index);
             w * (place[j] + spin[j] * (*p - body.skeleton.rest[j]))
         });
         (Quat::from_rotation_y(turned) * parts.sum::<glam::Vec3>()).as_dvec3()
@@ -81,7 +82,7 @@ fn views<'a>(rig: &'a [CalibratedCamera], masks: &'a [Mask]) -> Vec<SilhouetteVi
 #[test]
 fn a_body_of_the_own_family_comes_back_from_four_silhouettes() {
     let wanted = Wanted::<En>::new().with(En::Stature, 1.71).with(En::WaistGirth, 0.79).with(En::HipGirth, 1.03);
-    let truth = Body::fitted(Sex::Female, &wanted).unwrap();
+    let truth = toile_assets::body::fitted(Sex::Female, &wanted).unwrap();
     // Turned by half a radian: the fit is not told which way somebody faces.
     let positions = standing(&truth.body, 0.5);
     let rig = cameras(&[0.0, 90.0, 180.0, 270.0]);
@@ -137,7 +138,7 @@ fn cameras_that_stand_opposite_each_other_are_named_where_they_leave_few_ways_of
 #[test]
 fn somebody_who_moves_is_followed_by_their_silhouettes() {
     let wanted = Wanted::<En>::new().with(En::Stature, 1.68).with(En::WaistGirth, 0.81).with(En::HipGirth, 1.02);
-    let truth = Body::fitted(Sex::Female, &wanted).unwrap();
+    let truth = toile_assets::body::fitted(Sex::Female, &wanted).unwrap();
     let triangles = &truth.body.mesh.triangles;
     let rig = cameras(&[0.0, 90.0, 180.0, 270.0]);
     let film = |frame: usize| {

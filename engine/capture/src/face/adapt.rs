@@ -1,7 +1,7 @@
 //! The head adapted to marked points and to its outline: its pose before the cameras and its field of displacements, in turn.
 
 use glam::DVec3;
-use toile_assets::body::Sex;
+use toile_base::body::Sex;
 
 use super::head_mesh::HeadMesh;
 use super::head_pose::{POSE_ROUNDS, first_pose, pose_step};

@@ -4,7 +4,7 @@
 //! (Wendland 1995) carries it over the surface.
 
 use glam::DVec3;
-use toile_assets::body::Sex;
+use toile_base::body::Sex;
 use toile_sensors::face_points::FACE_POINTS;
 
 use super::head_mesh::HeadMesh;

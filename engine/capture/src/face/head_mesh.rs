@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use toile_assets::body::shape::Shapes;
-use toile_assets::body::{Region, Sex};
-use toile_assets::skeleton::Joint;
+use toile_base::body::{Region, Sex};
+use toile_base::skeleton::Joint;
 
 use super::prior::Field;
 

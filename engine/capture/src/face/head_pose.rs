@@ -1,7 +1,8 @@
 //! Where a head stands before the cameras, by Gauss-Newton on what is seen of it.
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
-use toile_assets::numeric::linear::{self, Pivot};
+use toile_base::numeric::linear;
+use toile_base::numeric::linear::Pivot;
 
 use super::sighting::{HeadPose, Sighting, equations, marked_points, residual};
 use super::view::FaceView;

@@ -1,9 +1,9 @@
 //! Where the 68 points of a face are on the mannequin's head: points of its triangles, which every shape of it carries along.
 
 use glam::{DVec3, Vec3};
-use toile_assets::body::Region;
-use toile_assets::body::Sex;
 use toile_assets::body::shape::Shapes;
+use toile_base::body::Region;
+use toile_base::body::Sex;
 use toile_sensors::face_points::FACE_POINTS;
 
 /// A point of the surface: a triangle, and the shares of its corners.

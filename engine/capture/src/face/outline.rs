@@ -4,7 +4,7 @@
 //! surface turns away from the camera (Hertzmann 1999) and nothing, or only something much deeper, lies beyond.
 
 use glam::{DVec2, DVec3};
-use toile_assets::numeric::statistics::median_of;
+use toile_base::numeric::statistics::median_of;
 
 use super::head_mesh::{HeadMesh, normals};
 use super::sighting::{HeadPose, ROBUST, Sighting};

@@ -1,6 +1,6 @@
 use glam::{DVec2, DVec3};
-use toile_assets::body::Sex;
-use toile_assets::numeric::random::SplitMix64;
+use toile_base::body::Sex;
+use toile_base::numeric::random::SplitMix64;
 
 use super::head_mesh::{HeadMesh, normals};
 use super::tests::{Case, case, off};

@@ -6,7 +6,7 @@
 
 use std::slice::from_ref;
 
-use toile_assets::body::Sex;
+use toile_base::body::Sex;
 
 use super::adapt::{AdaptedHead, adapt};
 use super::head_mesh::HeadMesh;

@@ -3,8 +3,8 @@ use std::f64::consts::TAU;
 use glam::{DQuat, DVec2, DVec3};
 use image::{Rgb, RgbImage};
 use toile_assets::body::shape::Shapes;
-use toile_assets::body::{Region, Sex};
-use toile_assets::numeric::random::SplitMix64;
+use toile_base::body::{Region, Sex};
+use toile_base::numeric::random::SplitMix64;
 use toile_sensors::calibration::CalibratedCamera;
 use toile_sensors::face_points::FACE_POINTS;
 

@@ -11,7 +11,7 @@ use std::io::Cursor;
 use glam::{DVec2, DVec3};
 use image::{ImageFormat, Rgb, RgbImage};
 use toile_assets::body::shape::Shapes;
-use toile_assets::numeric::statistics::quantile_of;
+use toile_base::numeric::statistics::quantile_of;
 
 use super::adapt::AdaptedHead;
 use super::head_mesh::{HeadMesh, normals};

@@ -7,8 +7,9 @@
 use std::slice::from_ref;
 
 use glam::{DMat3, DQuat, DVec3, EulerRot};
-use toile_assets::body::Sex;
-use toile_assets::numeric::linear::{self, Pivot};
+use toile_base::body::Sex;
+use toile_base::numeric::linear;
+use toile_base::numeric::linear::Pivot;
 use toile_sensors::calibration::CalibratedCamera;
 use toile_sensors::face_points::FACE_POINTS;
 

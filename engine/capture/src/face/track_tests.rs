@@ -1,8 +1,8 @@
 use std::f64::consts::TAU;
 
 use glam::{DQuat, DVec2, DVec3};
-use toile_assets::body::Sex;
-use toile_assets::numeric::random::SplitMix64;
+use toile_base::body::Sex;
+use toile_base::numeric::random::SplitMix64;
 
 use super::head_mesh::HeadMesh;
 use super::tests::{cameras, case, marked, stranger};

@@ -1,6 +1,6 @@
 //! The bones between the keypoints of BODY_25B, as a tree that hangs from the neck, and how long they are.
 
-use toile_assets::numeric::statistics::median_of;
+use toile_base::numeric::statistics::median_of;
 use toile_sensors::source::openpose::{KeypointRecording, POINTS};
 
 /// A bone: from a keypoint to the next.

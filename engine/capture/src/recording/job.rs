@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use image::RgbImage;
 use serde::Serialize;
-use toile_assets::numeric::hash;
+use toile_base::numeric::hash;
 use toile_sensors::calibration::Rig;
 use toile_sensors::error::SourceError;
 use toile_sensors::pictures::PictureSequence;

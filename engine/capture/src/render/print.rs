@@ -1,6 +1,6 @@
 //! A printed texture: spots of many sizes and colours, from a seed.
 
-use toile_assets::numeric::random::SplitMix64;
+use toile_base::numeric::random::SplitMix64;
 
 /// Texels along a side.
 const SIDE: usize = 2_048;

@@ -4,7 +4,7 @@ use std::f32::consts::TAU;
 
 use glam::{DMat3, DVec2, DVec3};
 use image::RgbImage;
-use toile_assets::numeric::random::SplitMix64;
+use toile_base::numeric::random::SplitMix64;
 use toile_sensors::calibration::CalibratedCamera;
 
 use super::scene::{Bar, Lighting, PrintedSurface};

@@ -5,8 +5,8 @@
 //! shoulder until none lies inside.
 
 use glam::{Quat, Vec3};
-use toile_assets::limits::MAX_CAPSULES;
-use toile_assets::skeleton::{JOINTS, Joint, Pose, Skeleton};
+use toile_base::limits::MAX_CAPSULES;
+use toile_base::skeleton::{JOINTS, Joint, Pose, Skeleton};
 
 use super::kinematics::JointFrames;
 use super::limits::Side;

@@ -1,9 +1,9 @@
 //! The pose as a filter of joints, so that it can be compared with the others: joints in, those of the posed body out.
 
-use toile_assets::skeleton::{JOINTS, Joint, Pose, Skeleton};
-use toile_sensors::clock::seconds_between;
-use toile_sensors::filter::Filter;
-use toile_sensors::frame::{Joints, TrackedJoint};
+use toile_base::clock::seconds_between;
+use toile_base::filter::Filter;
+use toile_base::frame::{Joints, TrackedJoint};
+use toile_base::skeleton::{JOINTS, Joint, Pose, Skeleton};
 
 use super::Poser;
 use super::body_input::BodyInput;

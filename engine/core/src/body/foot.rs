@@ -5,7 +5,7 @@
 //! from its shin.
 
 use glam::{Quat, Vec3};
-use toile_assets::skeleton::{JOINTS, Joint, Skeleton};
+use toile_base::skeleton::{JOINTS, Joint, Skeleton};
 
 use super::body_input::BodyInput;
 use super::limits::{self, Side};

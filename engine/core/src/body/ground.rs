@@ -5,7 +5,7 @@
 //! stays a jump, which a foot that is always held to the floor forbids (Gultepe 2013, section 4.5).
 
 use glam::Vec3;
-use toile_assets::skeleton::{Joint, Skeleton};
+use toile_base::skeleton::{Joint, Skeleton};
 
 use super::kinematics::JointFrames;
 use super::reliable_joints::ReliableJoints;

@@ -1,8 +1,8 @@
 //! Tests of systematic errors of a sensor: they are learned, and the person's own motion is kept.
 
 use glam::{Quat, Vec3};
-use toile_assets::skeleton::{Joint, Pose};
-use toile_sensors::frame::Joints;
+use toile_base::frame::Joints;
+use toile_base::skeleton::{Joint, Pose};
 
 use super::kinematics::JointFrames;
 use super::smooth::rotation_vector;

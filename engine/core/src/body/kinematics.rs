@@ -6,7 +6,7 @@
 //! the joint at the far end with all of it, so that no stretch of skin between two bones bears more than 18 degrees.
 
 use glam::{Affine3A, Mat3A, Quat, Vec3, Vec3A};
-use toile_assets::skeleton::{BONES, JOINTS, Joint, Pose, Skeleton, TWISTS};
+use toile_base::skeleton::{BONES, JOINTS, Joint, Pose, Skeleton, TWISTS};
 
 /// Where every joint stands and how it is turned, in the world.
 #[derive(Debug, Clone, Copy, PartialEq)]

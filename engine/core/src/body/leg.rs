@@ -5,7 +5,7 @@
 //! the world.
 
 use glam::{Quat, Vec3};
-use toile_assets::skeleton::{Joint, Pose};
+use toile_base::skeleton::{Joint, Pose};
 
 use super::kinematics::JointFrames;
 use super::limits::Side;

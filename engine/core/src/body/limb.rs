@@ -5,7 +5,7 @@
 //! the limb is nearly straight and its plane is noise, the angle simply stays, whichever way the limb moves.
 
 use glam::{Quat, Vec3};
-use toile_assets::skeleton::{JOINTS, Joint, Skeleton};
+use toile_base::skeleton::{JOINTS, Joint, Skeleton};
 
 use super::body_input::BodyInput;
 use super::limits::{self, Range, Reach, Side, clamp_angle, soft_clamp};

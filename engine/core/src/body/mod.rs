@@ -32,8 +32,8 @@ pub use kinematics::{JointFrames, palette};
 
 use crate::cone::RestSphere;
 use glam::Vec3;
-use toile_assets::skeleton::{JOINTS, Joint, Pose, Skeleton};
-use toile_sensors::frame::Joints;
+use toile_base::frame::Joints;
+use toile_base::skeleton::{JOINTS, Joint, Pose, Skeleton};
 
 use arm_clearance::ArmClearance;
 use body_input::BodyInput;

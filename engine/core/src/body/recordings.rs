@@ -2,12 +2,12 @@
 //! bones and wrong feet are all in them, and none of it may show as a jump.
 
 use glam::Vec3;
-use toile_assets::limits::{CONFIDENCE_GATE, STEP_SECONDS};
-use toile_assets::numeric::statistics;
-use toile_assets::skeleton::{JOINTS, Joint, Pose};
-use toile_sensors::clock::{ns_to_ticks, ticks_to_ns};
+use toile_base::clock::{ns_to_ticks, ticks_to_ns};
+use toile_base::frame::Joints;
+use toile_base::limits::{CONFIDENCE_GATE, STEP_SECONDS};
+use toile_base::numeric::statistics;
+use toile_base::skeleton::{JOINTS, Joint, Pose};
 use toile_sensors::filter::JointFilter;
-use toile_sensors::frame::Joints;
 use toile_sensors::sample::sample;
 use toile_sensors::source::{OpenOptions, open};
 

@@ -1,9 +1,9 @@
 //! The reliable part of one moment's joints: positions, and directions between them.
 
 use glam::Vec3;
-use toile_assets::limits::CONFIDENCE_GATE;
-use toile_assets::skeleton::{JOINTS, Joint, Skeleton};
-use toile_sensors::frame::Joints;
+use toile_base::frame::Joints;
+use toile_base::limits::CONFIDENCE_GATE;
+use toile_base::skeleton::{JOINTS, Joint, Skeleton};
 
 /// Joints nearer together than this (m) give no direction.
 pub const MIN_BONE: f32 = 0.02;

@@ -5,7 +5,7 @@
 //! parent could not reach.
 
 use glam::{Quat, Vec3};
-use toile_assets::skeleton::{JOINTS, Joint, Skeleton};
+use toile_base::skeleton::{JOINTS, Joint, Skeleton};
 
 use super::body_input::BodyInput;
 use super::foot::Feet;

@@ -4,7 +4,7 @@
 //! shift fades, so the body never strays from where it is seen (after the root relocation of Gultepe 2013, section 4.5).
 
 use glam::Vec3;
-use toile_assets::skeleton::Skeleton;
+use toile_base::skeleton::Skeleton;
 
 use super::body_input::BodyInput;
 use super::ground::soles;

@@ -2,8 +2,8 @@
 
 use glam::{EulerRot, Quat, Vec3};
 use proptest::prelude::*;
-use toile_assets::skeleton::{BONES, JOINTS, Joint, Pose, Skeleton, TWISTS, Twist};
-use toile_sensors::frame::{Joints, TrackedJoint};
+use toile_base::frame::{Joints, TrackedJoint};
+use toile_base::skeleton::{BONES, JOINTS, Joint, Pose, Skeleton, TWISTS, Twist};
 
 use super::kinematics::{JointFrames, palette, swing_twist};
 use super::smooth::{LIMB_SPEED, rotation_vector};

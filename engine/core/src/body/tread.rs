@@ -5,7 +5,7 @@
 //! section 4.5), and a foot that is dragged too far is let go, for then it does not stand.
 
 use glam::{Quat, Vec3};
-use toile_assets::skeleton::{Joint, Pose, Skeleton};
+use toile_base::skeleton::{Joint, Pose, Skeleton};
 
 use super::ground::soles;
 use super::kinematics::JointFrames;

@@ -5,7 +5,7 @@
 //! shoulders hang depends more on the sensor than on the person, and is compared with what was [learned](Neutral).
 
 use glam::{Mat3, Quat, Vec3};
-use toile_assets::skeleton::{JOINTS, Joint, Skeleton};
+use toile_base::skeleton::{JOINTS, Joint, Skeleton};
 
 use super::body_input::BodyInput;
 use super::kinematics::swing_twist;

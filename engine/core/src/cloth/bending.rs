@@ -5,7 +5,7 @@
 //! a mesh and a substep can carry so takes several [`super::stiff_bending`]; what is stiffer still is weakened
 //! ([`BendingMatrix::fill`]), which says by how much.
 
-use toile_assets::garment::layout::Layout;
+use toile_base::garment::layout::Layout;
 
 use super::bending_matrix::{BendingMatrix, RowBlock, RowStrip};
 use crate::lanes::{Kernel, Lanes, MOST, ReadColumn, Readable, V3, WriteColumn};

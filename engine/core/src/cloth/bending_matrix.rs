@@ -11,8 +11,8 @@
 
 use std::ops::Range;
 
-use toile_assets::garment::Garment;
-use toile_assets::garment::layout::OWNERS;
+use toile_base::garment::Garment;
+use toile_base::garment::layout::OWNERS;
 
 use crate::lanes::{MOST, RecordList};
 

@@ -9,7 +9,7 @@
 //! On the way back a link's tension follows from where its end is by then: with n, pivot and y of the way down,
 //! lambda = y / pivot + (n.(x_b - x_a) - |d|) / pivot, because only the link that leads on has moved b since.
 
-use toile_assets::garment::layout::{ConstraintRun, DiagonalShare, Diagonals};
+use toile_base::garment::layout::{ConstraintRun, DiagonalShare, Diagonals};
 
 use super::fibers::{FARTHEST, LEAST_PIVOT, NO_PIVOT};
 use super::state::ParticleColumns;

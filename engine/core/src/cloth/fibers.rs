@@ -10,8 +10,8 @@
 //! apart, leave a pivot near zero, which is held at `LEAST_PIVOT` of its diagonal; and no particle moves by more than
 //! half its link in one solve, because beyond that the directions mean nothing.
 
-use toile_assets::garment::Solver;
-use toile_assets::garment::layout::{BundleRow, ENDED, FiberBundle, Fibers};
+use toile_base::garment::Solver;
+use toile_base::garment::layout::{BundleRow, ENDED, FiberBundle, Fibers};
 
 use super::state::ParticleColumns;
 use crate::lanes::{Kernel, Lanes, MOST, Numbers, ReadColumn, Two, V3, WriteColumn, reciprocal_root};

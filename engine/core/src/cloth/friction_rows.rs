@@ -5,9 +5,9 @@
 
 use std::ops::Range;
 
-use toile_assets::garment::Garment;
-use toile_assets::garment::bend_friction::FrictionSlot;
-use toile_assets::garment::layout::OWNERS;
+use toile_base::garment::Garment;
+use toile_base::garment::bend_friction::FrictionSlot;
+use toile_base::garment::layout::OWNERS;
 
 use crate::lanes::{MOST, Store};
 

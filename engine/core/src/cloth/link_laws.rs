@@ -13,10 +13,10 @@
 
 use std::ops::Range;
 
-use toile_assets::fabric::friction_element::STICKING;
-use toile_assets::garment::Garment;
-use toile_assets::garment::layout::{FiberLists, Fibers, Layout, Links, OWNERS};
-use toile_assets::garment::link_laws::LawTable;
+use toile_base::fabric::friction_element::STICKING;
+use toile_base::garment::Garment;
+use toile_base::garment::layout::{FiberLists, Fibers, Layout, Links, OWNERS};
+use toile_base::garment::link_laws::LawTable;
 
 use super::link_gain::{NO_LEAST, Passes, gain};
 use super::state::ParticleColumns;

@@ -5,7 +5,7 @@
 //! lambda = (C + gamma n.(db - da)) / ((1 + gamma)(w_a + w_b) + alpha / dt^2), gamma = tau / dt, where da and db are the
 //! ends' motion in this substep. No two links of a set share a particle, so their order changes no bit.
 
-use toile_assets::garment::layout::{ConstraintRun, ConstraintSet, Links, Zigzag};
+use toile_base::garment::layout::{ConstraintRun, ConstraintSet, Links, Zigzag};
 
 use super::link_gain::{NO_LEAST, Passes, Slack, gain};
 use super::link_laws::LawColumns;

@@ -4,8 +4,8 @@
 //! tridiagonal: the last tension is bordered (its column `g` is carried along while the others are eliminated) and found
 //! first on the way back. An open fiber is a hoop whose corner is 0.
 
-use toile_assets::garment::Solver;
-use toile_assets::garment::layout::{ENDED, FiberList, FiberLists};
+use toile_base::garment::Solver;
+use toile_base::garment::layout::{ENDED, FiberList, FiberLists};
 
 use super::fibers::{FARTHEST, LEAST_PIVOT, NO_PIVOT, limited};
 use super::state::ParticleColumns;

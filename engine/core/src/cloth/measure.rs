@@ -1,7 +1,7 @@
 //! Measures of a garment's state: strain, penetration, how tight it sits. Read only; outside of the timed step.
 
 use glam::Vec3;
-use toile_assets::garment::{Garment, Part};
+use toile_base::garment::{Garment, Part};
 
 use super::{Cloth, contact};
 use crate::colliders::Colliders;

@@ -36,9 +36,9 @@ pub mod wind;
 mod work;
 
 use glam::{Affine3A, Vec3A};
-use toile_assets::garment::Garment;
-use toile_assets::garment::layout::OWNERS;
-use toile_assets::skeleton::BONES;
+use toile_base::garment::Garment;
+use toile_base::garment::layout::OWNERS;
+use toile_base::skeleton::BONES;
 
 use crate::colliders::Colliders;
 use crate::lanes::{RECORD, Store};

@@ -1,8 +1,8 @@
 //! Pins: where the skinned particles are to be at the start and at the end of a step.
 
 use glam::{Affine3A, Vec3A};
-use toile_assets::garment::Garment;
-use toile_assets::skeleton::BONES;
+use toile_base::garment::Garment;
+use toile_base::skeleton::BONES;
 
 /// The targets of a garment's skinned particles. All storage is made once.
 #[derive(Debug, Clone)]

@@ -2,9 +2,9 @@
 //!
 //! Made again in steps in which the settings have changed; the storage stays.
 
-use toile_assets::garment::Garment;
-use toile_assets::garment::layout::{ENDED, Layout};
-use toile_assets::limits::STEP_SECONDS;
+use toile_base::garment::Garment;
+use toile_base::garment::layout::{ENDED, Layout};
+use toile_base::limits::STEP_SECONDS;
 
 use super::bending_matrix::BendingMatrix;
 use super::friction_rows::{FrictionRows, STICKING};

@@ -6,7 +6,7 @@
 //! strain from .27 to .17 %, and hoops twice each time to .14 %); contact last, so that nothing is left inside the body. Where
 //! most links lie in no row, all is solved once a substep, of which the bake asks for more.
 
-use toile_assets::garment::Layout;
+use toile_base::garment::Layout;
 
 use super::Quality;
 use super::bending_matrix::BendingMatrix;

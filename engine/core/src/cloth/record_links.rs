@@ -4,7 +4,7 @@
 use std::collections::VecDeque;
 use std::ops::Range;
 
-use toile_assets::garment::layout::{ConstraintRun, Links, OWNERS};
+use toile_base::garment::layout::{ConstraintRun, Links, OWNERS};
 
 use super::link_gain::Slack;
 use super::links::{LinkGains, LinkParameters, push};

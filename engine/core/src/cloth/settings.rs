@@ -3,14 +3,14 @@
 use std::str::FromStr;
 
 use glam::Vec3A;
-use toile_assets::limits::STEP_SECONDS;
+use toile_base::limits::STEP_SECONDS;
 
 use super::root::RootSettings;
 use super::wind::Wind;
 use crate::lanes::Width;
 use crate::workers::SHARES;
 
-toile_assets::named! {
+toile_base::named! {
     /// Tested combinations of substeps and of what is solved in each, cheapest first.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
     pub enum Quality {

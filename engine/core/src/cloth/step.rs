@@ -4,8 +4,8 @@ use std::sync::atomic::AtomicU64;
 use std::time::Instant;
 
 use glam::{Affine3A, Vec3A};
-use toile_assets::garment::Garment;
-use toile_assets::garment::layout::OWNERS;
+use toile_base::garment::Garment;
+use toile_base::garment::layout::OWNERS;
 
 use super::program::METERED_STAGES;
 use super::root::{Carried, RootStep};

@@ -3,7 +3,7 @@
 //! Long-range attachments (Kim, Chentanez, Mueller-Fischer 2012), with the length measured along the cloth. They only
 //! draw in, so they add no stiffness to what hangs as it should.
 
-use toile_assets::garment::layout::Tethers;
+use toile_base::garment::layout::Tethers;
 
 use super::state::ParticleColumns;
 use crate::lanes::{Kernel, Lanes, Mask, ReadColumn, Readable, V3, WriteColumn, reciprocal_root};

@@ -77,7 +77,7 @@ struct FaceGroup {
     mass: Box<[f32]>,
 }
 
-toile_assets::named! {
+toile_base::named! {
     /// Which part of the triangles: the first two may be done at once, the third after both.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum WindPart {

@@ -7,8 +7,8 @@ use std::sync::atomic::AtomicU64;
 use std::sync::atomic::Ordering::Relaxed;
 
 use glam::Vec3A;
-use toile_assets::garment::Garment;
-use toile_assets::garment::layout::{FiberLists, Layout, Links, OWNERS};
+use toile_base::garment::Garment;
+use toile_base::garment::layout::{FiberLists, Layout, Links, OWNERS};
 
 use super::link_gain::Passes;
 use super::link_laws::{self, FollowLaws, LawColumns, LawGain};

@@ -1,19 +1,25 @@
 //! What the steps of a session came to, for the report.
 
+#[cfg(feature = "meters")]
 use hdrhistogram::Histogram;
 
 use crate::cloth::measure::Strain;
-use crate::meter::{Meter, STAGES};
+#[cfg(feature = "meters")]
+use crate::meter::Meter;
+use crate::meter::STAGES;
 
 /// Longest step that the meter tells apart from a longer one (ns).
+#[cfg(feature = "meters")]
 const STEP_MAX_NS: u64 = 1_000_000_000;
 
 /// What the steps of a session came to, for the report.
 #[derive(Debug, Clone)]
 pub struct Meters {
     /// Time of each step, pose to publish (ns).
+    #[cfg(feature = "meters")]
     pub step_ns: Histogram<u64>,
     /// Time of each of [`STAGES`] in each step.
+    #[cfg(feature = "meters")]
     pub stages: [Meter; STAGES.len()],
     /// Time of each of them in the last step (ns).
     pub last_ns: [u64; STAGES.len()],
@@ -31,10 +37,11 @@ pub struct Meters {
 
 impl Meters {
     pub(super) fn new() -> Self {
-        // Bounds are constants that the histogram accepts; three digits keep 0.1 % of each value.
-        let step_ns = Histogram::new_with_bounds(1, STEP_MAX_NS, 3).expect("constant bounds are valid");
         Self {
-            step_ns,
+            // Bounds are constants that the histogram accepts; three digits keep 0.1 % of each value.
+            #[cfg(feature = "meters")]
+            step_ns: Histogram::new_with_bounds(1, STEP_MAX_NS, 3).expect("constant bounds are valid"),
+            #[cfg(feature = "meters")]
             stages: std::array::from_fn(|_| Meter::new()),
             last_ns: [0; STAGES.len()],
             strain_sum: 0.0,
@@ -47,16 +54,22 @@ impl Meters {
 
     /// Forgets all that was metered, allocating nothing.
     pub(super) fn clear(&mut self) {
-        self.step_ns.reset();
-        self.stages.iter_mut().for_each(Meter::clear);
+        #[cfg(feature = "meters")]
+        {
+            self.step_ns.reset();
+            self.stages.iter_mut().for_each(Meter::clear);
+        }
         (self.strain_sum, self.strain_p99_sum, self.steps) = (0.0, 0.0, 0);
         (self.strain_max, self.penetration_max) = (0.0, 0.0);
     }
 
     /// A step whose stages took so long.
     pub(super) fn timed(&mut self, stages_ns: [u64; STAGES.len()]) {
-        self.step_ns.saturating_record(stages_ns.iter().sum::<u64>().min(STEP_MAX_NS));
-        self.stages.iter_mut().zip(stages_ns).for_each(|(meter, ns)| meter.add(ns));
+        #[cfg(feature = "meters")]
+        {
+            self.step_ns.saturating_record(stages_ns.iter().sum::<u64>().min(STEP_MAX_NS));
+            self.stages.iter_mut().zip(stages_ns).for_each(|(meter, ns)| meter.add(ns));
+        }
         self.last_ns = stages_ns;
     }
 

@@ -161,8 +161,8 @@ impl RecorderState {
 
 #[cfg(test)]
 mod tests {
-    use toile_sensors::clock::{SECOND_NS, ticks_to_ns};
-    use toile_sensors::frame::Joints;
+    use toile_base::clock::{SECOND_NS, ticks_to_ns};
+    use toile_base::frame::Joints;
 
     use super::*;
     use crate::frame_loop::queue::bounded;

@@ -7,9 +7,9 @@
 //! corrections; the idea is that of network games: Murphy 2011, "Believable dead reckoning for networked games").
 
 use glam::Vec3;
-use toile_assets::skeleton::JOINTS;
-use toile_sensors::clock::seconds_between;
-use toile_sensors::frame::{Joints, TrackedJoint};
+use toile_base::clock::seconds_between;
+use toile_base::frame::{Joints, TrackedJoint};
+use toile_base::skeleton::JOINTS;
 
 /// How far a velocity carries that no frame confirms (s): the joint comes to rest after as many times it. For
 /// the first third of that time, which is a frame of 30 Hz and its delay, it keeps nine tenths of itself.

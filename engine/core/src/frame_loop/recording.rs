@@ -7,8 +7,8 @@
 
 use glam::Vec3;
 use thiserror::Error;
-use toile_assets::skeleton::JOINTS;
-use toile_sensors::frame::{Joints, TrackedJoint};
+use toile_base::frame::{Joints, TrackedJoint};
+use toile_base::skeleton::JOINTS;
 
 use super::sensor_thread::SensorFrame;
 

@@ -1,6 +1,6 @@
 //! Schedule: which step is due, how late it is, and what is dropped where too many are.
 
-use toile_sensors::clock::SECOND_NS;
+use toile_base::clock::SECOND_NS;
 
 /// Most steps that a late wake-up makes up for: 33 ms of a body's motion. What is more would take the next steps their
 /// time too, and somebody who stands before a mirror is better served by now than by then.

@@ -3,8 +3,8 @@
 use std::fmt::Debug;
 use std::sync::Arc;
 
-use toile_sensors::filter::JointFilter;
-use toile_sensors::frame::{DepthFrame, Joints};
+use toile_base::filter::Filter;
+use toile_base::frame::{DepthFrame, Joints};
 
 use super::ThreadLoop;
 use super::queue::Sender;
@@ -148,10 +148,10 @@ impl Default for SensorFrame {
 
 /// What the sensor thread runs.
 #[derive(Debug)]
-pub struct SensorThread<S, C> {
+pub struct SensorThread<S, F, C> {
     source: S,
     clock: C,
-    filter: JointFilter,
+    filter: F,
     writer: Writer<SensorFrame>,
     observer: Option<Sender<ObservedFrame>>,
     count: u64,
@@ -165,13 +165,13 @@ pub struct SensorThread<S, C> {
     pub filtering: Meter,
 }
 
-impl<S: FrameSource, C: Clock> SensorThread<S, C> {
-    /// Reads `source`, writes filtered frames to `writer`. Called at load: it allocates.
-    pub fn new(source: S, clock: C, writer: Writer<SensorFrame>) -> Self {
+impl<S: FrameSource, F: Filter, C: Clock> SensorThread<S, F, C> {
+    /// Reads `source`, writes frames that `filter` has filtered to `writer`. Called at load: it allocates.
+    pub fn new(source: S, filter: F, clock: C, writer: Writer<SensorFrame>) -> Self {
         Self {
             source,
             clock,
-            filter: JointFilter::default(),
+            filter,
             writer,
             observer: None,
             count: 0,
@@ -214,7 +214,7 @@ impl<S: FrameSource, C: Clock> SensorThread<S, C> {
     }
 }
 
-impl<S: FrameSource, C: Clock> ThreadLoop for SensorThread<S, C> {
+impl<S: FrameSource, F: Filter, C: Clock> ThreadLoop for SensorThread<S, F, C> {
     fn run_due(&mut self) -> Option<u64> {
         let due = self.source.next_ns()?;
         if self.clock.now_ns() < due {
@@ -241,6 +241,8 @@ impl<S: FrameSource, C: Clock> ThreadLoop for SensorThread<S, C> {
 
 #[cfg(test)]
 mod tests {
+    use toile_base::filter::Unfiltered;
+
     use super::*;
 
     #[test]
@@ -268,7 +270,7 @@ mod tests {
         let clock = crate::clock::SimClock::default();
         let crate::triple_buffer::TripleBuffer { writer, mut reader } =
             crate::triple_buffer::TripleBuffer::new(&SensorFrame::default());
-        let mut sense = SensorThread::new(StampedFrames(frames.to_vec()), clock.clone(), writer);
+        let mut sense = SensorThread::new(StampedFrames(frames.to_vec()), Unfiltered, clock.clone(), writer);
         let mut stamps = Vec::new();
         while let Some(due) = sense.source.next_ns() {
             clock.sleep_until(due);

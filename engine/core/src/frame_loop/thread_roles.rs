@@ -8,7 +8,7 @@
 
 use thread_priority::ThreadPriority;
 
-toile_assets::named! {
+toile_base::named! {
     /// What a thread does in the loop. Its thread has its name, with `toile-` before it.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum ThreadRole {

@@ -52,7 +52,7 @@ use simd128::Four;
 #[cfg(target_arch = "x86_64")]
 use x86::Four;
 
-toile_assets::named! {
+toile_base::named! {
     /// How many lanes kernels run on, narrowest first.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
     pub enum Width {

@@ -2,9 +2,9 @@
 
 use glam::Vec3;
 use thiserror::Error;
-use toile_assets::limits::MAX_INFLUENCES;
-use toile_assets::mesh::Influences;
-use toile_assets::skeleton::BONES;
+use toile_base::limits::MAX_INFLUENCES;
+use toile_base::mesh::Influences;
+use toile_base::skeleton::BONES;
 
 /// How far the weights of a vertex may sum from 1: the rounding of four weights kept as text with four digits.
 pub const WEIGHT_TOLERANCE: f32 = 1e-3;

@@ -1,7 +1,7 @@
 //! Dual quaternions of a palette: rotation and, in the dual part, half the translation times the rotation.
 
 use glam::{Affine3A, Mat3, Quat, Vec3, Vec4};
-use toile_assets::skeleton::{BONE_CHAIN, BONES};
+use toile_base::skeleton::{BONE_CHAIN, BONES};
 
 /// A rigid motion as eight numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]

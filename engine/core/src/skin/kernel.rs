@@ -7,8 +7,8 @@
 //! read and 24 written.
 
 use glam::{Affine3A, Vec4};
-use toile_assets::limits::MAX_INFLUENCES;
-use toile_assets::skeleton::BONES;
+use toile_base::limits::MAX_INFLUENCES;
+use toile_base::skeleton::BONES;
 
 use super::dual::DualQuat;
 use super::layout::BoneRun;

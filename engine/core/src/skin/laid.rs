@@ -1,7 +1,7 @@
 //! A skin vertex by vertex, for posing it elsewhere, such as on a GPU: the numbers of the kernels in their order, so their bits.
 
 use glam::Vec3;
-use toile_assets::limits::MAX_INFLUENCES;
+use toile_base::limits::MAX_INFLUENCES;
 
 use super::SkinningJob;
 use crate::lanes::MOST;

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use toile_assets::limits::{INFLUENCES, MAX_INFLUENCES};
+use toile_base::limits::{INFLUENCES, MAX_INFLUENCES};
 
 use super::check::{NO_BONE, Vertex};
 use super::posed::Posed;

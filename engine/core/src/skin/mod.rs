@@ -19,8 +19,8 @@ mod tests;
 use std::ops::Range;
 
 use glam::{Affine3A, Vec3};
-use toile_assets::mesh::Influences;
-use toile_assets::skeleton::BONES;
+use toile_base::mesh::Influences;
+use toile_base::skeleton::BONES;
 
 use crate::lanes::{ReadColumn, Shared, Width};
 use crate::workers::{SHARES, WorkerPool};
@@ -37,7 +37,7 @@ pub use sweep::{SweepBinding, SweptLimb, SweptSkin};
 use kernel::{BlockOutput, Dual, Linear, MeshOutput, SkinOutput, SkinSurface};
 use layout::SkinLayout;
 
-toile_assets::named! {
+toile_base::named! {
     /// How the motions of a vertex' bones become one.
     #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
     pub enum Blend {
@@ -63,8 +63,8 @@ pub struct SkinningJob {
 
 impl SkinningJob {
     /// Lays out a skin: rest positions (m), rest normals (brought to unit length, none where they have none) and
-    /// weights of up to four bones ([`toile_assets::mesh::SkinWeights`]) or eight
-    /// ([`toile_assets::mesh::WideWeights`]), one of each a vertex. Bones that weigh nothing are not looked at. Weights
+    /// weights of up to four bones ([`toile_base::mesh::SkinWeights`]) or eight
+    /// ([`toile_base::mesh::WideWeights`]), one of each a vertex. Bones that weigh nothing are not looked at. Weights
     /// are brought to a sum of 1.
     ///
     /// # Errors

@@ -1,8 +1,8 @@
 //! What it costs to leave influences out: the same skin with all of them and with those that are kept.
 
 use glam::{Affine3A, Vec3};
-use toile_assets::mesh::Influences;
-use toile_assets::skeleton::BONES;
+use toile_base::mesh::Influences;
+use toile_base::skeleton::BONES;
 
 use super::{Blend, SkinError, SkinningJob};
 

@@ -8,8 +8,8 @@
 //! Away from the joint sections follow their bones, twist and all, and the sweep fades into the skinned surface.
 
 use glam::{Affine3A, Mat3A, Quat, Vec3, Vec3A};
-use toile_assets::mesh::SkinWeights;
-use toile_assets::skeleton::{BONES, Joint, Skeleton, Twist};
+use toile_base::mesh::SkinWeights;
+use toile_base::skeleton::{BONES, Joint, Skeleton, Twist};
 
 use super::posed_mesh::PosedMesh;
 

@@ -6,8 +6,8 @@ mod sweep;
 mod twins;
 
 use glam::{Affine3A, Quat, Vec3};
-use toile_assets::mesh::{Influences, SkinWeights, WideWeights};
-use toile_assets::skeleton::BONES;
+use toile_base::mesh::{Influences, SkinWeights, WideWeights};
+use toile_base::skeleton::BONES;
 
 use super::{Blend, Posed, PosedMesh, SkinError, SkinningJob, dual_palette, pruning};
 use crate::lanes::Width;

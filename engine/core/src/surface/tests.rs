@@ -1,7 +1,7 @@
 //! Laws of surfaces: walking and looking find what a plain search in f64 finds, at every width the same.
 
 use glam::{DVec3, Vec3, Vec3A};
-use toile_assets::garment::Shape;
+use toile_bake::Shape;
 
 use super::*;
 use crate::lanes::{ReadColumn, Width};

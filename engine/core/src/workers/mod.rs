@@ -29,7 +29,9 @@ use std::time::Duration;
 
 use thiserror::Error;
 
-use crate::sync::{AtomicBool, AtomicU64, AtomicUsize, Idle, JoinHandle, LOOKS_BEFORE_TAKING, Slot, pause, thread};
+use crate::sync::{
+    AtomicBool, AtomicU64, AtomicUsize, HAS_THREADS, Idle, JoinHandle, LOOKS_BEFORE_TAKING, Slot, pause, thread,
+};
 
 pub use per_share::PerShare;
 
@@ -46,6 +48,11 @@ pub enum WorkerPoolError {
     /// Not 1 or 2.
     #[error("a pool of {0} workers cannot be made, because a step has {SHARES} shares; ask for 1 or 2 workers")]
     Workers(usize),
+    /// Built without the feature `threads`.
+    #[error(
+        "this program was built without the feature `threads` of toile-engine; build it with that or ask for 1 worker"
+    )]
+    NoThreads,
     /// The system gave no thread.
     #[error(
         "the helper thread of the cloth could not be started ({0}); raise the limit of threads or ask for 1 worker"
@@ -226,6 +233,9 @@ impl WorkerPool {
     pub fn beginning(workers: usize, begin: impl FnOnce() + Send + 'static) -> Result<Self, WorkerPoolError> {
         if !(1..=SHARES).contains(&workers) {
             return Err(WorkerPoolError::Workers(workers));
+        }
+        if workers > 1 && !HAS_THREADS {
+            return Err(WorkerPoolError::NoThreads);
         }
         let board = Arc::new(Board::new());
         let theirs = board.clone();

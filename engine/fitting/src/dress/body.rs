@@ -1,7 +1,8 @@
 //! A body of the measured size.
 
-use toile_assets::body::{Body, BodyError, Measures, Sex};
+use toile_assets::body::BodyError;
 use toile_assets::sizes::Population;
+use toile_base::body::{Body, Measures, Sex};
 use toile_track::estimate::Estimate;
 use toile_track::measure::Measurements;
 
@@ -28,7 +29,7 @@ pub fn build(
     let average = scaled(&Measures::average(sex), wanted.stature);
     let mut refused = None;
     for share in TOWARDS_AVERAGE {
-        match Body::build(sex, &towards(&wanted, &average, share)) {
+        match toile_assets::body::build(sex, &towards(&wanted, &average, share)) {
             Ok(body) => {
                 let note = refused.map(|e: BodyError| {
                     format!("the body shown is {:.0} % of the way to an average one, because {e}", share * 100.0)

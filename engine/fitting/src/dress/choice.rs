@@ -5,18 +5,18 @@ use std::path::Path;
 use std::sync::Arc;
 
 use toile_assets::adapt::{AdaptError, MeshReport, OwnMesh, source};
-use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::catalogue::limits::{MAX_PACKAGE_BYTES, MAX_TOML_BYTES};
 use toile_assets::catalogue::package::ENDING;
 use toile_assets::catalogue::{GarmentPackage, GarmentPhotographs, word};
 use toile_assets::drafting;
 use toile_assets::draping::{self, AS_DRAFTED, HungPattern, PatternPackage, TO_MEASURE};
-use toile_assets::fabric::Fabric;
-use toile_assets::garment::Garment;
 use toile_assets::sizes::{Population, SizeTable};
 use toile_assets::wardrobe::own;
 use toile_assets::wardrobe::style::Style;
 use toile_assets::wardrobe::{self, WardrobeError};
+use toile_base::body::{Body, Measures, Sex};
+use toile_base::fabric::Fabric;
+use toile_base::garment::Garment;
 use toile_track::measure::Measurements;
 use toile_track::recommend::Recommendation;
 
@@ -103,7 +103,7 @@ impl Choice {
         let path = Path::new(name);
         if let Some((garment, fabric)) = in_fabric(name) {
             let found = Self::find(garment)?;
-            let fabric = Some(Fabric::built_in(fabric).map_err(FittingError::input)?);
+            let fabric = Some(toile_assets::fabric::built_in(fabric).map_err(FittingError::input)?);
             return Ok(Self { name: name.to_owned(), own: ShopChoice { fabric, ..found.own }, ..found });
         }
         if name.ends_with(ENDING) {
@@ -160,12 +160,12 @@ impl Choice {
         let fabric = manifest.fabric.as_deref().map(|fabric| match fabric.ends_with(".toml") {
             true => {
                 let text = package.text(fabric, MAX_TOML_BYTES).map_err(FittingError::input)?;
-                let mut fabric = Fabric::parse(fabric, &text).map_err(|e| inside(&e))?;
+                let mut fabric = toile_assets::fabric::parse(fabric, &text).map_err(|e| inside(&e))?;
                 let picture = |name: &str| package.bytes(name, MAX_PACKAGE_BYTES).map_err(|e| e.to_string());
-                fabric.read_picture(picture).map_err(|e| inside(&e))?;
+                toile_assets::fabric::read_picture(&mut fabric, picture).map_err(|e| inside(&e))?;
                 Ok(fabric)
             }
-            false => Fabric::built_in(fabric).map_err(|e| inside(&e)),
+            false => toile_assets::fabric::built_in(fabric).map_err(|e| inside(&e)),
         });
         let fabric = fabric.transpose()?;
         let picture = |name: &str| package.bytes(name, MAX_PACKAGE_BYTES).map_err(|e| e.to_string());
@@ -197,7 +197,7 @@ impl Choice {
             (None, ChoiceSource::Mesh(own)) => own.measures.fabric.as_deref().unwrap_or(draping::FABRIC),
             (None, ChoiceSource::Pattern(package)) => &package.fabric,
         };
-        Fabric::built_in(named).map_err(FittingError::input)
+        toile_assets::fabric::built_in(named).map_err(FittingError::input)
     }
 
     /// Its sizes; none of a mesh that has none. A pattern for nobody in particular is judged on `wearer`.

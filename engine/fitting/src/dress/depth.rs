@@ -1,12 +1,12 @@
 //! A shopper seen in depth: the body fitted to their surface gives measures, a body and, where there are none, joints.
 
 use glam::{Affine3A, Vec3};
-use toile_assets::body::{Body, Sex};
-use toile_assets::mesh::SkinWeights;
 use toile_assets::sizes::Population;
-use toile_assets::skeleton::{BONES, Pose};
+use toile_base::body::{Body, Sex};
+use toile_base::frame::{DepthFrame, Joints};
+use toile_base::mesh::SkinWeights;
+use toile_base::skeleton::{BONES, Pose};
 use toile_engine::body::palette;
-use toile_sensors::frame::{DepthFrame, Joints};
 use toile_sensors::source::Session;
 use toile_track::fit::measuring::FRAMES;
 use toile_track::fit::measuring::{self, FittedMeasures};

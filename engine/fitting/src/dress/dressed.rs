@@ -1,8 +1,8 @@
 //! Somebody dressed: a shopper of the measures that were taken, or the mannequin that stands in for one.
 
+use toile_base::frame::Joints;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::triple_buffer::Reader;
-use toile_sensors::frame::Joints;
 use toile_sensors::source::Session;
 
 use super::attire::{self, Attire, FindChoice};

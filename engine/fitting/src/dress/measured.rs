@@ -3,10 +3,10 @@
 //! Whose proportions apply is given by the caller, or found by the fit; what is worn does not decide it, so that the same session gives the
 //! same measures whatever is tried on.
 
-use toile_assets::body::Sex;
 use toile_assets::sizes::Population;
-use toile_assets::skeleton::Joint;
-use toile_sensors::frame::Joints;
+use toile_base::body::Sex;
+use toile_base::frame::Joints;
+use toile_base::skeleton::Joint;
 use toile_sensors::source::Session;
 use toile_track::child::child_odds;
 use toile_track::estimate::Estimate;

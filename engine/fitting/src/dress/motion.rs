@@ -1,14 +1,14 @@
 //! What moves a dressed body from step to step: a shopper's joints, or the poses of an animation.
 
 use toile_assets::import::avatar::MovingBody;
-use toile_assets::limits::STEP_HZ;
-use toile_assets::numeric::statistics;
-use toile_assets::skeleton::{BONES, Pose};
+use toile_base::clock::ticks_to_ns;
+use toile_base::frame::Joints;
+use toile_base::limits::STEP_HZ;
+use toile_base::numeric::statistics;
+use toile_base::skeleton::{BONES, Pose};
 use toile_engine::body::{JointFrames, palette};
 use toile_engine::frame::{BLEND, Frame};
 use toile_engine::skin::SkinningJob;
-use toile_sensors::clock::ticks_to_ns;
-use toile_sensors::frame::Joints;
 use toile_sensors::source::Session;
 
 use super::player::Player;

@@ -3,7 +3,6 @@
 use std::f32::consts::TAU;
 
 use toile_assets::adapt::OwnMesh;
-use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::draping::{
     self, AS_DRAFTED, PatternEase, PatternPackage, PatternSizes, SizeGirths, TO_MEASURE, ZoneEase,
 };
@@ -11,6 +10,7 @@ use toile_assets::pattern::Pattern;
 use toile_assets::sizes::{GarmentKind, Girth, SizeBody, SizeError, SizeTable};
 use toile_assets::wardrobe::own;
 use toile_assets::wardrobe::style::Style;
+use toile_base::body::{Body, Measures, Sex};
 use toile_track::measure::Measurements;
 use toile_track::recommend::{self, EaseRange, MadeSize, Offer, RecommendError, Recommendation, ZoneGirth};
 

@@ -1,8 +1,8 @@
 //! An outfit: garments in the sizes that fit, one over the other.
 
-use toile_assets::body::Body;
-use toile_assets::garment::Garment;
 use toile_assets::sizes::Girth;
+use toile_base::body::Body;
+use toile_base::garment::Garment;
 use toile_engine::cloth::layers::tuck_in;
 use toile_track::measure::Measurements;
 

@@ -3,9 +3,9 @@
 
 use std::borrow::Cow;
 
+use toile_base::clock::{ns_to_ticks, ticks_to_ns};
+use toile_base::frame::Joints;
 use toile_engine::frame_loop::motion_input::MotionInput;
-use toile_sensors::clock::{ns_to_ticks, ticks_to_ns};
-use toile_sensors::frame::Joints;
 
 /// Filtered joints on their way to the steps.
 #[derive(Debug, Clone)]
@@ -45,7 +45,7 @@ impl<'a> Player<'a> {
 mod tests {
     use super::*;
     use glam::Vec3;
-    use toile_assets::skeleton::Joint;
+    use toile_base::skeleton::Joint;
 
     /// Frames of 30 Hz in which the pelvis moves at 1 m/s.
     fn track(frames: u64) -> Vec<Joints> {

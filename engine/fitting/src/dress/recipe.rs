@@ -3,15 +3,15 @@
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
-use toile_assets::body::{Body, Measures, Sex};
-use toile_assets::garment::Garment;
-use toile_assets::rig::Rig;
 use toile_assets::sizes::Population;
 use toile_assets::wardrobe::own;
+use toile_base::body::{Body, Measures, Sex};
+use toile_base::frame::Joints;
+use toile_base::garment::Garment;
+use toile_base::rig::Rig;
 use toile_engine::cloth::{Quality, Settings};
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::triple_buffer::Reader;
-use toile_sensors::frame::Joints;
 use toile_track::measure::Measurements;
 
 use super::attire::{self, Attire, FindChoice};
@@ -116,14 +116,14 @@ impl Recipe {
         let sex = if self.sex == "male" { Sex::Male } else { Sex::Female };
         let [stature, shoulder_breadth, chest_girth, waist_girth, hip_girth] = self.measures.map(f32::from_bits);
         let measures = Measures { stature, shoulder_breadth, chest_girth, waist_girth, hip_girth };
-        let body = Body::build(sex, &measures).map_err(FittingError::input)?;
+        let body = toile_assets::body::build(sex, &measures).map_err(FittingError::input)?;
         let mut garments = Vec::with_capacity(self.garments.len());
         for (name, size) in &self.garments {
             garments.extend(find(name)?.dress(Some(size), &body)?.garments);
         }
         let quality = self.quality.parse().map_err(FittingError::Input)?;
         let settings = Settings { quality, workers: 1, ..Settings::default() };
-        Ok(Parts { rig: Rig::fit(&body), body, garments, settings })
+        Ok(Parts { rig: toile_assets::rig::fit(&body), body, garments, settings })
     }
 
     /// Makes the scene and dresses the shopper as they stand in a frame, with one worker: which crew takes the steps from

@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use toile_assets::scene::SESSION;
-use toile_assets::skeleton::Joint;
-use toile_sensors::clock::SECOND_NS;
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::{DepthFrame, Joints};
+use toile_base::skeleton::Joint;
 use toile_sensors::filter::{FilterSettings, JointFilter};
-use toile_sensors::frame::{DepthFrame, Joints};
 use toile_sensors::source::{self, OpenOptions, Session};
 
 use crate::FittingError;

@@ -1,8 +1,8 @@
 //! What is to be worn.
 
-use toile_assets::body::Sex;
-use toile_assets::limits::MAX_GARMENTS;
 use toile_assets::sizes::Population;
+use toile_base::body::Sex;
+use toile_base::limits::MAX_GARMENTS;
 use toile_engine::cloth::Quality;
 use toile_track::tape_readings::TapeReadings;
 

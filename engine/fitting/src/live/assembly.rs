@@ -17,6 +17,7 @@ use toile_engine::frame_loop::sensor_thread::{
     FrameSource, OBSERVED, OBSERVED_NAME, ObservedFrame, SensorFrame, SensorThread,
 };
 use toile_engine::triple_buffer::TripleBuffer;
+use toile_sensors::filter::JointFilter;
 
 use super::live_scene::{LiveScene, STEP_REPORTS, STEP_REPORTS_NAME, SceneHandover, StepReport, WatchedRenderer};
 use super::running::Loops;
@@ -51,7 +52,7 @@ pub struct LoopOptions {
 }
 
 /// The sensor thread's loop.
-pub type SensorLoop<F, C> = SensorThread<F, C>;
+pub type SensorLoop<F, C> = SensorThread<F, JointFilter, C>;
 
 /// The physics thread's loop.
 pub type PhysicsLoop<S, C, A> = PhysicsThread<LiveScene<S>, C, A>;
@@ -109,7 +110,9 @@ where
     let (observer, frames) = bounded(OBSERVED_NAME, OBSERVED);
     let ((scenes, next_scene), (views, next_view)) = (handover(), handover());
     let TripleBuffer { writer, reader: seen } = TripleBuffer::new(&SensorFrame::default());
-    let sensor = SensorThread::new(source, clock.clone(), writer).metering_from(metered_from_ns).observed_by(observer);
+    let sensor = SensorThread::new(source, JointFilter::default(), clock.clone(), writer)
+        .metering_from(metered_from_ns)
+        .observed_by(observer);
     let scene = LiveScene::new(first.scene, first.still).reporting(report_sender, progress.clone());
     let outputs = PhysicsOutputs { events: event_sender, recording };
     let physics = PhysicsThread::new(scene, clock.clone(), begin_ns, seen, outputs, account)

@@ -4,8 +4,8 @@ use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use toile_assets::body::Sex;
-use toile_sensors::frame::{DepthFrame, Joints};
+use toile_base::body::Sex;
+use toile_base::frame::{DepthFrame, Joints};
 use toile_sensors::source::Session;
 use toile_sensors::source::live::{CameraCounts, CameraState, ColourImage};
 use toile_track::fit::measuring::FRAMES;

@@ -10,13 +10,13 @@ use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use toile_assets::body::Sex;
+use toile_base::body::Sex;
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::{DepthFrame, Joints};
 use toile_engine::clock::Clock;
 use toile_engine::frame_loop::sensor_thread::{DepthImage, FrameSource, SourceFrame};
 use toile_engine::meter::Meter;
 use toile_engine::triple_buffer::{Reader, TripleBuffer, Writer};
-use toile_sensors::clock::SECOND_NS;
-use toile_sensors::frame::{DepthFrame, Joints};
 use toile_sensors::segment::Zone;
 use toile_sensors::source::live::{LiveDepth, PATIENCE_NS};
 use toile_track::fit::FitOptions;

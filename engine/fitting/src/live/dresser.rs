@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use toile_assets::body::Sex;
-use toile_sensors::frame::Joints;
+use toile_base::body::Sex;
+use toile_base::frame::Joints;
 use toile_sensors::source::Session;
 
 use super::background::{BackgroundJob, Finished};

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use toile_base::frame::Joints;
 use toile_engine::clock::Clock;
 use toile_engine::frame::SnapshotTimes;
 use toile_engine::frame_loop::ThreadLoop;
@@ -12,7 +13,6 @@ use toile_engine::frame_loop::physics_thread::Scene;
 use toile_engine::frame_loop::queue::Sender;
 use toile_engine::frame_loop::render_thread::{RenderThread, Renderer, SceneView};
 use toile_engine::meter::PERIOD_NS;
-use toile_sensors::frame::Joints;
 
 use super::running::Restart;
 use super::watchdog::Progress;

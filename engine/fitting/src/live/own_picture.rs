@@ -8,9 +8,9 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::{AtomicBool, AtomicU8};
 
+use toile_base::frame::{DepthFrame, Joints};
 use toile_engine::triple_buffer::{Reader, TripleBuffer, Writer};
 use toile_sensors::colour_camera::ColourCamera;
-use toile_sensors::frame::{DepthFrame, Joints};
 use toile_sensors::person_mask::PersonMask;
 use toile_sensors::source::live::ColourImage;
 

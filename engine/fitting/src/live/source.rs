@@ -5,10 +5,10 @@ use std::io;
 use std::net::SocketAddr;
 use std::sync::Arc;
 
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::{DepthFrame, Joints};
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::frame_loop::sensor_thread::{DepthImage, FrameSource, SourceFrame};
-use toile_sensors::clock::SECOND_NS;
-use toile_sensors::frame::{DepthFrame, Joints};
 use toile_sensors::source::Session;
 use toile_sensors::source::vmc::VmcReceiver;
 
@@ -164,8 +164,8 @@ impl FrameSource for Feed {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_assets::skeleton::Joint;
-    use toile_sensors::frame::Intrinsics;
+    use toile_base::frame::Intrinsics;
+    use toile_base::skeleton::Joint;
 
     #[test]
     fn a_recording_comes_again_and_again_and_nobody_is_there_between() {

@@ -6,7 +6,8 @@ use std::path::Path;
 use std::thread;
 use std::time::Duration;
 
-use toile_assets::body::Sex;
+use toile_base::body::Sex;
+use toile_base::frame::Joints;
 use toile_engine::clock::Clock;
 use toile_engine::triple_buffer::{TripleBuffer, Writer};
 use toile_pose::files::PoseError;
@@ -15,7 +16,6 @@ use toile_pose::picture_fit::{self, PictureFit, PictureFitter};
 use toile_pose::scale::{StatureEstimate, StatureSource, WebcamMount};
 use toile_pose::tracker::{PoseModel, PoseTracker};
 use toile_sensors::colour_camera::ColourCamera;
-use toile_sensors::frame::Joints;
 use toile_sensors::person_mask::PersonMask;
 use toile_sensors::source::live::{ColourImage, LiveColour, PATIENCE_NS};
 use toile_track::fit::tracker::Company;

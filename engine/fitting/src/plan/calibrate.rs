@@ -9,17 +9,17 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use glam::Vec3;
-use toile_assets::body::Body;
-use toile_assets::mesh::SkinWeights;
-use toile_assets::numeric::statistics::quantile;
-use toile_assets::rig::Rig;
 use toile_assets::scene_file::{SceneFile, SceneSource};
-use toile_assets::skeleton::Joint;
+use toile_base::body::Body;
+use toile_base::frame::Joints;
+use toile_base::mesh::SkinWeights;
+use toile_base::numeric::statistics::quantile;
+use toile_base::rig::Rig;
+use toile_base::skeleton::Joint;
 use toile_engine::cloth::{Settings, program};
 use toile_engine::frame::Frame;
 use toile_engine::meter::STAGES as STEP_STAGES;
 use toile_engine::workers::{SHARES, WorkerPool};
-use toile_sensors::frame::Joints;
 
 use super::PlanError;
 use super::cost::Costs;

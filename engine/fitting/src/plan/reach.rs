@@ -7,10 +7,10 @@
 
 use glam::{Affine3A, Quat, Vec3, Vec3A};
 use serde::Serialize;
-use toile_assets::garment::{Garment, Part};
-use toile_assets::limits::MAX_CAPSULES;
-use toile_assets::numeric::random::SplitMix64;
-use toile_assets::skeleton::{BONES, Joint, Pose, Skeleton};
+use toile_base::garment::{Garment, Part};
+use toile_base::limits::MAX_CAPSULES;
+use toile_base::numeric::random::SplitMix64;
+use toile_base::skeleton::{BONES, Joint, Pose, Skeleton};
 use toile_engine::body::palette;
 use toile_engine::cloth::contact;
 use toile_engine::colliders::Colliders;

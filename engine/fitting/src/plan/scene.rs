@@ -1,12 +1,14 @@
 //! A scene as the plan sees it: baked garments, colliders, and where the bones are at every step.
 
 use glam::Affine3A;
-use toile_assets::body::Body;
-use toile_assets::garment::{Garment, Part};
-use toile_assets::limits::STEP_SECONDS;
-use toile_assets::rig::Rig;
 use toile_assets::scene_file::SceneFile;
-use toile_assets::skeleton::{BONES, Pose, Skeleton};
+use toile_base::body::Body;
+use toile_base::clock::ticks_to_ns;
+use toile_base::frame::Joints;
+use toile_base::garment::{Garment, Part};
+use toile_base::limits::STEP_SECONDS;
+use toile_base::rig::Rig;
+use toile_base::skeleton::{BONES, Pose, Skeleton};
 use toile_engine::body::{Poser, palette};
 use toile_engine::body_surface::BodySurface;
 use toile_engine::cloth::layers::{Layers, lay_outside};
@@ -15,8 +17,6 @@ use toile_engine::colliders::{Colliders, RestSphere};
 use toile_engine::frame::{DRESS_STEPS, SETTLE_STEPS};
 use toile_engine::skin::{Blend, Posed, SkinningJob};
 use toile_engine::workers::WorkerPool;
-use toile_sensors::clock::ticks_to_ns;
-use toile_sensors::frame::Joints;
 use toile_sensors::sample::sample;
 
 use super::PlanError;

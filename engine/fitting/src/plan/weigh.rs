@@ -7,9 +7,9 @@ use std::time::Instant;
 
 use glam::Vec3A;
 use serde::Serialize;
-use toile_assets::fabric::Fabric;
-use toile_assets::garment::Garment;
-use toile_assets::numeric::statistics::{quantile, quantile_of};
+use toile_base::fabric::Fabric;
+use toile_base::garment::Garment;
+use toile_base::numeric::statistics::{quantile, quantile_of};
 use toile_engine::cloth::{Cloth, Quality, Settings, Step, Wind};
 use toile_engine::workers::WorkerPool;
 

@@ -2,8 +2,8 @@
 //! pass of the lanes does, and what is gathered one by one.
 
 use glam::Vec3;
-use toile_assets::garment::layout::{ENDED, Links};
-use toile_assets::garment::{Garment, Part};
+use toile_base::garment::layout::{ENDED, Links};
+use toile_base::garment::{Garment, Part};
 use toile_engine::cloth::bending_matrix::{BendingMatrix, RowBlock, RowStrip};
 use toile_engine::cloth::friction_rows::{FrictionRows, FrictionStrip, FrictionTable};
 use toile_engine::cloth::program::{self, BEFORE, Bending, Stage};

@@ -1,7 +1,7 @@
 //! What contact of cloth with cloth did, as reports have it, and what there was no room for.
 
 use serde::Serialize;
-use toile_assets::limits::MAX_GARMENTS;
+use toile_base::limits::MAX_GARMENTS;
 use toile_engine::cloth::layers::{LayerCounts, Layers, MOST_CROSSINGS, PAIRS_A_PARTICLE};
 
 /// Name of [`PAIRS_A_PARTICLE`] in reports and warnings.

@@ -1,10 +1,10 @@
 //! The surface that is skinned: the scene's shopper in the middle of a step, as often as vertices are asked for.
 
 use glam::{Affine3A, Vec3};
-use toile_assets::body::{Body, BodyError};
-use toile_assets::mesh::SkinWeights;
+use toile_assets::body::BodyError;
 use toile_assets::scene;
-use toile_assets::skeleton::{BONE_CHAIN, BONES};
+use toile_base::mesh::SkinWeights;
+use toile_base::skeleton::{BONE_CHAIN, BONES};
 use toile_engine::body::palette;
 
 /// A moment of the scene in which arms, legs and trunk are all bent (s).
@@ -33,7 +33,7 @@ impl Surface {
     /// Where the scene's shopper cannot be built.
     pub fn body() -> Result<Self, BodyError> {
         let (sex, measures) = scene::SHOPPER;
-        let body = Body::build(sex, &measures)?;
+        let body = toile_assets::body::build(sex, &measures)?;
         let mut bones = [Affine3A::IDENTITY; BONES];
         palette(&body.skeleton, &scene::shopper(&body.skeleton, MOMENT_S), &mut bones);
         Ok(Self { positions: body.mesh.positions, normals: body.normals, weights: body.weights, palette: bones })

@@ -63,7 +63,7 @@ pub fn measure() -> Result<f64, BodyError> {
 
 fn vertices(surface: &Surface) -> Vec<Vertex> {
     let parts = surface.positions.iter().zip(&surface.normals).zip(&surface.weights);
-    let vertex = |((p, n), w): ((&glam::Vec3, &glam::Vec3), &toile_assets::mesh::SkinWeights)| Vertex {
+    let vertex = |((p, n), w): ((&glam::Vec3, &glam::Vec3), &toile_base::mesh::SkinWeights)| Vertex {
         position: p.to_array(),
         normal: n.to_array(),
         bones: w.bones,

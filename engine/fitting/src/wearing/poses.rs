@@ -1,9 +1,9 @@
 //! The poses in which it is seen how clothes hold.
 
 use glam::{Affine3A, Quat, Vec3};
-use toile_assets::skeleton::{BONES, Joint, Pose, Skeleton};
+use toile_base::frame::{Joints, TrackedJoint};
+use toile_base::skeleton::{BONES, Joint, Pose, Skeleton};
 use toile_engine::body::palette;
-use toile_sensors::frame::{Joints, TrackedJoint};
 
 /// How far from the vertical arms are that hang down (degrees): beside the hips.
 const ARMS_DEGREES: f32 = 10.0;
@@ -63,13 +63,13 @@ pub fn joints(skeleton: &Skeleton, pose: &Pose) -> Joints {
 
 #[cfg(test)]
 mod tests {
-    use toile_assets::body::{Body, Measures, Sex};
+    use toile_base::body::{Measures, Sex};
 
     use super::*;
 
     #[test]
     fn limbs_are_where_the_poses_say_and_feet_on_the_floor() {
-        let skeleton = Body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap().skeleton;
+        let skeleton = toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap().skeleton;
         let seen = |pose: Pose| {
             let seen = joints(&skeleton, &pose);
             let lowest = [Joint::LeftAnkle, Joint::RightAnkle].map(|j| seen.at(j).position.y);

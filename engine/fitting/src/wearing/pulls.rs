@@ -2,10 +2,10 @@
 
 use glam::Vec3;
 use serde::Serialize;
-use toile_assets::body::{Body, Levels};
-use toile_assets::garment::{Garment, Part};
-use toile_assets::rig::Rig;
-use toile_assets::skeleton::{Joint, Pose, Skeleton};
+use toile_base::body::{Body, Levels};
+use toile_base::garment::{Garment, Part};
+use toile_base::rig::Rig;
+use toile_base::skeleton::{Joint, Pose, Skeleton};
 use toile_engine::cloth::{Cloth, Settings};
 use toile_engine::frame::Frame;
 
@@ -221,8 +221,8 @@ fn compare(garment: &Garment, levels: &Levels, before: &Seen, now: &Seen) -> Gar
 
 #[cfg(test)]
 mod tests {
-    use toile_assets::body::{Measures, Sex};
     use toile_assets::drafting;
+    use toile_base::body::{Measures, Sex};
 
     use super::*;
 
@@ -232,7 +232,7 @@ mod tests {
         let body = package.body_of(on).unwrap().unwrap();
         let garment = package.dress(size, &body).unwrap();
         let settings = Settings { workers: 1, ..Settings::default() };
-        in_poses(&body, &Rig::fit(&body), &[garment], &settings).unwrap()
+        in_poses(&body, &toile_assets::rig::fit(&body), &[garment], &settings).unwrap()
     }
 
     fn at(pulls: &PosePulls, zone: CoveredZone) -> ZonePull {
@@ -259,8 +259,10 @@ mod tests {
 
     #[test]
     fn a_body_that_wears_nothing_feels_nothing() {
-        let body = Body::build(Sex::Male, &Measures::average(Sex::Male)).unwrap();
-        let pulls = in_poses(&body, &Rig::fit(&body), &[], &Settings { workers: 1, ..Settings::default() }).unwrap();
+        let body = toile_assets::body::build(Sex::Male, &Measures::average(Sex::Male)).unwrap();
+        let pulls =
+            in_poses(&body, &toile_assets::rig::fit(&body), &[], &Settings { workers: 1, ..Settings::default() })
+                .unwrap();
         assert!(pulls.len() == 2 && pulls.iter().all(|p| p.garments.is_empty()));
     }
 }

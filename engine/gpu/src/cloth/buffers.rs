@@ -1,6 +1,6 @@
 //! The buffers of a scene that the CPU writes, reads back or binds, made once at load.
 
-use toile_assets::limits::MAX_CAPSULES;
+use toile_base::limits::MAX_CAPSULES;
 use wgpu::{BindGroup, Buffer, BufferUsages};
 
 use super::cloth_device::ClothDevice;

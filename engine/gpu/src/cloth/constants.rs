@@ -2,7 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::Affine3A;
-use toile_assets::garment::Garment;
+use toile_base::garment::Garment;
 use toile_engine::cloth::contact::ContactSettings;
 use toile_engine::cloth::prepared::Prepared;
 use toile_engine::cloth::root::Carried;

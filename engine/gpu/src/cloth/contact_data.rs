@@ -1,6 +1,6 @@
 //! The body's capsules and planes in the contact kernels' layout, prepared for every substep of a step.
 
-use toile_assets::limits::{MAX_CAPSULES, MAX_PLANES};
+use toile_base::limits::{MAX_CAPSULES, MAX_PLANES};
 use toile_engine::cloth::contact::ContactSettings;
 use toile_engine::cloth::contact::cones::{CapsuleCones, CapsuleEnds, PrepareCones};
 use toile_engine::colliders::Colliders;

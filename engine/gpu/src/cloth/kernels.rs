@@ -4,7 +4,7 @@ use crate::shader::LANES;
 
 pub use crate::shader::Shader;
 
-toile_assets::named! {
+toile_base::named! {
     /// A kernel, in the order in which a step first runs it.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
     pub enum Kernel {

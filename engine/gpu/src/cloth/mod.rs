@@ -25,8 +25,8 @@ mod vertex_sources;
 use std::sync::Arc;
 
 use glam::Vec3A;
-use toile_assets::garment::Garment;
-use toile_assets::limits::MAX_CAPSULES;
+use toile_base::garment::Garment;
+use toile_base::limits::MAX_CAPSULES;
 use toile_engine::cloth::guard::GuardEvents;
 use toile_engine::cloth::pins::Pins;
 use toile_engine::cloth::prepared::Prepared;

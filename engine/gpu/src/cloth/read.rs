@@ -1,7 +1,7 @@
 //! Results that come back from the device, and access for tests: a single kernel, a state written, a state read.
 
 use glam::Vec3A;
-use toile_assets::garment::Garment;
+use toile_base::garment::Garment;
 use toile_engine::cloth::guard::{self, Fault};
 use wgpu::{Buffer, BufferDescriptor, BufferUsages, ComputePassDescriptor, MapMode};
 

@@ -1,6 +1,6 @@
 //! Every storage buffer of a scene by name, and which of them each kernel is bound to.
 
-use toile_assets::limits::MAX_CAPSULES;
+use toile_base::limits::MAX_CAPSULES;
 use wgpu::{Buffer, BufferUsages};
 
 use super::constants::GarmentConstants;

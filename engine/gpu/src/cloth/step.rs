@@ -1,8 +1,8 @@
 //! One step: what the CPU writes to the device for it, and its dispatches.
 
 use glam::Affine3A;
-use toile_assets::garment::Garment;
-use toile_assets::limits::MAX_CAPSULES;
+use toile_base::garment::Garment;
+use toile_base::limits::MAX_CAPSULES;
 use toile_engine::cloth::Settings;
 use toile_engine::cloth::contact::ContactSettings;
 use toile_engine::cloth::prepared::Prepared;

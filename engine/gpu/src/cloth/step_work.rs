@@ -78,8 +78,8 @@ fn each(flat: &Flat, kernel: Kernel) -> f64 {
 mod tests {
     use super::*;
     use crate::cloth::flat::WIDTH;
-    use toile_assets::bake::bake;
     use toile_assets::scene::skirt::{self, Stretch};
+    use toile_bake::bake;
     use toile_engine::colliders::Colliders;
 
     #[test]

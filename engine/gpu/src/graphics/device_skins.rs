@@ -1,7 +1,7 @@
 //! Bodies that a device skins, for benchmarks: what came back can be waited for, and the device's clock read.
 
 use glam::{Affine3A, Vec3};
-use toile_assets::skeleton::BONES;
+use toile_base::skeleton::BONES;
 use toile_engine::skin::{Blend, SkinningJob};
 
 use super::Graphics;

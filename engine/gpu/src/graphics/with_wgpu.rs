@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use glam::Vec3A;
-use toile_assets::garment::Garment;
-use toile_assets::numeric::hash;
+use toile_base::garment::Garment;
+use toile_base::numeric::hash;
 use toile_engine::cloth::guard::GuardEvents;
 use toile_engine::cloth::{Cloth, Settings};
 use toile_engine::colliders::Colliders;

@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 
 use glam::{Affine3A, Vec3};
-use toile_assets::skeleton::BONES;
+use toile_base::skeleton::BONES;
 use toile_engine::skin::{Blend, SkinningJob};
 
 use crate::Adapter;

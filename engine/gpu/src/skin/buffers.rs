@@ -1,6 +1,6 @@
 //! The skinning kernels' buffers, made once at load; pipelines and bind groups.
 
-use toile_assets::skeleton::BONES;
+use toile_base::skeleton::BONES;
 use toile_engine::skin::Blend;
 use wgpu::{BindGroup, BindGroupDescriptor, BindGroupEntry, Buffer, BufferUsages, ComputePipeline};
 

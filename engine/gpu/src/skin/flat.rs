@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use glam::Vec3;
-use toile_assets::skeleton::BONES;
+use toile_base::skeleton::BONES;
 use toile_engine::skin::{LaidVertex, SkinningJob};
 
 use crate::cloth::flat::{WIDTH, Workgroups};
@@ -99,8 +99,8 @@ fn run(body: u32, bones: &[u8]) -> [u32; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_assets::limits::MAX_INFLUENCES;
-    use toile_assets::mesh::WideWeights;
+    use toile_base::limits::MAX_INFLUENCES;
+    use toile_base::mesh::WideWeights;
 
     /// Vertices on one to eight bones.
     fn skin(vertices: usize) -> (SkinningJob, Vec<WideWeights>) {

@@ -16,7 +16,7 @@ mod read;
 use std::ops::Range;
 
 use glam::{Affine3A, Vec3};
-use toile_assets::skeleton::BONES;
+use toile_base::skeleton::BONES;
 use toile_engine::skin::{Blend, DualQuat, SkinningJob, dual_palette};
 use wgpu::{Buffer, CommandEncoder, CommandEncoderDescriptor, ComputePass, ComputePassDescriptor};
 

@@ -3,9 +3,9 @@
 use std::time::{Duration, Instant};
 
 use glam::{Affine3A, Vec3, Vec3A};
-use toile_assets::garment::Garment;
 use toile_assets::scene::skirt::Stretch;
-use toile_assets::skeleton::BONES;
+use toile_base::garment::Garment;
+use toile_base::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Settings, Step, Wind};
 use toile_gpu::backend::{Backend, Backends, ClothStepper};
 use toile_gpu::cloth_batch::ClothBatch;

@@ -2,7 +2,7 @@
 
 use glam::{Affine3A, Vec3A};
 use toile_assets::scene::skirt::Stretch;
-use toile_assets::skeleton::BONES;
+use toile_base::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Settings};
 use toile_gpu::device::GpuError;
 

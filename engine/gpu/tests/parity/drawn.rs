@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use glam::{Vec3, Vec3A};
-use toile_assets::garment::Garment;
-use toile_assets::mesh::vertex_normals;
 use toile_assets::scene::skirt::Stretch;
+use toile_base::garment::Garment;
+use toile_base::mesh::vertex_normals;
 use toile_engine::cloth::Settings;
 use toile_gpu::cloth::Offload;
 use toile_gpu::cloth::cloth_device::ClothDevice;

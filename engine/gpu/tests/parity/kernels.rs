@@ -1,9 +1,9 @@
 //! A kernel at a time, on what is disturbed.
 
 use glam::Vec3A;
-use toile_assets::garment::Garment;
-use toile_assets::garment::layout::OWNERS;
 use toile_assets::scene::skirt::Stretch;
+use toile_base::garment::Garment;
+use toile_base::garment::layout::OWNERS;
 use toile_engine::cloth::bending;
 use toile_engine::cloth::pins::Pins;
 use toile_engine::cloth::prepared::Prepared;

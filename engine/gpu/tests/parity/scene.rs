@@ -1,12 +1,12 @@
 //! What the tests step: the benchmark's skirt, a garment of the wardrobe, and how they are disturbed.
 
 use glam::{Affine3A, DVec3, Quat, Vec3, Vec3A};
-use toile_assets::bake::bake;
-use toile_assets::body::{Body, Measures, Sex};
-use toile_assets::garment::Garment;
 use toile_assets::scene::skirt::{self, Stretch};
-use toile_assets::skeleton::BONES;
 use toile_assets::wardrobe;
+use toile_bake::bake;
+use toile_base::body::{Body, Measures, Sex};
+use toile_base::garment::Garment;
+use toile_base::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere};
 use toile_gpu::cloth::Offload;
@@ -32,7 +32,7 @@ pub fn worn(name: &str) -> Garment {
     let style = wardrobe::style(name).expect("the garment is built in");
     let sizes = style.sizes().expect("it has sizes");
     let size = sizes.codes()[1];
-    let body = Body::build(Sex::Female, &Measures::average(Sex::Female)).expect("she can be built");
+    let body = toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).expect("she can be built");
     style.dress(size, &body).expect("it fits")
 }
 

@@ -3,10 +3,10 @@
 use std::f32::consts::PI;
 
 use glam::{Affine3A, Quat, Vec3};
-use toile_assets::body::{Body, Measures, Sex};
-use toile_assets::mesh::WideWeights;
 use toile_assets::scene::shopper;
-use toile_assets::skeleton::{BONES, Joint, Pose, Skeleton};
+use toile_base::body::{Body, Measures, Sex};
+use toile_base::mesh::WideWeights;
+use toile_base::skeleton::{BONES, Joint, Pose, Skeleton};
 use toile_engine::body::palette;
 use toile_engine::skin::{Blend, SkinningJob};
 use toile_gpu::device::{AdapterChoice, Device, GpuError};
@@ -22,7 +22,7 @@ const BOUND: f32 = 4e-6;
 type Palette = [Affine3A; BONES];
 
 fn body(sex: Sex) -> (Skeleton, SkinningJob) {
-    let body = Body::build(sex, &Measures::average(sex)).expect("it can be built");
+    let body = toile_assets::body::build(sex, &Measures::average(sex)).expect("it can be built");
     let job = SkinningJob::new(&body.mesh.positions, &body.normals, &body.weights).expect("a body of ours");
     (body.skeleton, job)
 }

@@ -1,8 +1,8 @@
 //! Whole steps against the CPU's.
 
 use glam::Vec3A;
-use toile_assets::garment::Garment;
 use toile_assets::scene::skirt::{self as scene, Motion, Stretch};
+use toile_base::garment::Garment;
 use toile_engine::cloth::{Cloth, Quality, RootSettings, Settings, Wind, measure};
 
 use crate::scene::{

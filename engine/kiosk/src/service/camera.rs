@@ -1,7 +1,7 @@
 //! The live camera of a kiosk, with the threads that see through it.
 
 use glam::Vec2;
-use toile_assets::body::Sex;
+use toile_base::body::Sex;
 use toile_engine::clock::RealClock;
 use toile_fitting::live::camera_start::{self, CameraSetup, CameraStartError};
 use toile_fitting::live::depth_camera::{self, CameraHandle};

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use toile_base::frame::Joints;
 use toile_engine::frame::Frame;
 use toile_engine::frame_loop::physics_thread::Scene;
 use toile_engine::frame_loop::sensor_thread::ObservedFrame;
@@ -11,7 +12,6 @@ use toile_fitting::dress::dressed::Dressed;
 use toile_fitting::dress::session;
 use toile_fitting::live::dresser::{DressJob, DressOutcome, Dresser, ShopperSource};
 use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
-use toile_sensors::frame::Joints;
 
 use super::session::{SessionInput, SessionMachine, SessionState, SessionTimes, StateChange};
 use super::stock_watch::{StockChange, StockFigures, StockWatch};

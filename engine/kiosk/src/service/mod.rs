@@ -29,6 +29,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use toile_base::frame::Joints;
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::frame::Frame;
 use toile_engine::frame_loop::physics_thread::FrameScene;
@@ -46,7 +47,6 @@ use toile_fitting::live::report::ThreadPlacement;
 use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
 use toile_fitting::live::source::{Feed, Visits};
 use toile_fitting::live::{crash, recording};
-use toile_sensors::frame::Joints;
 use toile_sensors::source::Session;
 
 use crate::error::KioskError;

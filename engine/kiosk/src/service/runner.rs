@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
+use toile_base::frame::Joints;
 use toile_engine::frame_loop::flight_recorder::FlightRecorder;
 use toile_engine::frame_loop::physics_thread::Scene;
 use toile_engine::frame_loop::queue::Capacity;
@@ -16,7 +17,6 @@ use toile_fitting::live::report::{Attributed, ThreadPlacement};
 use toile_fitting::live::scene_changer::SceneChanger;
 use toile_fitting::live::source::Feed;
 use toile_fitting::live::watchdog::Watchdog;
-use toile_sensors::frame::Joints;
 
 use super::controller::{ControllerContext, HeadlessController, SessionController, ToScene};
 use super::health::{HealthCounter, HealthFigures};

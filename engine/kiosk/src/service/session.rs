@@ -3,7 +3,7 @@
 
 use serde::Serialize;
 
-toile_assets::named! {
+toile_base::named! {
     /// The states of a session, in their order.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
     #[serde(rename_all = "kebab-case")]

@@ -3,9 +3,9 @@
 
 use std::f32::consts::{PI, TAU};
 
-use toile_assets::skeleton::Joint;
+use toile_base::frame::Joints;
+use toile_base::skeleton::Joint;
 use toile_fitting::dress::depth::TURN_NS;
-use toile_sensors::frame::Joints;
 use toile_track::fit;
 
 /// Sides that are distinguished: of ten degrees each, so that the count of them says the gap to within a side.
@@ -159,7 +159,7 @@ pub fn facing(frame: &Joints) -> Option<f32> {
 mod tests {
     use super::*;
     use glam::{Quat, Vec3};
-    use toile_assets::skeleton::JOINTS;
+    use toile_base::skeleton::JOINTS;
 
     const FRAME_NS: u64 = 33_333_333;
 

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use toile_assets::sizes::Population;
+use toile_base::frame::Joints;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::frame_loop::physics_thread::Scene;
 use toile_engine::frame_loop::queue::Sender;
@@ -12,7 +13,6 @@ use toile_fitting::dress::measured;
 use toile_fitting::dress::session;
 use toile_fitting::live::dresser::{DressOutcome, ShopperSource};
 use toile_fitting::live::own_picture::PictureSwitch;
-use toile_sensors::frame::Joints;
 use toile_track::gesture::Gestures;
 
 use super::dressing_worker::{DressingContext, DressingJob, DressingWorker, JobResult, MeasuredVisitor, MeasuringJob};

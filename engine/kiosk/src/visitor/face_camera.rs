@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
-use toile_assets::skeleton::Joint;
+use toile_base::skeleton::Joint;
 use toile_fitting::live::own_picture::{PictureReceiver, PictureSwitch, SeenPicture};
 use toile_sensors::source::live::ColourImage;
 

@@ -9,7 +9,7 @@ use super::texts::TextKey;
 /// Characters that can be typed: three digits, a decimal mark and one more.
 const TYPED: usize = 5;
 
-toile_assets::named! {
+toile_base::named! {
     /// A measure that shoppers can give, by its name among those that a body is measured by; what decides sizes stands first.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
     pub enum OwnMeasure {

@@ -10,8 +10,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::{DMat3, DVec3, Vec2, Vec3};
 use image::RgbImage;
-use toile_assets::body::Sex;
-use toile_assets::numeric::statistics::median_of;
+use toile_base::body::Sex;
+use toile_base::numeric::statistics::median_of;
 use toile_capture::face::{self, AdaptedHead, FaceView};
 use toile_pose::face_finder::{FaceFault, FaceFinder};
 use toile_pose::face_mesh::MeshPoints;

@@ -6,10 +6,10 @@
 //! are seen, or the countdown when they have left, is all that there is between them.
 
 use glam::Vec3;
-use toile_assets::numeric::statistics::quantile;
-use toile_assets::skeleton::Joint;
+use toile_base::frame::Joints;
+use toile_base::numeric::statistics::quantile;
+use toile_base::skeleton::Joint;
 use toile_fitting::dress::session;
-use toile_sensors::frame::Joints;
 
 use super::body_turn;
 

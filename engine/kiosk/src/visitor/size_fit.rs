@@ -14,7 +14,7 @@ use super::texts::TextKey;
 use super::wardrobe::WardrobeItem;
 use crate::error::KioskError;
 
-toile_assets::named! {
+toile_base::named! {
     /// A part of the body that is measured, from the top down.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
     pub enum BodyPart {

@@ -6,12 +6,12 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::catalogue::{CatalogueItem, ManifestColour, Price, ShopTheme, Words, word};
 use toile_assets::drafting::{self, DraftStyle};
 use toile_assets::file::{self, FileStamp};
 use toile_assets::sizes::{GarmentKind, Population};
 use toile_assets::wardrobe::own;
+use toile_base::body::{Body, Measures, Sex};
 use toile_fitting::dress::attire;
 use toile_fitting::dress::choice::{Choice, ChoiceSource};
 use toile_fitting::dress::offer::GarmentOffer;
@@ -74,7 +74,7 @@ impl Layer {
     }
 }
 
-toile_assets::named! {
+toile_base::named! {
     /// Where a garment is held, and does not slip on the body: the seven fitting levels of Ugur 2008, section 6.2.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
     pub enum FittingLevel {
@@ -261,7 +261,7 @@ impl WardrobeItem {
 
 /// The body on which what is made for nobody in particular is judged.
 fn average() -> Result<Body, KioskError> {
-    Body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(KioskError::internal)
+    toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(KioskError::internal)
 }
 
 fn title(choice: &Choice) -> ItemName {

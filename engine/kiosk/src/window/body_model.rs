@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use glam::Vec3;
-use toile_assets::body::Levels;
-use toile_assets::mesh::vertex_normals;
 use toile_assets::sizes::Girth;
+use toile_base::body::Levels;
+use toile_base::mesh::vertex_normals;
 use toile_engine::cloth::measure;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_view::figure::{Appearance, Figure, OwnHead, PlacedHead};

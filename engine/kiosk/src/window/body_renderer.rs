@@ -4,8 +4,8 @@
 use std::f32::consts::TAU;
 
 use glam::Vec3;
-use toile_assets::mesh::vertex_normals;
 use toile_assets::sizes::Girth;
+use toile_base::mesh::vertex_normals;
 use toile_engine::frame::Snapshot;
 use toile_view::figure::PlacedHead;
 use toile_view::fit_map;

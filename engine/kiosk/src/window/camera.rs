@@ -1,7 +1,7 @@
 //! The camera: from where the body is seen, so that it stands in what the panel leaves free.
 
 use glam::Vec3;
-use toile_assets::numeric::statistics;
+use toile_base::numeric::statistics;
 use toile_view::scene::{Bounds, Camera};
 
 /// Arm's reach beside the body (m): what stays in the picture when somebody lifts their arms.

@@ -1,8 +1,8 @@
 //! A scene of cloth and colliders, as a scene file has it.
 
 use glam::Vec3;
-use toile_assets::mesh::vertex_normals;
 use toile_assets::scene_file::{SceneFile, SceneSource};
+use toile_base::mesh::vertex_normals;
 use toile_engine::cloth::measure;
 use toile_fitting::scene::Runner;
 use toile_view::image::linear;

@@ -3,17 +3,16 @@
 use std::collections::BTreeMap;
 
 use glam::Vec3;
-use toile_assets::body::Body as BodyShape;
-use toile_assets::garment::Garment as BakedGarment;
-use toile_assets::rig::Rig;
-use toile_assets::skeleton::Joint;
+use toile_base::body::Body as BodyShape;
+use toile_base::frame::Joints;
+use toile_base::garment::Garment as BakedGarment;
+use toile_base::skeleton::Joint;
 use toile_engine::cloth::measure;
 use toile_engine::frame::{Frame, Snapshot as FrameSnapshot};
 use toile_engine::triple_buffer::Reader;
 use toile_fitting::dress::choice::{ChoiceSource, Worn};
 use toile_fitting::dress::outfit::Outfit;
 use toile_fitting::dress::player::Player;
-use toile_sensors::frame::Joints;
 use toile_view::drawn_frame::DrawnFrame;
 use toile_view::figure::Appearance;
 use toile_view::fit_map::{self, JudgedTightness};
@@ -71,7 +70,7 @@ impl DressedScene {
         let worn = described_all
             .map(|((garment, worn), (order, of))| described(garment, worn, &baked[of.clone()], order))
             .collect();
-        let rig = Rig::fit(body.shape());
+        let rig = toile_assets::rig::fit(body.shape());
         let made = Frame::new(body.shape().clone(), &rig, baked, settings);
         let (mut frame, reader) = made.map_err(Error::input)?;
         frame.dress_and_show(&first);

@@ -14,10 +14,10 @@ use std::fmt::Write;
 use std::path::Path;
 
 use glam::Vec3;
-use toile_assets::limits::STEP_HZ;
-use toile_assets::mesh::vertex_normals;
 use toile_assets::scene_file::{SceneFile, SceneSource};
-use toile_sensors::frame::Joints;
+use toile_base::frame::Joints;
+use toile_base::limits::STEP_HZ;
+use toile_base::mesh::vertex_normals;
 
 use crate::body::Body;
 use crate::error::{Error, Result};

@@ -1,12 +1,12 @@
 //! How a body is dressed and moves.
 
-use toile_assets::limits::MAX_GARMENTS;
 use toile_assets::scene_file::Wind;
-use toile_assets::skeleton::Skeleton;
+use toile_base::frame::Joints;
+use toile_base::limits::MAX_GARMENTS;
+use toile_base::skeleton::Skeleton;
 use toile_engine::cloth::{self, Quality, Settings};
 use toile_fitting::dress::session;
 use toile_fitting::wearing::poses;
-use toile_sensors::frame::Joints;
 
 use crate::error::{Error, Result};
 

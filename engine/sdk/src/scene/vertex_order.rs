@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 use toile_assets::adapt::FileOrder;
-use toile_assets::garment::Garment;
-use toile_assets::garment::shape::{Face, NO_VERTEX};
+use toile_bake::shape::{Face, NO_VERTEX};
+use toile_base::garment::Garment;
 use toile_engine::cloth::Cloth;
 
 /// Where a vertex is kept.

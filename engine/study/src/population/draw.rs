@@ -2,7 +2,7 @@
 
 use toile_assets::body::shape::{BodyShape, Shapes};
 use toile_assets::body::{En, Wanted};
-use toile_assets::numeric::random::SplitMix64;
+use toile_base::numeric::random::SplitMix64;
 
 /// What numbers are drawn for: each purpose has numbers of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,7 +59,7 @@ pub(super) fn shape(shapes: &Shapes, known: Option<(En, f32)>, random: &mut Spli
 
 #[cfg(test)]
 mod tests {
-    use toile_assets::body::Sex;
+    use toile_base::body::Sex;
 
     use super::*;
 

@@ -1,7 +1,8 @@
 //! One person: true measures, and the body that has them.
 
 use toile_assets::body::shape::{BodyShape, Shapes};
-use toile_assets::body::{Body, En, Measures, Sex, Wanted};
+use toile_assets::body::{En, Wanted};
+use toile_base::body::{Body, Measures, Sex};
 
 use crate::error::{Result, StudyError};
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use serde::Serialize;
-use toile_assets::numeric::statistics::{median, quantile};
+use toile_base::numeric::statistics::{median, quantile};
 
 use super::grading::{self, GradingStep, best, judge};
 use super::interval::{Bootstrap, Share};

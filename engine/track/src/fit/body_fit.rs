@@ -3,10 +3,10 @@
 use std::time::Instant;
 
 use glam::{Quat, Vec3};
-use toile_assets::body::Sex;
 use toile_assets::body::shape::{BodyShape, Shapes};
-use toile_assets::skeleton::{JOINTS, Joint, Pose};
-use toile_sensors::frame::{DepthFrame, Joints, TrackedJoint};
+use toile_base::body::Sex;
+use toile_base::frame::{DepthFrame, Joints, TrackedJoint};
+use toile_base::skeleton::{JOINTS, Joint, Pose};
 
 use super::correspondence::Correspondences;
 use super::depth_cells::DepthCells;

@@ -7,10 +7,10 @@
 use std::f32::consts::TAU;
 
 use glam::{Quat, Vec3, Vec4};
-use toile_assets::body::Body;
 use toile_assets::body::shape::BodyShape;
-use toile_assets::skeleton::{JOINTS, Joint};
-use toile_sensors::frame::DepthFrame;
+use toile_base::body::Body;
+use toile_base::frame::DepthFrame;
+use toile_base::skeleton::{JOINTS, Joint};
 
 use super::body_fit::{BodyFit, ROBUST};
 use super::depth_cells::DepthCells;

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use glam::{Affine3A, Vec2, Vec3};
-use toile_sensors::frame::{DepthFrame, Intrinsics};
+use toile_base::frame::{DepthFrame, Intrinsics};
 
 use super::rim::SurfaceMask;
 

@@ -3,8 +3,8 @@
 use glam::{Quat, Vec3};
 use toile_assets::body::shape::Shapes;
 use toile_assets::body::{En, Wanted};
-use toile_assets::numeric::statistics::quantile_of;
-use toile_assets::skeleton::{JOINTS, Joint};
+use toile_base::numeric::statistics::quantile_of;
+use toile_base::skeleton::{JOINTS, Joint};
 
 use super::depth_cells::DepthCells;
 use super::joint_angles::hanging;
@@ -110,8 +110,8 @@ pub fn of_stature(shapes: &Shapes, height: f32) -> toile_assets::body::shape::Bo
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_assets::body::Sex;
-    use toile_assets::skeleton::Pose;
+    use toile_base::body::Sex;
+    use toile_base::skeleton::Pose;
 
     /// Positions of the wrists relative to the shoulders in one arm pose, the right one's mirrored (m).
     fn hands(way: usize) -> [Vec3; 2] {

@@ -1,7 +1,7 @@
 //! The joint angles that pose a body: joint, axis, range, and the prior of a standing person.
 
 use glam::{Quat, Vec3};
-use toile_assets::skeleton::{JOINTS, Joint, Skeleton};
+use toile_base::skeleton::{JOINTS, Joint, Skeleton};
 
 /// One angle of the pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -117,8 +117,8 @@ pub fn angle(local: &[Quat; JOINTS], turn: &JointAngle) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_assets::body::Sex;
     use toile_assets::body::shape::Shapes;
+    use toile_base::body::Sex;
 
     #[test]
     fn both_sides_turn_alike_and_a_standing_arm_hangs() {

@@ -1,11 +1,12 @@
 //! Measuring by the body fit: the shape over all frames of a second, and its measures by virtual tape.
 
 use toile_assets::body::shape::{BodyShape, SHAPES, Shapes};
-use toile_assets::body::{En, Fitted, Measures, Readings, Sex};
-use toile_assets::mesh::vertex_normals;
+use toile_assets::body::{En, Fitted, Readings};
 use toile_assets::sizes::Population;
-use toile_assets::skeleton::Pose;
-use toile_sensors::frame::DepthFrame;
+use toile_base::body::{Measures, Sex};
+use toile_base::frame::DepthFrame;
+use toile_base::mesh::vertex_normals;
+use toile_base::skeleton::Pose;
 
 use super::body_fit::BodyFit;
 use super::options::FitOptions;

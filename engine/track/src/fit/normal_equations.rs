@@ -1,7 +1,8 @@
 //! Normal equations of a least squares step: Jacobian rows summed, then solved by Cholesky factorisation.
 
 use toile_assets::body::shape::SHAPES;
-use toile_assets::numeric::linear::{self, Pivot};
+use toile_base::numeric::linear;
+use toile_base::numeric::linear::Pivot;
 
 use super::posed_body::{JacobianRow, POSE, UNKNOWNS, WIDTH};
 
@@ -151,7 +152,7 @@ const LEAST_PIVOT: Pivot = Pivot::AtLeast(1e-12);
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_assets::numeric::random::SplitMix64;
+    use toile_base::numeric::random::SplitMix64;
 
     fn rows() -> Vec<(JacobianRow, f32)> {
         let mut rng = SplitMix64::new(7);

@@ -1,6 +1,6 @@
 //! What a caller chooses about the body fit.
 
-use toile_assets::skeleton::Joint;
+use toile_base::skeleton::Joint;
 
 /// How a shopper is fitted.
 #[derive(Debug, Clone, Copy, PartialEq)]

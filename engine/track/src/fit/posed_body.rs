@@ -6,10 +6,10 @@
 //! `sum_j w_j (R_j dX/ds + dp_j/ds - R_j dJ_j/ds)`.
 
 use glam::{Mat3, Quat, Vec3};
-use toile_assets::body::Region;
 use toile_assets::body::shape::{BodyShape, SCALE, SHAPES, Shapes};
-use toile_assets::mesh::SkinWeights;
-use toile_assets::skeleton::{JOINTS, Joint, Skeleton, bone_joint};
+use toile_base::body::Region;
+use toile_base::mesh::SkinWeights;
+use toile_base::skeleton::{JOINTS, Joint, Skeleton, bone_joint};
 
 use super::joint_angles::{ANGLES, JointAngle, joint_angles};
 
@@ -356,7 +356,7 @@ impl PosedBody {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_assets::body::Sex;
+    use toile_base::body::Sex;
 
     /// A bent, turned body of an unusual shape.
     fn bent(model: &BodyModel) -> FitState {

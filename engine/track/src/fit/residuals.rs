@@ -1,7 +1,7 @@
 //! The residuals of one step: depth cells, outline, ground contact, prior of the pose and joint limits.
 
 use toile_assets::body::shape::SHAPES;
-use toile_assets::skeleton::Joint;
+use toile_base::skeleton::Joint;
 
 use super::correspondence::Correspondences;
 use super::depth_cells::{DepthCells, RimCell};

@@ -136,8 +136,8 @@ fn conjugate_gradients(apply: impl Fn(&[f64], &mut Vec<f64>), b: Vec<f64>) -> Ve
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_assets::body::Sex;
     use toile_assets::body::shape::Shapes;
+    use toile_base::body::Sex;
 
     #[test]
     fn a_surface_that_was_seen_all_over_is_found_and_one_that_was_not_stays() {

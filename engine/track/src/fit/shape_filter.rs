@@ -95,7 +95,7 @@ impl ShapeFilter {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_assets::body::Sex;
+    use toile_base::body::Sex;
 
     #[test]
     fn nothing_seen_is_the_mean_person_and_frames_make_surer() {

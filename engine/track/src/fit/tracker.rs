@@ -1,7 +1,7 @@
 //! Joints from a plain depth camera: the shopper is segmented from the scene, and the body model tracks them.
 
-use toile_assets::body::Sex;
-use toile_sensors::frame::{DepthFrame, Joints};
+use toile_base::body::Sex;
+use toile_base::frame::{DepthFrame, Joints};
 use toile_sensors::segment::{Segmenter, Zone};
 
 use super::body_fit::{BodyFit, FittedFrame};

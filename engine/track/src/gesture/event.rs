@@ -5,7 +5,7 @@ use super::trunk::Side;
 /// A silence or a loss longer than this ends every gesture (ns): at 15 Hz four frames may be dropped.
 pub(crate) const LONGEST_GAP_NS: u64 = 350_000_000;
 
-toile_assets::named! {
+toile_base::named! {
     /// What a hand did.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
     pub enum Gesture {

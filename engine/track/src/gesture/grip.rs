@@ -1,6 +1,6 @@
 //! Open or closed, decided over several frames.
 
-use toile_sensors::clock::seconds_between;
+use toile_base::clock::seconds_between;
 
 use super::{Gesture, LONGEST_GAP_NS};
 

@@ -7,7 +7,7 @@
 //! fingers held together leave no gaps.
 
 use glam::{Affine3A, Vec3};
-use toile_sensors::frame::{DepthFrame, Joints};
+use toile_base::frame::{DepthFrame, Joints};
 
 use super::hull::{MARGIN, Mask, SIDE};
 use super::trunk::Side;

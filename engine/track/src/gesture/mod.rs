@@ -17,8 +17,8 @@ mod position_history;
 mod swipe;
 mod trunk;
 
-use toile_assets::skeleton::Joint;
-use toile_sensors::frame::{DepthFrame, HandState as ReportedState, Joints};
+use toile_base::frame::{DepthFrame, HandState as ReportedState, Joints};
+use toile_base::skeleton::Joint;
 
 pub use event::{Gesture, GestureEvent, GestureEvents};
 pub use grip::Grip;

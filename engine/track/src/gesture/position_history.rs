@@ -1,7 +1,7 @@
 //! Recent positions of a point, and its velocity.
 
 use glam::Vec3;
-use toile_sensors::clock::seconds_between;
+use toile_base::clock::seconds_between;
 
 /// Places that are remembered: those of the window at the shortest step, and one more.
 const PLACES: usize = 9;

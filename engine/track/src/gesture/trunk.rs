@@ -1,9 +1,9 @@
 //! The trunk's own axes, and the arm's length as the unit of everything.
 
 use glam::Vec3;
-use toile_assets::skeleton::Joint;
-use toile_sensors::clock::seconds_between;
-use toile_sensors::frame::Joints;
+use toile_base::clock::seconds_between;
+use toile_base::frame::Joints;
+use toile_base::skeleton::Joint;
 
 /// One of the shopper's own sides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -131,7 +131,7 @@ impl TrunkDirection {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_sensors::frame::TrackedJoint;
+    use toile_base::frame::TrackedJoint;
 
     #[test]
     fn a_trunk_that_faces_the_camera_looks_along_z() {

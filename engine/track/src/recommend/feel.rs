@@ -1,6 +1,6 @@
 //! How a zone feels: one scale from its ease to a word and to the fit map's colours.
 
-toile_assets::named! {
+toile_base::named! {
     /// How a zone feels, from tight to loose. A garment is comfortable within the range that its file gives; its lower third is
     /// snug, its upper third roomy, and farther outside than a half of it is far too tight or loose.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

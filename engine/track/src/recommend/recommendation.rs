@@ -3,7 +3,7 @@
 use super::feel::Feel;
 use super::offer::Zone;
 
-toile_assets::named! {
+toile_base::named! {
     /// How a zone fits.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum Verdict {

@@ -3,14 +3,14 @@
 use std::f32::consts::{FRAC_PI_2, PI};
 
 use glam::{Vec2, Vec3};
-use toile_assets::body::{Body, Region};
+use toile_base::body::{Body, Region};
 
 use crate::figure::{Appearance, Figure};
 use crate::image::{Image, Size};
 use crate::scene::{Bounds, Camera, CameraFrame, Colours, Material, Scene, Surface};
 use crate::trace::{TraceQuality, TracedScene};
 
-toile_assets::named! {
+toile_base::named! {
     /// From where a collage is seen.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum CollageSide {

@@ -1,8 +1,8 @@
 //! Garments' photographs fitted to a body's picture and painted on it.
 
 use thiserror::Error;
-use toile_assets::body::Body;
 use toile_assets::catalogue::{CollageGarment, CollagePictures, WearingLayer};
+use toile_base::body::Body;
 
 use super::body_layers::{BodyLayers, CollageSide};
 use super::scaling::{Layer, RowSpan, scaled};

@@ -1,5 +1,5 @@
-use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::catalogue::{CollageGarment, CollagePictures, Picture};
+use toile_base::body::{Body, Measures, Sex};
 
 use super::*;
 use crate::figure::Appearance;
@@ -8,7 +8,7 @@ use crate::image::Size;
 const SIZE: Size = Size::new(240, 400);
 
 fn woman() -> Body {
-    Body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap()
+    toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap()
 }
 
 /// A cloth of one colour on a picture of 200 x 200 whose middle half is covered; points 100 px apart at a quarter of the height.

@@ -3,13 +3,13 @@
 use std::str::FromStr;
 
 use glam::Vec3;
-use toile_assets::body::Sex;
 use toile_assets::toml_keys;
+use toile_base::body::Sex;
 
 use super::moulded::Cut;
 use crate::image::linear;
 
-toile_assets::named! {
+toile_base::named! {
     /// Tone of a mannequin's skin.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
     pub enum SkinTone {
@@ -29,7 +29,7 @@ toile_assets::named! {
     }
 }
 
-toile_assets::named! {
+toile_base::named! {
     /// A mannequin's hair: none, or moulded.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
     pub enum Hair {

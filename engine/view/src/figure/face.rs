@@ -1,8 +1,8 @@
 //! The face of a shop mannequin in the place of the drawn one: the same vertices, elsewhere.
 
 use glam::{DVec3, Vec3};
-use toile_assets::body::{Body, Region};
-use toile_assets::mesh::vertex_normals;
+use toile_base::body::{Body, Region};
+use toile_base::mesh::vertex_normals;
 
 use super::egg::{self, ease};
 use super::fairing::FairedPatch;

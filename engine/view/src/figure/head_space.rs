@@ -1,8 +1,8 @@
 //! The space that heads are shaped in: millimetres of a head 222 mm high, from its crown, above the head's joint, facing +z.
 
 use glam::Vec3;
-use toile_assets::body::{Body, Region};
-use toile_assets::skeleton::Joint;
+use toile_base::body::{Body, Region};
+use toile_base::skeleton::Joint;
 
 /// Height of the head that shapes are drawn for, crown to chin (mm).
 pub const HEIGHT_MM: f32 = 222.3;

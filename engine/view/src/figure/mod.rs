@@ -22,9 +22,10 @@ mod placed_head;
 mod tests;
 
 use glam::{Vec2, Vec3};
-use toile_assets::body::{Body, Region, base};
-use toile_assets::mesh::vertex_normals;
-use toile_assets::skeleton::Joint;
+use toile_assets::body::base;
+use toile_base::body::{Body, Region};
+use toile_base::mesh::vertex_normals;
+use toile_base::skeleton::Joint;
 
 use crate::base_layer::{HAIR_AT, base_layer};
 use crate::cloth_look::GarmentLook;

@@ -6,10 +6,10 @@ use std::hint::black_box;
 use glam::{Vec2, Vec3};
 use toile_assets::body::base::BaseBody;
 use toile_assets::body::shape::Shapes;
-use toile_assets::body::{Body, Region, Sex};
-use toile_assets::mesh::vertex_normals;
-use toile_assets::skeleton::Joint;
-use toile_assets::texture::Texture;
+use toile_base::body::{Body, Region, Sex};
+use toile_base::mesh::vertex_normals;
+use toile_base::skeleton::Joint;
+use toile_base::texture::Texture;
 
 use super::head_space::HeadSpace;
 use crate::base_layer::{self, HAIR_AT};
@@ -210,7 +210,7 @@ fn sample(picture: &OwnHeadPicture<'_>, at: Vec2) -> [u8; 3] {
 
 #[cfg(test)]
 mod tests {
-    use toile_assets::body::Measures;
+    use toile_base::body::Measures;
 
     use super::super::{Appearance, Figure, Hair};
     use super::*;
@@ -232,7 +232,7 @@ mod tests {
         for sex in Sex::ALL {
             let mut measures = Measures::average(sex);
             measures.stature *= 1.1;
-            let body = Body::build(sex, &measures).unwrap();
+            let body = toile_assets::body::build(sex, &measures).unwrap();
             let own = wide(sex, [200, 150, 120]);
             let figure = Figure::with_head(&body, Appearance::default(), Some(&own));
             assert_eq!(figure.colour, own.skin());
@@ -262,7 +262,7 @@ mod tests {
 
     #[test]
     fn a_head_of_another_drawing_is_not_put_on() {
-        let body = Body::build(Sex::Male, &Measures::average(Sex::Male)).unwrap();
+        let body = toile_assets::body::build(Sex::Male, &Measures::average(Sex::Male)).unwrap();
         let plain = Figure::of(&body, Appearance::default());
         let own = wide(Sex::Female, [200, 150, 120]);
         for head in [None, Some(&own)] {

@@ -1,8 +1,8 @@
 //! Head and hair on a skin as it was posed.
 
 use glam::{Mat3, Vec3};
-use toile_assets::body::Body;
-use toile_assets::skeleton::Joint;
+use toile_base::body::Body;
+use toile_base::skeleton::Joint;
 
 /// A head in the place of the drawn one, and what it wears: both follow the head's bone.
 ///

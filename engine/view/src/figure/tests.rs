@@ -1,8 +1,8 @@
 //! Laws of heads and hair.
 
 use glam::{Quat, Vec3};
-use toile_assets::body::{Body, Measures, Region, Sex};
-use toile_assets::mesh::vertex_normals;
+use toile_base::body::{Body, Measures, Region, Sex};
+use toile_base::mesh::vertex_normals;
 
 use super::head_space::{HEIGHT_MM, HeadSpace};
 use super::{Appearance, Figure, Hair, SkinTone};
@@ -19,7 +19,7 @@ fn bodies() -> Vec<Body> {
             waist_girth: average.waist_girth * g,
             hip_girth: average.hip_girth * g,
         };
-        [scaled(1.0, 1.0), scaled(0.93, 0.92), scaled(1.08, 1.12)].map(|m| Body::build(sex, &m).unwrap())
+        [scaled(1.0, 1.0), scaled(0.93, 0.92), scaled(1.08, 1.12)].map(|m| toile_assets::body::build(sex, &m).unwrap())
     };
     Sex::ALL.into_iter().flat_map(sizes).collect()
 }

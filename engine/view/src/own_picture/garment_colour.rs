@@ -2,8 +2,8 @@
 //! in linear light beforehand.
 
 use glam::{Vec2, Vec3, Vec4};
-use toile_assets::garment::Garment;
-use toile_assets::texture::Texture;
+use toile_base::garment::Garment;
+use toile_base::texture::Texture;
 
 use crate::cloth_look::{ClothLook, GarmentLook};
 use crate::image::linear;

@@ -1,12 +1,13 @@
 //! The mirror: from a picture and a snapshot to what the shopper sees.
 
 use glam::{Vec2, Vec3};
-use toile_assets::mesh::vertex_normals;
+use toile_base::frame::{DepthFrame, Joints};
+use toile_base::limits::MAX_SIDE;
+use toile_base::mesh::vertex_normals;
 use toile_engine::body::JointFrames;
 use toile_engine::frame::Snapshot;
 use toile_sensors::colour_camera::ColourCamera;
-use toile_sensors::frame::{DepthFrame, Joints};
-use toile_sensors::limits::{MAX_COLOUR_PIXELS, MAX_SIDE};
+use toile_sensors::limits::MAX_COLOUR_PIXELS;
 use toile_sensors::person_mask::PersonMask;
 use toile_sensors::source::live::ColourImage;
 
@@ -162,7 +163,7 @@ impl OwnPicture {
     /// Follows the shopper across the picture, and not every sway.
     fn framing(&mut self, input: &OwnPictureInput<'_>, options: &OwnPictureOptions) -> Framing {
         let picture = [input.picture.width, input.picture.height];
-        let pelvis = input.joints.believed(toile_assets::skeleton::Joint::Pelvis);
+        let pelvis = input.joints.believed(toile_base::skeleton::Joint::Pelvis);
         let column = input.camera.zip(pelvis).and_then(|(camera, p)| {
             let camera = camera.scaled_to(picture[0], picture[1]);
             camera.project(camera.camera_to_world.inverse().transform_point3(p)).map(|at| at.x)

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use glam::Vec3;
-use toile_assets::body::{Body, Region};
-use toile_assets::garment::Garment;
-use toile_assets::mesh::{SkinWeights, vertex_normals};
-use toile_assets::skeleton::Skeleton;
+use toile_base::body::{Body, Region};
+use toile_base::garment::Garment;
+use toile_base::mesh::{SkinWeights, vertex_normals};
+use toile_base::skeleton::Skeleton;
 
 use super::garment_colour::ClothColour;
 use crate::hidden_skin::CoveringCloth;

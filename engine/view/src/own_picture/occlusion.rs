@@ -1,8 +1,8 @@
 //! What of the shopper lies before the garment: by depth where it was measured, by the fitted body and the odds of a person elsewhere.
 
 use glam::{Affine3A, Vec2};
+use toile_base::frame::{DepthFrame, Intrinsics};
 use toile_sensors::colour_camera::ColourCamera;
-use toile_sensors::frame::{DepthFrame, Intrinsics};
 use toile_sensors::person_mask::PersonMask;
 
 /// What is measured so much before the cloth, and is no part of the body that is known to lie there, lies before it (m, and m at 1 m, which

@@ -1,8 +1,8 @@
 //! The rays of a camera, made once: what a lens bends is made straight step by step, which is too dear for every place of every picture.
 
 use glam::{Vec2, Vec3};
+use toile_base::frame::Intrinsics;
 use toile_sensors::colour_camera::ColourCamera;
-use toile_sensors::frame::Intrinsics;
 use toile_sensors::lens::BrownConrady;
 
 /// Pixels of the picture between two rays. Between them a wide lens (k1 = -0.3) is wrong by less than 0.3 mm at 2.4 m.

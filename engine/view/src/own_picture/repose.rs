@@ -6,9 +6,9 @@
 //! each take a frame of three joints, and what lies between them a mean of both.
 
 use glam::{Affine3A, Mat3A, Quat, Vec3, Vec3A};
-use toile_assets::mesh::SkinWeights;
-use toile_assets::skeleton::{BONES, JOINTS, Joint, TWISTS};
-use toile_sensors::frame::Joints;
+use toile_base::frame::Joints;
+use toile_base::mesh::SkinWeights;
+use toile_base::skeleton::{BONES, JOINTS, Joint, TWISTS};
 
 /// A limb that was seen this much longer or shorter than the body's is nobody's: somebody else's joints, or none.
 pub const LENGTHS: std::ops::RangeInclusive<f32> = 0.72..=1.35;

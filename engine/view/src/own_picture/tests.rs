@@ -1,16 +1,14 @@
 //! What is drawn on whom, and on whom nothing is.
 
 use glam::{Affine3A, Mat3, Quat, Vec3};
-use toile_assets::body::Body;
-use toile_assets::rig::Rig;
 use toile_assets::scene::{SHOPPER, shopper};
-use toile_assets::skeleton::{BONES, JOINTS, Joint};
 use toile_assets::wardrobe;
+use toile_base::frame::{DepthFrame, Intrinsics, Joints};
+use toile_base::skeleton::{BONES, JOINTS, Joint};
 use toile_engine::body::{JointFrames, palette};
 use toile_engine::cloth::Settings;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_sensors::colour_camera::ColourCamera;
-use toile_sensors::frame::{DepthFrame, Intrinsics, Joints};
 use toile_sensors::lens::BrownConrady;
 use toile_sensors::person_mask::PersonMask;
 use toile_sensors::source::live::ColourImage;
@@ -31,9 +29,10 @@ struct DressedPicture {
 const SIZE: Size = Size::new(320, 240);
 
 fn scene() -> DressedPicture {
-    let body = Body::build(SHOPPER.0, &SHOPPER.1).unwrap();
+    let body = toile_assets::body::build(SHOPPER.0, &SHOPPER.1).unwrap();
     let dress = wardrobe::style("sun-dress").unwrap().dress("38", &body).unwrap();
-    let (mut frame, mut reader) = Frame::new(body.clone(), &Rig::fit(&body), vec![dress], Settings::default()).unwrap();
+    let (mut frame, mut reader) =
+        Frame::new(body.clone(), &toile_assets::rig::fit(&body), vec![dress], Settings::default()).unwrap();
     let pose = shopper(&body.skeleton, 0.5);
     let first = Joints::seen(0, JointFrames::new(&body.skeleton, &pose).position);
     frame.dress(&first);
@@ -230,7 +229,7 @@ fn arms_before_the_garment_hide_it_by_the_body_alone() {
 fn a_snapshot_of_another_moment_is_brought_to_the_picture() {
     let scene = scene();
     // The body that is posed anew with bones is where the joints that were seen bring the old one.
-    let body = Body::build(SHOPPER.0, &SHOPPER.1).unwrap();
+    let body = toile_assets::body::build(SHOPPER.0, &SHOPPER.1).unwrap();
     let mut pose = scene.snapshot.pose;
     pose.root += Vec3::new(0.08, 0.0, 0.03);
     pose.local[Joint::LeftHip.index()] = Quat::from_rotation_x(-0.3) * pose.local[Joint::LeftHip.index()];
@@ -242,7 +241,7 @@ fn a_snapshot_of_another_moment_is_brought_to_the_picture() {
     let skinned = |pose| {
         let mut bones = [Affine3A::IDENTITY; BONES];
         palette(&body.skeleton, pose, &mut bones);
-        let of = |(p, w): (&Vec3, &toile_assets::mesh::SkinWeights)| -> Vec3 {
+        let of = |(p, w): (&Vec3, &toile_base::mesh::SkinWeights)| -> Vec3 {
             w.iter().map(|(bone, weight)| bones[usize::from(bone)].transform_point3(*p) * weight).sum()
         };
         body.mesh.positions.iter().zip(&body.weights).map(of).collect::<Vec<Vec3>>()
@@ -259,7 +258,8 @@ fn a_snapshot_of_another_moment_is_brought_to_the_picture() {
 fn no_limb_is_drawn_longer_or_shorter_than_a_body_could_be() {
     let scene = scene();
     let from: [Vec3; JOINTS] =
-        JointFrames::new(&Body::build(SHOPPER.0, &SHOPPER.1).unwrap().skeleton, &scene.snapshot.pose).position;
+        JointFrames::new(&toile_assets::body::build(SHOPPER.0, &SHOPPER.1).unwrap().skeleton, &scene.snapshot.pose)
+            .position;
     for (k, scale) in [0.6_f32, 0.8, 1.0, 1.25, 1.6].into_iter().enumerate() {
         let seen = scene.with(|j| {
             let (elbow, wrist) = (j.at(Joint::LeftElbow).position, j.at(Joint::LeftWrist).position);

@@ -28,7 +28,7 @@ pub use offscreen::{Offscreen, OffscreenError};
 pub use presenter::{HIDDEN_RETRY, PresentOutcome, PresentPacing, Presenter};
 pub use render_quality::{MOST_BEAMS, RenderQuality};
 pub use renderer::{Backdrop, MOST_VIEWS, Renderer, Viewport};
-pub use toile_assets::fabric::Weave;
+pub use toile_base::fabric::Weave;
 pub use toile_engine::lines::Line;
 /// The device that draws: the same kind that the cloth is stepped on, so that one may do both.
 pub use toile_gpu::device::{AdapterChoice, Device as Gpu, DeviceNeeds, GpuError};

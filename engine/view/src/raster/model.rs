@@ -2,8 +2,8 @@
 
 use glam::{Vec2, Vec3};
 
-use toile_assets::fabric::{Fabric, Weave};
-use toile_assets::garment::Garment;
+use toile_base::fabric::{Fabric, Weave};
+use toile_base::garment::Garment;
 
 use crate::cloth_look::GarmentLook;
 use crate::figure::Figure;

@@ -4,8 +4,8 @@ use super::render_quality::MOST_BEAMS;
 use super::weave_relief::STEEPEST;
 use crate::fit_map;
 use crate::{cloth_look, shading, tone_mapping, trim_look};
-use toile_assets::garment::look::TRIM_SHADOW_M;
-use toile_assets::pattern::MAX_TRIMS;
+use toile_base::garment::look::TRIM_SHADOW_M;
+use toile_base::garment::trim::MAX_TRIMS;
 
 const FRAME: &str = include_str!("shaders/frame.wgsl");
 const SHADING: &str = include_str!("shaders/shading.wgsl");

@@ -3,9 +3,9 @@
 use std::collections::HashMap;
 
 use glam::{Vec2, Vec3};
-use toile_assets::fabric::Weave;
-use toile_assets::mesh::vertex_normals;
-use toile_assets::pattern::MAX_TRIMS;
+use toile_base::fabric::Weave;
+use toile_base::garment::trim::MAX_TRIMS;
+use toile_base::mesh::vertex_normals;
 use toile_gpu::vertex_source::{STRIDE, VertexSource};
 use wgpu::{BindGroup, Buffer, BufferSlice, BufferUsages, Device, Queue, TextureView};
 

@@ -5,7 +5,7 @@
 
 use std::f32::consts::{PI, TAU};
 
-use toile_assets::fabric::Weave;
+use toile_base::fabric::Weave;
 
 /// Texels of a map's side, a power of two.
 pub const SIDE: u32 = 128;

@@ -4,7 +4,7 @@ use wgpu::{Device, Extent3d, Queue, Sampler, TextureView};
 
 use super::textures;
 use super::weave_relief::{SIDE, WeaveRelief};
-use toile_assets::fabric::Weave;
+use toile_base::fabric::Weave;
 
 /// The relief textures of all weaves.
 #[derive(Debug)]

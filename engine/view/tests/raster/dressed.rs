@@ -1,10 +1,10 @@
 //! A dressed mannequin, for both ways of drawing: shared by the tests of the rasteriser and its example.
 
 use glam::Vec3;
-use toile_assets::body::{Body, Measures, Sex};
-use toile_assets::garment::Garment;
-use toile_assets::mesh::vertex_normals;
 use toile_assets::wardrobe;
+use toile_base::body::{Body, Measures, Sex};
+use toile_base::garment::Garment;
+use toile_base::mesh::vertex_normals;
 use toile_view::hidden_skin::CoveringCloth;
 use toile_view::image::linear;
 use toile_view::raster::{self, Model, RenderSurface, Renderer};
@@ -26,7 +26,7 @@ pub struct Dressed {
 pub fn wearer() -> Body {
     let measures =
         Measures { stature: 1.68, shoulder_breadth: 0.38, chest_girth: 0.90, waist_girth: 0.74, hip_girth: 0.98 };
-    Body::build(Sex::Female, &measures).expect("a usual body is built")
+    toile_assets::body::build(Sex::Female, &measures).expect("a usual body is built")
 }
 
 impl Dressed {

@@ -3,9 +3,9 @@
 use std::sync::{Arc, OnceLock};
 
 use glam::{Affine3A, Vec3, Vec3A};
-use toile_assets::mesh::vertex_normals;
-use toile_assets::rig::Rig;
-use toile_assets::skeleton::BONES;
+use toile_base::mesh::vertex_normals;
+use toile_base::rig::Rig;
+use toile_base::skeleton::BONES;
 use toile_engine::cloth::{Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere};
 use toile_engine::skin::{Blend, SkinningJob};
@@ -48,7 +48,7 @@ fn shoot(gpu: &Gpu, renderer: &mut Renderer) -> Image {
 }
 
 fn colliders() -> Colliders {
-    let (body, rig) = (wearer(), Rig::fit(&wearer()));
+    let (body, rig) = (wearer(), toile_assets::rig::fit(&wearer()));
     let spheres = rig.spheres.each_ref().map(|s| RestSphere::on_bone(&body.skeleton, s.bone, s.offset, s.radius));
     Colliders::new(&spheres, &rig.capsules, true).expect("it is the house's")
 }

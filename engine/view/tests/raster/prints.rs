@@ -1,11 +1,12 @@
 //! Printed, sewn and sheer cloth by both ways of drawing.
 
 use glam::{Vec2, Vec3};
-use toile_assets::bake::bake;
-use toile_assets::fabric::Fabric;
-use toile_assets::garment::{Garment, Shape};
-use toile_assets::mesh::vertex_normals;
-use toile_assets::pattern::{ClothTrim, TrimKind};
+use toile_bake::Shape;
+use toile_bake::bake;
+use toile_base::fabric::Fabric;
+use toile_base::garment::Garment;
+use toile_base::garment::trim::{ClothTrim, TrimKind};
+use toile_base::mesh::vertex_normals;
 use toile_view::cloth_look::GarmentLook;
 use toile_view::image::{Image, linear};
 use toile_view::raster::{Model, RenderSurface, Renderer};
@@ -91,7 +92,7 @@ fn spread(of: &[Vec3]) -> f32 {
 fn a_print_lies_on_the_cloth_the_same_way_in_both_pictures() {
     let text = "name = \"check\"\ntitle = \"Check\"\nbase = \"cotton-lawn\"\ncolour = [0.9, 0.9, 0.9]\n\
         [print]\npattern = \"gingham\"\ncolours = [[0.1, 0.2, 0.6]]\nrepeat_mm = [60.0, 90.0]\n";
-    let printed = Fabric::parse("check", text).unwrap();
+    let printed = toile_assets::fabric::parse("check", text).unwrap();
     let Some([theirs, ours]) = both(&printed) else { return };
     let (theirs, ours) = (middle(&theirs), middle(&ours));
     let off = theirs.iter().zip(&ours).map(|(a, b)| (*a - *b).length()).sum::<f32>() / ours.len() as f32;
@@ -102,7 +103,7 @@ fn a_print_lies_on_the_cloth_the_same_way_in_both_pictures() {
 
 #[test]
 fn the_seam_between_two_panels_is_a_dark_line_in_both() {
-    let Some(both) = both(&Fabric::built_in("cotton-lawn").unwrap()) else { return };
+    let Some(both) = both(&toile_assets::fabric::built_in("cotton-lawn").unwrap()) else { return };
     for (name, image) in ["traced", "drawn"].iter().zip(&both) {
         let all = pixels(image);
         let row = |y: usize| &all[y * SIZE.width as usize..(y + 1) * SIZE.width as usize];
@@ -118,7 +119,7 @@ fn the_seam_between_two_panels_is_a_dark_line_in_both() {
 #[test]
 fn a_button_and_a_strip_over_the_seam_are_seen_in_both() {
     let (white, dark) = ([0.9; 3], [0.02; 3]);
-    let fabric = Fabric { colour: white, ..Fabric::built_in("cotton-lawn").unwrap() };
+    let fabric = Fabric { colour: white, ..toile_assets::fabric::built_in("cotton-lawn").unwrap() };
     // The seam is the right border of the first panel and the left one of the second, 4 mm off there.
     let [seam, there] = [0.18, 0.004];
     let row = -0.5 * 24.0 * SPACING_M;
@@ -158,7 +159,7 @@ fn a_button_and_a_strip_over_the_seam_are_seen_in_both() {
 
 #[test]
 fn sheer_cloth_lets_the_wall_behind_it_be_seen() {
-    let opaque = Fabric { colour: [0.1, 0.1, 0.5], ..Fabric::built_in("cotton-lawn").unwrap() };
+    let opaque = Fabric { colour: [0.1, 0.1, 0.5], ..toile_assets::fabric::built_in("cotton-lawn").unwrap() };
     let sheer = Fabric { opacity: 0.5, ..opaque.clone() };
     let (Some(solid), Some(through)) = (both(&opaque), both(&sheer)) else { return };
     for k in 0..2 {

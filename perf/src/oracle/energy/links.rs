@@ -13,7 +13,7 @@
 //! link and, twice, T / l across it, negative where the link is compressed: the projection leaves those out.
 
 use glam::{DMat3, DVec3};
-use toile_assets::fabric::link_law::LinkLaw;
+use toile_base::fabric::link_law::LinkLaw;
 
 use super::super::law;
 use super::super::problem::Link;

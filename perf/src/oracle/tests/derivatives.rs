@@ -1,7 +1,7 @@
 //! Gradients against differences of values, Hessians against differences of gradients.
 
 use glam::DVec3;
-use toile_assets::fabric::link_law::LinkLaw;
+use toile_base::fabric::link_law::LinkLaw;
 
 use super::super::energy::TotalEnergy;
 use super::super::energy::contact::Contact;

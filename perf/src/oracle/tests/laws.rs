@@ -1,7 +1,7 @@
 //! Links of several slopes that rub.
 
 use glam::DVec3;
-use toile_assets::fabric::link_law::LinkLaw;
+use toile_base::fabric::link_law::LinkLaw;
 
 use super::super::law;
 use super::{GRAVITY, Link, Oracle, Problem, Solids, State, Step, chain};

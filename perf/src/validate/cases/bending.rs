@@ -3,7 +3,7 @@
 //! All start straight and level and come to rest under the damping of [`DAMPING`], which holds nothing up.
 
 use glam::DVec3;
-use toile_assets::garment::Shape;
+use toile_bake::Shape;
 
 use crate::validate::CaseSetup;
 use crate::validate::case::{CaseOutcome, ValidationCase};

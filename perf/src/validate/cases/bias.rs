@@ -6,7 +6,7 @@
 //! own strip one of .3 m, bending grows by the third power, stretch and shear in proportion, and the weight stays.
 
 use glam::DVec3;
-use toile_assets::fabric::Fabric;
+use toile_base::fabric::Fabric;
 
 use crate::validate::CaseSetup;
 use crate::validate::case::{CaseOutcome, ValidationCase};
@@ -36,7 +36,7 @@ const TARGET: f64 = 5.0;
 pub fn cases() -> Vec<ValidationCase> {
     let mut all = Vec::new();
     // What is built in is read by the tests of fabrics.
-    let fabrics: Vec<Fabric> = FABRICS.iter().filter_map(|name| Fabric::built_in(name).ok()).collect();
+    let fabrics: Vec<Fabric> = FABRICS.iter().filter_map(|name| toile_assets::fabric::built_in(name).ok()).collect();
     for style in TurnedMesh::ALL {
         for fabric in &fabrics {
             all.extend([0, 45, 90].map(|degrees| cantilever(style, fabric, degrees)));

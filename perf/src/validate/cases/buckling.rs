@@ -6,7 +6,7 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use toile_assets::garment::Shape;
+use toile_bake::Shape;
 
 use crate::validate::CaseSetup;
 use crate::validate::case::{CaseOutcome, ValidationCase};

@@ -1,7 +1,7 @@
 //! Contact and friction: the rope around a post, the incline, the stopping distance, on the engine's own colliders.
 
 use glam::{DVec3, Vec4};
-use toile_assets::garment::Shape;
+use toile_bake::Shape;
 
 use crate::validate::CaseSetup;
 use crate::validate::case::{CaseOutcome, ValidationCase};

@@ -1,7 +1,7 @@
 //! What friction keeps of a bend: strips that are rolled up and let go, and one that hangs for a minute.
 
 use glam::DVec3;
-use toile_assets::garment::Shape;
+use toile_bake::Shape;
 
 use crate::validate::CaseSetup;
 use crate::validate::case::{CaseOutcome, ValidationCase};

@@ -2,9 +2,9 @@
 //! turned or mirrored, when the step is halved. Held against the engine's own cantilever at the same level.
 
 use glam::DQuat;
-use toile_assets::garment::Shape;
-use toile_assets::garment::shape::NO_VERTEX;
-use toile_assets::numeric::random::SplitMix64;
+use toile_bake::Shape;
+use toile_bake::shape::NO_VERTEX;
+use toile_base::numeric::random::SplitMix64;
 
 use crate::validate::CaseSetup;
 use crate::validate::case::{CaseOutcome, ValidationCase};
@@ -20,7 +20,7 @@ const GAMMA: f64 = 300.0;
 /// Links along the strip.
 const ROWS: usize = 24;
 
-toile_assets::named! {
+toile_base::named! {
     /// How it is changed.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     enum Change {

@@ -2,8 +2,8 @@
 //! Kawabata system makes them, here by a weight that grows and shrinks.
 
 use glam::DVec3;
-use toile_assets::fabric::stretch_curve::StretchCurve;
-use toile_assets::garment::Solver;
+use toile_base::fabric::stretch_curve::StretchCurve;
+use toile_base::garment::Solver;
 
 use crate::validate::CaseSetup;
 use crate::validate::case::{CaseOutcome, ValidationCase};

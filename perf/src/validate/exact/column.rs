@@ -34,7 +34,7 @@ pub fn loaded(own: f64) -> f64 {
     bisect(0.1, 10.0, |p| gives_way(own * p, p))
 }
 
-toile_assets::named! {
+toile_base::named! {
     /// How the ends of a column are held, softest first.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum Ends {

@@ -7,7 +7,8 @@
 //! add Gamma/2 int N_xx w_x^2 + 2 N_xy w_x w_y + N_yy w_y^2. It gives way where the sum is no longer positive definite,
 //! which Cholesky's factorisation shows.
 
-use toile_assets::numeric::linear::{self, Pivot};
+use toile_base::numeric::linear;
+use toile_base::numeric::linear::Pivot;
 
 use super::bisect;
 

@@ -154,7 +154,7 @@ fn graphs_that_cannot_be_are_refused_in_words() {
 #[test]
 fn garbled_files_are_refused_or_run() {
     let whole = file(|_, _| ());
-    let mut random = toile_assets::numeric::random::SplitMix64::new(5);
+    let mut random = toile_base::numeric::random::SplitMix64::new(5);
     for _ in 0..2_000 {
         let mut garbled = whole.clone();
         for _ in 0..1 + random.below(4) {

@@ -1,6 +1,6 @@
 //! Fast kernels against their twins, on images and weights drawn at random: the same bits at every width.
 
-use toile_assets::numeric::random::SplitMix64;
+use toile_base::numeric::random::SplitMix64;
 use toile_engine::lanes::Width;
 
 use super::conv::{self, PackedConv};

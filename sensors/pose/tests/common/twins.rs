@@ -1,6 +1,6 @@
 //! Whether a network runs as its plain twin does.
 
-use toile_assets::numeric::random::SplitMix64;
+use toile_base::numeric::random::SplitMix64;
 use toile_pose::network::Network;
 
 /// Whether both give the same bits of a picture of noise, in each of so many outputs.

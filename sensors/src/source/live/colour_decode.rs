@@ -7,7 +7,8 @@ use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
 use super::live_camera::ColourImage;
-use crate::limits::{MAX_COLOUR_PIXELS, MAX_SIDE};
+use crate::limits::MAX_COLOUR_PIXELS;
+use toile_base::limits::MAX_SIDE;
 
 /// First bytes of a JPEG, and its last.
 pub(super) const JPEG: &[u8] = b"\xff\xd8";

@@ -4,15 +4,15 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use glam::Affine3A;
-use toile_assets::numeric::random::SplitMix64;
+use toile_base::numeric::random::SplitMix64;
 
 use super::error::CameraError;
 use super::live_camera::{Arrival, CameraFrame, CameraInfo, ColourPlace, LiveCamera};
-use crate::clock::SECOND_NS;
-use crate::frame::{Intrinsics, Joints};
 use crate::source::camera::Camera;
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::{Intrinsics, Joints};
 
-toile_assets::named! {
+toile_base::named! {
     /// What may be wrong with a camera.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
     pub enum CameraFault {

@@ -3,7 +3,7 @@
 
 use super::device_clock::DeviceClock;
 use super::live_camera::CameraFrame;
-use crate::clock::SECOND_NS;
+use toile_base::clock::SECOND_NS;
 
 /// Nothing good for so long is a lost camera (ns): two frames of 15 Hz and one that was lost among them.
 pub const LOST_NS: u64 = 150_000_000;
@@ -17,7 +17,7 @@ const COVERED_FRAMES: u32 = 3;
 /// Frames that come so much later than the rate has them come after one that was lost (1).
 const LATE: f64 = 1.5;
 
-toile_assets::named! {
+toile_base::named! {
     /// How a camera stands.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
     #[repr(u8)]

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::Affine3A;
 
-use crate::frame::{DepthFrame, Intrinsics};
+use toile_base::frame::{DepthFrame, Intrinsics};
 
 /// Depth images of a camera: on their way to the tracker, to the loop, and waiting in the queue of whoever observes the sensor.
 pub const POOL_FRAMES: usize = 16;

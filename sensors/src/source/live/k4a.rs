@@ -170,7 +170,7 @@ impl K4a {
             ),
             None => (CaptureSource::Device(opened_device(&api, which)?), Some(NARROW), NAME.to_owned()),
         };
-        let camera = Camera::pinhole(crate::frame::Intrinsics::KINECT_V1);
+        let camera = Camera::pinhole(toile_base::frame::Intrinsics::KINECT_V1);
         let info = CameraInfo { device: name, camera, rate_hz: 30.0, placed: None, colour: ColourPlace::Unknown };
         let mut k4a = Self { api, source, info, colour: options.colour };
         let size = match size {

@@ -15,11 +15,11 @@ use glam::{Affine3A, Vec3};
 use super::error::CameraError;
 use super::library::{Library, LibraryName, functions};
 use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourPlace, LiveCamera};
-use crate::clock::SECOND_NS;
 use crate::colour_camera::ColourCamera;
-use crate::frame::Intrinsics;
 use crate::source::camera::Camera;
 use crate::source::fakenect::millimetres;
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::Intrinsics;
 
 pub(super) const LIBRARY: LibraryName = LibraryName {
     camera: NAME,

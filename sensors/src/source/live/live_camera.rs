@@ -7,9 +7,9 @@ use glam::Affine3A;
 
 use super::error::CameraError;
 use crate::colour_camera::ColourCamera;
-use crate::frame::{Intrinsics, Joints};
 use crate::limits::MAX_VIEW_PEOPLE;
 use crate::source::camera::Camera;
+use toile_base::frame::{Intrinsics, Joints};
 
 /// Stamps of one moment differ by so much, for clocks count in milliseconds (ns).
 const SLACK_NS: f32 = 1e6;

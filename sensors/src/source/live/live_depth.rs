@@ -12,9 +12,9 @@ use super::frame_pool::FramePool;
 use super::live_camera::{Arrival, CameraFrame, CameraInfo, ColourImage, LiveCamera};
 use crate::colour_camera::ColourCamera;
 use crate::error::{Fault, Place};
-use crate::frame::{DepthFrame, Intrinsics, Joints};
 use crate::source::depth_converter::DepthConverter;
 use crate::source::placement::{PlacedCamera, Placement};
+use toile_base::frame::{DepthFrame, Intrinsics, Joints};
 
 /// Longest that a camera is waited for at once (ns): so often its state is looked at.
 pub const PATIENCE_NS: u64 = 10_000_000;

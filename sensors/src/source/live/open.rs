@@ -9,7 +9,7 @@ use super::live_camera::{CameraOptions, LiveCamera};
 use super::{k4a, kinect, openni, orbbec, realsense, recorded, webcam, webcam_file};
 use crate::source::openni_library;
 
-toile_assets::named! {
+toile_base::named! {
     /// Kinds of camera.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
     pub enum CameraKind {

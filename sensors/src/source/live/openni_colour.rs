@@ -14,8 +14,8 @@ use glam::{DMat3, DVec3, Mat3, Vec3};
 
 use super::live_camera::{ColourImage, is_of_moment};
 use crate::colour_camera::ColourCamera;
-use crate::frame::Intrinsics;
 use crate::source::openni_library::OpenNiStream;
+use toile_base::frame::Intrinsics;
 
 /// Pixels between two that are asked for, and the distances (mm).
 const APART: usize = 40;

@@ -16,9 +16,9 @@ use super::error::CameraError;
 use super::library::{Library, LibraryName, functions};
 use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourPlace, LiveCamera, is_of_moment};
 use crate::colour_camera::ColourCamera;
-use crate::frame::Intrinsics;
 use crate::lens::BrownConrady;
 use crate::source::camera::Camera;
+use toile_base::frame::Intrinsics;
 
 pub(super) const LIBRARY: LibraryName = LibraryName {
     camera: NAME,

@@ -5,8 +5,8 @@ use std::ffi::c_int;
 use glam::{Mat3, Vec3};
 
 use crate::colour_camera::ColourCamera;
-use crate::frame::Intrinsics;
 use crate::lens::BrownConrady;
+use toile_base::frame::Intrinsics;
 
 const DISTORTION_NONE: c_int = 0;
 /// Models by Brown and Conrady. The first two bend points sideways by their place after the radial part and not before it, which for

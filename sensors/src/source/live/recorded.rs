@@ -7,10 +7,10 @@ use std::time::{Duration, Instant};
 
 use super::error::CameraError;
 use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourImage, ColourPlace, LiveCamera};
-use crate::clock::SECOND_NS;
-use crate::frame::DepthFrame;
 use crate::source::camera::Camera;
 use crate::source::{self, OpenOptions};
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::DepthFrame;
 
 /// Frames a second that are assumed of a single image (Hz).
 const ASSUMED_HZ: f32 = 30.0;

@@ -2,13 +2,13 @@
 
 use glam::{DVec2, Vec3};
 use serde::Deserialize;
-use toile_assets::skeleton::Joint;
+use toile_base::skeleton::Joint;
 
 use super::triangulate::Point;
 use crate::error::{Fault, Place};
-use crate::frame::{Joints, TrackedJoint};
 use crate::limits::MAX_VIEW_PEOPLE;
 use crate::source::joint_map::{Format, JointMap, middle};
+use toile_base::frame::{Joints, TrackedJoint};
 
 /// Keypoints of either model.
 pub const POINTS: usize = Format::OpenPose25.points();

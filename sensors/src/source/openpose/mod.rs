@@ -25,12 +25,12 @@ use super::files::{count_bytes, shown};
 use super::joint_map::JointMap;
 use super::tidy;
 use crate::calibration::Rig;
-use crate::clock::SECOND_NS;
 use crate::error::{Fault, Place, SourceError};
-use crate::frame::Joints;
 use crate::limits::{CAMERA, KEYPOINTS, MAX_CAMERAS, MAX_JOINT_FRAMES};
 use crate::session::{Session, too_many};
 use keypoints::{ViewFrames, ViewPeople};
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::Joints;
 
 /// Frames a second where the calibration's metadata has no `frame_rate`: OpenPose writes no time.
 const ASSUMED_RATE: f64 = 30.0;
@@ -198,7 +198,7 @@ mod tests {
 
     use super::*;
     use crate::source::joint_map::Format;
-    use toile_assets::skeleton::Joint;
+    use toile_base::skeleton::Joint;
 
     /// The shared recording, or nothing where it is not set up; with CI=true that is a failure.
     fn shared() -> Option<PathBuf> {

@@ -1,11 +1,11 @@
 //! The cameras' world brought into ours: heads up, facing +z, on the floor.
 
 use glam::{Quat, Vec3};
-use toile_assets::skeleton::Joint;
+use toile_base::skeleton::Joint;
 
 use crate::error::{Fault, Place};
-use crate::frame::Joints;
 use crate::source::align;
+use toile_base::frame::Joints;
 
 /// The axis of the cameras' world that is up: the one along which the head is above the feet.
 pub fn to_world(frames: &mut [Joints], notes: &mut Vec<String>) -> Result<(), Fault> {

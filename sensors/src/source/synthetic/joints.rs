@@ -1,10 +1,10 @@
 //! The noise of a joint tracker: jitter on every joint, and hands and feet that are lost for a few frames.
 
 use glam::Vec3;
-use toile_assets::skeleton::{JOINTS, Joint};
+use toile_base::skeleton::{JOINTS, Joint};
 
-use crate::frame::Joints;
-use toile_assets::numeric::random::SplitMix64;
+use toile_base::frame::Joints;
+use toile_base::numeric::random::SplitMix64;
 
 /// Joints that a tracker loses: the ends of the limbs.
 const LOST: [Joint; 6] =
@@ -70,7 +70,7 @@ impl JointNoise {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::TrackedJoint;
+    use toile_base::frame::TrackedJoint;
 
     #[test]
     fn jitter_has_its_sigma_and_only_limb_ends_are_lost() {

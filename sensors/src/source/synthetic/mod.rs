@@ -10,7 +10,7 @@ pub mod room;
 
 use glam::{Affine3A, Mat3, Vec3};
 
-use crate::frame::{DepthFrame, Intrinsics};
+use toile_base::frame::{DepthFrame, Intrinsics};
 
 pub use joints::JointNoise;
 pub use noise::{KinectNoise, axial_sigma, lateral_sigma};

@@ -4,8 +4,8 @@ use std::f32::consts::FRAC_PI_2;
 
 use glam::Vec3;
 
-use crate::frame::Intrinsics;
-use toile_assets::numeric::random::SplitMix64;
+use toile_base::frame::Intrinsics;
+use toile_base::numeric::random::SplitMix64;
 
 /// Disparity times depth (m): 35130 / z in centimetres, steps of 2.85 mm at 1 m, growing with the square of depth.
 const DISPARITY: f32 = 351.30;

@@ -1,10 +1,10 @@
 //! Unity's humanoid bones, and where each stands in the world.
 
 use glam::{Affine3A, Quat, Vec3};
-use toile_assets::skeleton::{JOINTS, Joint};
+use toile_base::skeleton::{JOINTS, Joint};
 
-use crate::frame::{Joints, TrackedJoint};
 use crate::source::joint_map;
+use toile_base::frame::{Joints, TrackedJoint};
 
 /// The bones that a body is made of, each with its parent, parents first. Fingers, eyes and jaw move
 /// nothing of ours, but for the knuckle of the middle finger, which is the end of the hand.

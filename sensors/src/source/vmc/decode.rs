@@ -7,9 +7,10 @@ use glam::{Quat, Vec3};
 use rosc::{OscMessage, OscPacket, OscType};
 
 use super::bones::{BoneMap, COUNT, Local, bone};
-use crate::clock::SECOND_NS;
-use crate::frame::Joints;
-use crate::limits::{MAX_COORDINATE, MAX_OSC_BUNDLES, MAX_PACKET_BYTES};
+use crate::limits::{MAX_OSC_BUNDLES, MAX_PACKET_BYTES};
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::Joints;
+use toile_base::limits::MAX_COORDINATE;
 
 /// A sender's time that goes back by more than this (s) is that of a sender that began anew; by less, a late packet's.
 const RESTART_SECONDS: f64 = 1.0;

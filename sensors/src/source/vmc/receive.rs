@@ -4,9 +4,9 @@ use std::io::{self, ErrorKind};
 use std::net::{SocketAddr, ToSocketAddrs, UdpSocket};
 
 use super::decode::{Decoder, Drops};
-use crate::clock::SECOND_NS;
-use crate::frame::Joints;
 use crate::limits::{MAX_PACKET_BYTES, MAX_PACKETS_A_POLL};
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::Joints;
 
 /// The port to which senders of the protocol send.
 pub const PORT: u16 = 39_539;
@@ -87,7 +87,7 @@ impl VmcReceiver {
 #[cfg(test)]
 mod tests {
     use rosc::{OscMessage, OscPacket, OscType, encoder};
-    use toile_assets::skeleton::Joint;
+    use toile_base::skeleton::Joint;
 
     use super::*;
 

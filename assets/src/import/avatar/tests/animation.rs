@@ -8,8 +8,8 @@ use serde_json::{Value, json};
 use super::super::{ImportOptions, MovingBody, parse_moving};
 use super::{GltfEdit, OURS, alone, moved};
 use crate::export::{FrameRate, MovingGlb, MovingPart};
-use crate::limits::STEP_HZ;
-use crate::skeleton::{BONES, Joint};
+use toile_base::limits::STEP_HZ;
+use toile_base::skeleton::{BONES, Joint};
 
 impl GltfEdit {
     fn accessor_of(&mut self, kind: &str, numbers: &[f32]) -> usize {
@@ -125,7 +125,7 @@ fn a_session_that_was_exported_comes_back_as_an_animation() {
             let about = Affine3A::from_translation(rest[i]) * Affine3A::from_quat(bent(k, joint));
             world[i] = above * about * Affine3A::from_translation(-rest[i]);
         }
-        let whole = crate::skeleton::bone_joint;
+        let whole = toile_base::skeleton::bone_joint;
         std::array::from_fn(|b| whole(b).map_or(world[b], |j| world[j.index()]))
     };
     let rate = FrameRate { frames, hz: 30.0 };

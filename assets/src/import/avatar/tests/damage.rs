@@ -15,7 +15,7 @@ fn survives(bytes: &[u8]) {
         assert!(body.mesh.triangles.iter().flatten().all(|v| (*v as usize) < count));
         assert!(body.mesh.positions.iter().chain(&body.normals).all(|p| p.is_finite()));
         assert!(body.weights.iter().all(|w| (w.weights.iter().sum::<f32>() - 1.0).abs() < 1e-5));
-        assert!(body.weights.iter().flat_map(|w| w.bones).all(|b| usize::from(b) < crate::skeleton::BONES));
+        assert!(body.weights.iter().flat_map(|w| w.bones).all(|b| usize::from(b) < toile_base::skeleton::BONES));
     }
 }
 

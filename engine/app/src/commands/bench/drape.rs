@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use serde::Serialize;
-use toile_assets::fabric::Fabric;
 use toile_assets::put_line;
+use toile_base::fabric::Fabric;
 use toile_engine::cloth::Quality;
 use toile_perf::drape::{CusickRow, SPACINGS_MM, cusick};
 use toile_view::contact_sheet::contact_sheet;
@@ -76,10 +76,10 @@ pub(crate) fn run(args: &DrapeArgs) -> Result<(), AppError> {
 /// Those asked for; else the built-in ones, of each that hangs otherwise than those before it.
 fn fabrics(names: &[String]) -> Result<Vec<Fabric>, AppError> {
     if !names.is_empty() {
-        return names.iter().map(|name| Fabric::built_in(name).map_err(AppError::input)).collect();
+        return names.iter().map(|name| toile_assets::fabric::built_in(name).map_err(AppError::input)).collect();
     }
     let mut kept: Vec<Fabric> = Vec::new();
-    for fabric in Fabric::all().map_err(AppError::internal)? {
+    for fabric in toile_assets::fabric::all().map_err(AppError::internal)? {
         if kept.iter().all(|other| !hangs_alike(other, &fabric)) {
             kept.push(fabric);
         }

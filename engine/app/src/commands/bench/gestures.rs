@@ -4,7 +4,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use clap::value_parser;
-use toile_assets::numeric::statistics::median_of;
+use toile_base::numeric::statistics::median_of;
 use toile_perf::gestures::{Act, GestureConditions, GestureCount, GestureStudy, held_up, sequence};
 use toile_track::gesture::{Gestures, HandSegmenter};
 

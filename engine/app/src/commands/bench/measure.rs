@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 use serde::Serialize;
-use toile_assets::body::Sex;
+use toile_base::body::Sex;
 use toile_perf::ansur::Survey;
 use toile_perf::measuring::{
     self, CrossedMeasure, Family, MeasuredPerson, MeasuringAgreement, MeasuringOptions, MeasuringStudy, Sensor,

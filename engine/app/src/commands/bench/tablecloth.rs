@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use serde::Serialize;
-use toile_assets::fabric::Fabric;
 use toile_assets::put_line;
 use toile_perf::drape::{TableclothStudy, VARIANTS, tablecloth};
 use toile_view::contact_sheet::contact_sheet;
@@ -54,7 +53,7 @@ struct Laid {
 /// A fabric that is not built in, a sampling that there is none of, a folder that cannot be written.
 pub(crate) fn run(args: &TableclothArgs) -> Result<(), AppError> {
     let words = Words::new(args.json);
-    let fabric = Fabric::built_in(&args.fabric).map_err(AppError::input)?;
+    let fabric = toile_assets::fabric::built_in(&args.fabric).map_err(AppError::input)?;
     let variants: Vec<&'static str> =
         VARIANTS.into_iter().filter(|v| args.variant.as_deref().is_none_or(|asked| asked == *v)).collect();
     let study =

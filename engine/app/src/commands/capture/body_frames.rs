@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::Vec3;
 use serde::Serialize;
 use toile_assets::export::{MAX_GLB_FRAMES, motion_glb};
-use toile_assets::skeleton::Joint;
+use toile_base::skeleton::Joint;
 use toile_capture::body::{
     BodyFollower, FollowedFrame, JointPoint, SilhouetteBody, SilhouetteView, joint_points, overlay_png,
 };

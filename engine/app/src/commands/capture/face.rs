@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::slice::from_ref;
 
 use serde::Serialize;
-use toile_assets::body::Sex;
+use toile_base::body::Sex;
 use toile_capture::face::{AdaptedHead, FaceView, HeadTexture, adapt, assumed_camera, follow, mtl, obj, png, texture};
 use toile_sensors::calibration::{self, CalibratedCamera, Rig};
 use toile_sensors::face_points::{MarkedPhotograph, read_marked};

@@ -1,10 +1,10 @@
 //! The loops of a fabric: made by its law, read as the Kawabata system reads them, drawn beside what was measured.
 
 use serde::Serialize;
-use toile_assets::fabric::Fabric;
-use toile_assets::fabric::friction_element::read_loop;
-use toile_assets::fabric::link_law::LinkLaw;
-use toile_assets::fabric::stretch_curve::StretchCurve;
+use toile_base::fabric::Fabric;
+use toile_base::fabric::friction_element::read_loop;
+use toile_base::fabric::link_law::LinkLaw;
+use toile_base::fabric::stretch_curve::StretchCurve;
 use toile_perf::plot::axis::Axis;
 use toile_perf::plot::chart::{Chart, Series, SeriesStyle};
 use toile_perf::plot::raster;

@@ -9,8 +9,8 @@ use std::fmt::Write as _;
 use glam::Vec3;
 use toile_assets::export::session::ExportFrame;
 use toile_assets::export::{ExportFormat, ExportPlan, FrameRate, MovingPart, SessionExport, SurfaceLook};
-use toile_assets::garment::check::corners;
 use toile_assets::scene_file::{SceneGarment, UserMesh};
+use toile_bake::check::corners;
 use toile_fitting::scene::Runner;
 
 use crate::exit::AppError;
@@ -172,7 +172,7 @@ fn ply(positions: impl Iterator<Item = Vec3>, mesh: &UserMesh) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_assets::garment::shape::NO_VERTEX;
+    use toile_bake::shape::NO_VERTEX;
 
     #[test]
     fn decimals_bring_back_the_same_bits() {

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::draping::{self, PatternPackage, PatternSizes, SizedDraft};
 use toile_assets::sizes::{GarmentKind, SizeTable};
+use toile_base::body::{Measures, Sex};
 
 use toile_fitting::dress::offer;
 
@@ -36,7 +36,7 @@ pub fn add(choice: &DraftChoice<'_>, package: &mut PatternPackage) -> Result<(),
         Some(kind) => kind,
         None => {
             let sized = SizeTable::embedded(table).and_then(|t| t.size_body(size)).map_err(AppError::input)?;
-            let body = Body::build(sex, &Measures::from(sized)).map_err(AppError::input)?;
+            let body = toile_assets::body::build(sex, &Measures::from(sized)).map_err(AppError::input)?;
             let pattern = package.parse().map_err(AppError::input)?;
             let found = draping::ease(&pattern, &body);
             found.map_err(|e| AppError::input(format!("{}: {e}", package.name)))?.kind

@@ -5,10 +5,10 @@ use std::fmt::Write;
 
 use glam::Vec3;
 use toile_assets::draping::DrapedPattern;
-use toile_assets::fabric::Fabric;
-use toile_assets::garment::check::corners;
-use toile_assets::garment::{Look, Shape};
-use toile_assets::mesh::vertex_normals;
+use toile_bake::Shape;
+use toile_bake::check::corners;
+use toile_base::fabric::Fabric;
+use toile_base::mesh::vertex_normals;
 use toile_view::cloth_look::GarmentLook;
 use toile_view::contact_sheet;
 use toile_view::figure::Figure;
@@ -32,7 +32,7 @@ const ROW_M: f64 = 2.0;
 pub fn draw(out: &mut OutputFolder, draped: &DrapedPattern, figure: &Figure, fabric: &Fabric) -> Result<(), AppError> {
     out.write("flat.svg", flat(draped).as_bytes())?;
     let placed = &draped.placed;
-    let look = |shape: &Shape| GarmentLook::new(&Look::of(shape), fabric);
+    let look = |shape: &Shape| GarmentLook::new(&toile_bake::look::look_of(shape), fabric);
     let colour = Vec3::from_array(fabric.colour.map(linear));
     let before = Cloth { at: &placed.worn, triangles: &placed.triangles(), colour, look: look(placed) };
     write_png(out, "placed.png", &sides(figure, &before, "Around the body"))?;

@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use serde_json::Value;
-use toile_assets::body::{Body, Measures, Sex};
 use toile_assets::draping::{self, PatternPackage, PatternSizes, TO_MEASURE};
 use toile_assets::file::{self, FileKind};
 use toile_assets::pattern::Pattern;
 use toile_assets::sizes::SizeTable;
+use toile_base::body::{Body, Measures, Sex};
 
 use crate::exit::AppError;
 
@@ -49,7 +49,7 @@ pub fn usual_table(sex: Sex) -> &'static str {
 pub fn wearer(choice: &WearerChoice<'_>, package: &PatternPackage) -> Result<TailoredBody, AppError> {
     let sex = choice.sex;
     if let Some(path) = choice.measures {
-        let body = Body::build(sex, &read(path, sex)?).map_err(AppError::input)?;
+        let body = toile_assets::body::build(sex, &read(path, sex)?).map_err(AppError::input)?;
         let measured = format!("measured by {}", path.display());
         return match package.graded().map_err(AppError::input)? {
             Some(graded) => {
@@ -76,7 +76,7 @@ pub fn wearer(choice: &WearerChoice<'_>, package: &PatternPackage) -> Result<Tai
         None => draping::fitting_size(&pattern, &table, sex).map_err(AppError::input)?,
     };
     let measures = Measures::from(table.size_body(&size).map_err(AppError::input)?);
-    Ok(TailoredBody { body: Body::build(sex, &measures).map_err(AppError::input)?, size, pattern })
+    Ok(TailoredBody { body: toile_assets::body::build(sex, &measures).map_err(AppError::input)?, size, pattern })
 }
 
 /// Measures of a file; what it leaves out is the mean person's.

@@ -1,7 +1,7 @@
 //! How the physics of a try-on went: times, strain, contact, and what was out of order.
 
-use toile_assets::garment::Garment;
-use toile_assets::limits::STEP_HZ;
+use toile_base::garment::Garment;
+use toile_base::limits::STEP_HZ;
 use toile_engine::frame::Frame;
 use toile_fitting::scene::StepTimes;
 use toile_fitting::scene::contact::ContactReport;

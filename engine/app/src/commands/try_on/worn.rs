@@ -1,7 +1,7 @@
 //! What is worn: garments in the sizes that fit, and what is said of them.
 
-use toile_assets::body::Body;
 use toile_assets::wardrobe::own;
+use toile_base::body::Body;
 use toile_fitting::dress::choice::{Choice, Worn};
 use toile_fitting::dress::measured::Measured;
 use toile_fitting::dress::outfit::Outfit;

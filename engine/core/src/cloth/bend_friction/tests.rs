@@ -1,15 +1,16 @@
 //! Friction in bending against its law in f64, against itself at every width, and against what must stay.
 
 use glam::{DVec3, Quat, Vec3};
-use toile_assets::bake::bake;
-use toile_assets::fabric::Fabric;
-use toile_assets::fabric::friction_element::{FrictionElement, read_loop};
-use toile_assets::fabric::loop_widths::LoopWidths;
-use toile_assets::garment::bend_friction::FrictionSlot;
-use toile_assets::garment::layout::OWNERS;
-use toile_assets::garment::{Garment, Part, Shape};
-use toile_assets::mesh::SkinWeights;
 use toile_assets::scene::skirt::{self, Stretch};
+use toile_bake::Shape;
+use toile_bake::bake;
+use toile_base::fabric::Fabric;
+use toile_base::fabric::friction_element::{FrictionElement, read_loop};
+use toile_base::fabric::loop_widths::LoopWidths;
+use toile_base::garment::bend_friction::FrictionSlot;
+use toile_base::garment::layout::OWNERS;
+use toile_base::garment::{Garment, Part};
+use toile_base::mesh::SkinWeights;
 
 use super::*;
 use crate::cloth::state::State;
@@ -49,7 +50,7 @@ fn strip(rows: u32, numbers: [f32; 2]) -> Garment {
     let at = |r: u32, c: u32| r * (ACROSS + 1) + c;
     let cells = (0..rows).flat_map(|r| (0..ACROSS).map(move |c| (r, c)));
     shape.faces = cells.map(|(r, c)| [at(r + 1, c), at(r + 1, c + 1), at(r, c + 1), at(r, c)]).collect();
-    let mut fabric = Fabric::built_in("wool-suiting").unwrap();
+    let mut fabric = toile_assets::fabric::built_in("wool-suiting").unwrap();
     rubbing(&mut fabric, numbers);
     bake("strip", "one", &shape, &fabric).unwrap()
 }

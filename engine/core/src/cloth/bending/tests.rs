@@ -1,10 +1,10 @@
 //! Bending against its stencils in f64, against itself at every width, and against what must stay.
 
 use glam::{DVec3, Vec3};
-use toile_assets::bake::bake;
-use toile_assets::garment::Garment;
-use toile_assets::garment::layout::OWNERS;
 use toile_assets::scene::skirt::{self, Stretch};
+use toile_bake::bake;
+use toile_base::garment::Garment;
+use toile_base::garment::layout::OWNERS;
 
 use super::*;
 use crate::cloth::records::FillRecords;

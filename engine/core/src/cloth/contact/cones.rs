@@ -1,7 +1,7 @@
 //! The capsules in the layout of the kernels: one row a quantity, one place a capsule, prepared once a substep.
 
 use glam::Vec4;
-use toile_assets::limits::MAX_CAPSULES;
+use toile_base::limits::MAX_CAPSULES;
 
 use crate::colliders::Colliders;
 use crate::lanes::{Kernel, Lanes, MOST, ReadColumn, TABLE, V3, WriteColumn};

@@ -1,6 +1,6 @@
 //! How contact acts on a garment.
 
-use toile_assets::fabric::Fabric;
+use toile_base::fabric::Fabric;
 
 use super::sweep::QUICK;
 use crate::cloth::Settings;

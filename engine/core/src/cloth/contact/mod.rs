@@ -17,8 +17,8 @@ mod sweep;
 mod touch;
 
 use glam::Vec3;
-use toile_assets::garment::Part;
-use toile_assets::limits::MAX_CAPSULES;
+use toile_base::garment::Part;
+use toile_base::limits::MAX_CAPSULES;
 
 use super::state::ParticleColumns;
 use crate::body_surface::{BodyPart, BodySurface};

@@ -5,7 +5,7 @@
 //! all that they sweep in the step, lanes across particles. What is near is kept as pairs of block and capsule, a bit a
 //! particle, with room for all of them; each particle meets its capsules in their order.
 
-use toile_assets::limits::{MAX_CAPSULES, MAX_PLANES};
+use toile_base::limits::{MAX_CAPSULES, MAX_PLANES};
 
 use super::cones::{CapsuleCones, CapsuleEnds, CapsuleIndex, CapsuleRow, PLACES};
 use super::touch::close;

@@ -1,6 +1,6 @@
 //! Which capsules cloth on a part of the body can touch at all: a sleeve never touches a leg.
 
-use toile_assets::garment::Part;
+use toile_base::garment::Part;
 
 use crate::body_surface::BodyPart;
 use crate::colliders::Colliders;

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use toile_assets::garment::Part;
+use toile_base::garment::Part;
 
 use super::ContactSettings;
 use crate::body_surface::{BodySurface, PartSurface};

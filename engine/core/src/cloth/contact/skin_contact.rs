@@ -6,7 +6,7 @@
 //! more than [`DISAGREE_M`] apart: then the skin is in the wrong place, or the nearest point of it is, and the cones win.
 
 use glam::Vec3A;
-use toile_assets::garment::Part;
+use toile_base::garment::Part;
 
 use super::ContactSettings;
 use super::near::ParticleBlock;

@@ -1,6 +1,6 @@
 //! Skin before cones: which particles a limb's cones leave to its skin.
 
-use toile_assets::limits::MAX_CAPSULES;
+use toile_base::limits::MAX_CAPSULES;
 
 use super::cones::{CapsuleCones, CapsuleEnds};
 use super::near::{ContactPair, ParticleBlock};

@@ -10,7 +10,7 @@
 //! apart from nobody meanwhile, since it would be held where it is.
 
 use glam::Vec3A;
-use toile_assets::garment::Part;
+use toile_base::garment::Part;
 
 use super::contact::LayerContact;
 use super::contact_list::ContactList;

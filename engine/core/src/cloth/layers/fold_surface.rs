@@ -1,7 +1,7 @@
 //! How far the particles of one garment keep from each other: found at load from where it starts.
 
 use glam::Vec3;
-use toile_assets::garment::Garment;
+use toile_base::garment::Garment;
 
 use crate::lanes::{MOST, ReadColumn, Store};
 use crate::surface::{Clusters, SurfaceMesh};

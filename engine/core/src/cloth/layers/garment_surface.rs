@@ -1,7 +1,7 @@
 //! The surface of one garment, and how it moves.
 
 use glam::Vec3A;
-use toile_assets::garment::{Garment, Part};
+use toile_base::garment::{Garment, Part};
 
 use super::fold_motion::FoldMotion;
 use super::fold_surface::FoldSurface;

@@ -1,7 +1,7 @@
 //! Dressing: outer garments are laid outside of inner ones, and what is tucked in inside. At load.
 
 use glam::{Vec3, Vec3A};
-use toile_assets::garment::Garment;
+use toile_base::garment::{Garment, GarmentData};
 
 use super::garment_surface::GarmentSurface;
 use super::order::wearing_order;
@@ -75,13 +75,13 @@ fn near(surface: &GarmentSurface, start: &[Vec3], points: &[Vec3]) -> Vec<(u32, 
 fn particles_out(garments: &mut [Garment], outer: usize, inner: usize, apart: f32) -> bool {
     let near = near(&GarmentSurface::new(&garments[inner]), &garments[inner].start, &garments[outer].start);
     let mut moved = false;
-    let garment = &mut garments[outer];
-    let tuck = garment.tuck.as_ref().filter(|tuck| tuck.into == inner);
+    let GarmentData { tuck, start, .. } = &mut *garments[outer];
+    let tuck = tuck.as_ref().filter(|tuck| tuck.into == inner);
     for (i, _, normal, front) in near {
         // Where it belongs is in front, of what is tucked in behind.
         let side = if tuck.is_some_and(|tuck| tuck.particles[i as usize]) { -1.0 } else { 1.0 };
         if side * front < apart {
-            garment.start[i as usize] += Vec3::from(normal * (side * apart - front));
+            start[i as usize] += Vec3::from(normal * (side * apart - front));
             moved |= side * front < 0.5 * apart;
         }
     }

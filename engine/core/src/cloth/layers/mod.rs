@@ -36,8 +36,8 @@ mod uncross;
 mod work;
 
 use glam::Vec3;
-use toile_assets::garment::Garment;
-use toile_assets::limits::MAX_GARMENTS;
+use toile_base::garment::Garment;
+use toile_base::limits::MAX_GARMENTS;
 
 use bearing::GarmentBearing;
 use garment_surface::{GarmentMotion, GarmentSurface};

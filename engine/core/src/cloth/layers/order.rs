@@ -1,6 +1,6 @@
 //! Wearing order: which garment lies over which.
 
-use toile_assets::garment::Garment;
+use toile_base::garment::Garment;
 
 /// Which garment lies over which: indices of the garments from the innermost outwards, by their layers, and where these are
 /// the same, in the order in which they are worn.

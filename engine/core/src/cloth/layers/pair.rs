@@ -1,7 +1,7 @@
 //! A pair of garments, or one and itself: what one is to the other, and what is known of both at the start of a step.
 
 use glam::Vec3A;
-use toile_assets::garment::{Garment, Part, Tuck};
+use toile_base::garment::{Garment, Part, Tuck};
 
 use super::contact::{CONTACTS_AN_EDGE, ContactLaw};
 use super::garment_surface::{GarmentMotion, GarmentSurface};

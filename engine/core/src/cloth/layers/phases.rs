@@ -1,6 +1,6 @@
 //! The phases of a step of several garments, in their order. Between two of them the workers meet.
 
-use toile_assets::limits::MAX_GARMENTS;
+use toile_base::limits::MAX_GARMENTS;
 
 use crate::cloth::program::{BEFORE, Stage};
 

@@ -1,7 +1,7 @@
 //! One step of all garments of an outfit, substep by substep together.
 
-use toile_assets::garment::Garment;
-use toile_assets::limits::MAX_GARMENTS;
+use toile_base::garment::Garment;
+use toile_base::limits::MAX_GARMENTS;
 
 use super::Layers;
 use super::pace::PairPace;

@@ -1,11 +1,11 @@
 //! Laws of layers: order, weight, equal bits, and that a fault stays where it is.
 
 use glam::{Affine3A, Vec3, Vec3A};
-use toile_assets::bake::bake;
-use toile_assets::fabric::Fabric;
-use toile_assets::garment::{Garment, Shape};
-use toile_assets::mesh::Influences;
-use toile_assets::skeleton::BONES;
+use toile_bake::Shape;
+use toile_bake::bake;
+use toile_base::garment::Garment;
+use toile_base::mesh::Influences;
+use toile_base::skeleton::BONES;
 
 use super::*;
 use crate::cloth::{Cloth, ContactRates, Settings, Step};
@@ -15,7 +15,7 @@ use crate::workers::WorkerPool;
 
 /// A square sheet of jersey, lying, its front up; `side` vertices a side 20 mm apart, the first of them at `corner` (m).
 fn sheet(side: u32, corner: Vec3, layer: u8) -> Garment {
-    let mut fabric = Fabric::built_in("cotton-jersey").unwrap();
+    let mut fabric = toile_assets::fabric::built_in("cotton-jersey").unwrap();
     fabric.thickness_mm = 4.0;
     let place = |r: u32, c: u32| (corner + Vec3::new(c as f32 * 0.02, 0.0, r as f32 * 0.02), false);
     let mut garment = bake("sheet", "one", &Shape::sheet(side, side, place), &fabric).unwrap();
@@ -202,14 +202,14 @@ fn tube(radius: f32, top: f32, rows: u32, layer: u8) -> Garment {
     for (r, c) in (0..rows).flat_map(|r| (0..COLUMNS).map(move |c| (r, c))) {
         let angle = std::f32::consts::TAU * c as f32 / COLUMNS as f32;
         let at = Vec3::new(radius * angle.sin(), top - 0.02 * r as f32, radius * angle.cos());
-        shape.push(at, at, r == 0, toile_assets::garment::Part::All);
+        shape.push(at, at, r == 0, toile_base::garment::Part::All);
     }
     shape.weights = vec![Influences::strongest([(0, 1.0)]).0; shape.cut.len()];
     let row = |r: u32, c: u32| r * COLUMNS + c % COLUMNS;
     let faces =
         (1..rows).flat_map(|r| (0..COLUMNS).map(move |c| [row(r, c), row(r, c + 1), row(r - 1, c + 1), row(r - 1, c)]));
     shape.faces = faces.collect();
-    let mut garment = bake("tube", "one", &shape, &Fabric::built_in("cotton-jersey").unwrap()).unwrap();
+    let mut garment = bake("tube", "one", &shape, &toile_assets::fabric::built_in("cotton-jersey").unwrap()).unwrap();
     garment.layer = layer;
     garment
 }
@@ -350,7 +350,7 @@ fn a_fold_keeps_as_far_from_itself_as_the_edges_ask_for() {
 
 /// A strip one cell wide, 20 mm, along the x axis or across it, with particles every 40 mm; its ends may be held.
 fn strip(across: bool, height: f32, held: bool, layer: u8) -> Garment {
-    let mut fabric = Fabric::built_in("cotton-jersey").unwrap();
+    let mut fabric = toile_assets::fabric::built_in("cotton-jersey").unwrap();
     fabric.thickness_mm = 4.0;
     let place = |r: u32, c: u32| {
         let (along, aside) = (c as f32 * 0.04 - 0.1, r as f32 * 0.02 - 0.01);

@@ -1,6 +1,6 @@
 //! How far apart two cloths lie.
 
-use toile_assets::fabric::Fabric;
+use toile_base::fabric::Fabric;
 
 /// Distance that two fabrics keep (m): half of both thicknesses.
 pub fn thickness(one: &Fabric, other: &Fabric) -> f32 {

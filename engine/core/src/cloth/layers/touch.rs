@@ -3,9 +3,9 @@
 //! Particles gather what contacts do to them; no contact writes to a particle. So sums have one order, whoever works. They are listed
 //! in two parts, so that two workers gather at once.
 
-use toile_assets::garment::Garment;
-use toile_assets::garment::layout::OWNERS;
-use toile_assets::limits::MAX_GARMENTS;
+use toile_base::garment::Garment;
+use toile_base::garment::layout::OWNERS;
+use toile_base::limits::MAX_GARMENTS;
 
 use super::contact::{LayerContact, VERTICES};
 use super::fold_share::FoldShare;

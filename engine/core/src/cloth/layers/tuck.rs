@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use toile_assets::garment::tuck::SLIPS_M;
-use toile_assets::garment::{Garment, Part, Tuck};
+use toile_base::garment::tuck::SLIPS_M;
+use toile_base::garment::{Garment, Part, Tuck};
 
 use super::order::wearing_order;
 

@@ -9,8 +9,8 @@ use std::sync::atomic::AtomicU64;
 use std::sync::atomic::Ordering::Relaxed;
 use std::time::Instant;
 
-use toile_assets::garment::layout::OWNERS;
-use toile_assets::limits::MAX_GARMENTS;
+use toile_base::garment::layout::OWNERS;
+use toile_base::limits::MAX_GARMENTS;
 
 use super::bearing::{Bearing, GarmentBearing, give_way};
 use super::contact::{Resting, VERTICES};

@@ -1,12 +1,13 @@
 use glam::Vec3;
-use toile_assets::bake::bake;
-use toile_assets::fabric::Fabric;
-use toile_assets::fabric::friction_element::read_loop;
-use toile_assets::fabric::link_law::LinkLaw;
-use toile_assets::fabric::stretch_curve::ShearLock;
-use toile_assets::garment::shape::NO_VERTEX;
-use toile_assets::garment::{Part, Shape};
-use toile_assets::mesh::SkinWeights;
+use toile_bake::Shape;
+use toile_bake::bake;
+use toile_bake::shape::NO_VERTEX;
+use toile_base::fabric::Fabric;
+use toile_base::fabric::friction_element::read_loop;
+use toile_base::fabric::link_law::LinkLaw;
+use toile_base::fabric::stretch_curve::ShearLock;
+use toile_base::garment::Part;
+use toile_base::mesh::SkinWeights;
 
 use super::*;
 use crate::cloth::state::State;
@@ -162,7 +163,7 @@ fn shear_force(garment: &Garment, state: &mut LawState, rows: &[LawRows; KINDS],
 
 #[test]
 fn a_loop_of_shear_gives_stiffness_and_width_back_on_any_mesh() {
-    let mut fabric = Fabric::built_in("denim-tropical").unwrap();
+    let mut fabric = toile_assets::fabric::built_in("denim-tropical").unwrap();
     (fabric.stretch_warp_n_m, fabric.stretch_weft_n_m) = (1e7, 1e7);
     fabric.stretch = Default::default();
     fabric.shear_lock = Some(ShearLock { degrees: 6.0, beyond_n_m: 1_000.0 });
@@ -186,7 +187,7 @@ fn a_loop_of_shear_gives_stiffness_and_width_back_on_any_mesh() {
 
 #[test]
 fn fabrics_without_numbers_have_no_laws() {
-    let garment = cloth(sheet([6, 6], [0.02; 2], false), &Fabric::built_in("cotton-lawn").unwrap());
+    let garment = cloth(sheet([6, 6], [0.02; 2], false), &toile_assets::fabric::built_in("cotton-lawn").unwrap());
     assert!(!garment.layout().laws.acts());
     assert_eq!(LawState::new(garment.layout()).bytes(), 0);
 }

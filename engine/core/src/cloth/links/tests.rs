@@ -4,8 +4,8 @@ use super::*;
 use crate::cloth::state::State;
 use crate::lanes::Width;
 use glam::Vec3;
-use toile_assets::garment::Direction;
-use toile_assets::garment::layout::{ConstraintRun, OwnerShare, Tuples};
+use toile_base::garment::Direction;
+use toile_base::garment::layout::{ConstraintRun, OwnerShare, Tuples};
 
 /// Links between particles i and i + n.
 fn ladder(n: u32, rest: f32, compliance: f32) -> Links {
@@ -203,8 +203,8 @@ fn by_records_links_have_the_bits_that_they_have_in_columns() {
     use crate::cloth::record_links::{RecordLinks, SolveRecordLinks};
     use crate::cloth::records::{FillRecords, ReadRecords};
     use crate::lanes::{RECORD, Store};
-    use toile_assets::bake::bake;
     use toile_assets::scene::skirt::{self, Stretch};
+    use toile_bake::bake;
 
     for (shape, stretch) in [
         (skirt::shape(24), Stretch::Inextensible),

@@ -1,5 +1,5 @@
 use super::*;
-use toile_sensors::clock::{SECOND_NS, ticks_to_ns};
+use toile_base::clock::{SECOND_NS, ticks_to_ns};
 
 const MS: u64 = 1_000_000;
 

@@ -4,8 +4,9 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use glam::Vec3;
-use toile_sensors::clock::SECOND_NS;
-use toile_sensors::frame::TrackedJoint;
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::TrackedJoint;
+use toile_sensors::filter::JointFilter;
 
 use super::*;
 use crate::clock::SimClock;
@@ -76,7 +77,7 @@ fn recording(hz: u64) -> Vec<Joints> {
 
 struct Rig {
     clock: SimClock,
-    sense: SensorThread<Playback, SimClock>,
+    sense: SensorThread<Playback, JointFilter, SimClock>,
     physics: PhysicsThread<Toy, SimClock, NoCounters>,
     events: Receiver<Event>,
     recording: Receiver<Entry>,
@@ -90,7 +91,7 @@ fn rig(uptime: u64, frames: &[Joints], cost: fn(u64) -> u64) -> Rig {
     let (recorder, recording) = bounded(ENTRIES_NAME, 100 * ENTRIES);
     let outlets = PhysicsOutputs { events: sender, recording: Some(recorder) };
     let physics = PhysicsThread::new(Toy::new(&clock, cost), clock.clone(), uptime, reader, outlets, NoCounters);
-    let sense = SensorThread::new(Playback::new(frames, uptime, 2), clock.clone(), writer);
+    let sense = SensorThread::new(Playback::new(frames, uptime, 2), JointFilter::default(), clock.clone(), writer);
     Rig { clock, sense, physics, events, recording }
 }
 

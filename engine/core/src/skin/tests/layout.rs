@@ -1,6 +1,6 @@
 //! The layout: every vertex has one place among its bones, few lanes are empty, and the workers' shares are alike.
 
-use toile_assets::body::{Body, Measures, Sex};
+use toile_base::body::{Measures, Sex};
 
 use super::*;
 use crate::lanes::MOST;
@@ -76,7 +76,7 @@ fn remainders_share_blocks() {
 #[test]
 fn the_bodies_lanes_are_mostly_filled() {
     for sex in [Sex::Female, Sex::Male] {
-        let body = Body::build(sex, &Measures::average(sex)).unwrap();
+        let body = toile_assets::body::build(sex, &Measures::average(sex)).unwrap();
         let job = SkinningJob::new(&body.mesh.positions, &body.normals, &body.weights).unwrap();
         let mut found = Vec::new();
         for width in widths() {

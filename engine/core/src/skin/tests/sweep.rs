@@ -1,14 +1,15 @@
 //! Laws of the sweep: nothing moves at rest, the same input gives the same bits, and a bent limb keeps its volume better.
 
 use glam::{Affine3A, Quat, Vec3};
-use toile_assets::body::{Body, En, Sex, Wanted};
-use toile_assets::skeleton::{BONES, Joint, Pose};
+use toile_assets::body::{En, Wanted};
+use toile_base::body::{Body, Sex};
+use toile_base::skeleton::{BONES, Joint, Pose};
 
 use crate::body::palette;
 use crate::skin::{Blend, PosedMesh, SkinningJob, SweptSkin};
 
 fn woman() -> Body {
-    Body::fitted(Sex::Female, &Wanted::<En>::new()).unwrap().body
+    toile_assets::body::fitted(Sex::Female, &Wanted::<En>::new()).unwrap().body
 }
 
 struct Swept {

@@ -1,8 +1,8 @@
 //! The kernels against independent twins: in f64 within a tolerance, in plain f32 bit for bit.
 
 use glam::{Affine3A, DAffine3, DMat3, DQuat, DVec3, DVec4, Mat3, Vec3, Vec3A};
-use toile_assets::mesh::Influences;
-use toile_assets::skeleton::{BONE_CHAIN, BONES};
+use toile_base::mesh::Influences;
+use toile_base::skeleton::{BONE_CHAIN, BONES};
 
 use super::*;
 use crate::lanes::reciprocal_root;

@@ -1,6 +1,6 @@
 //! Diagonals: the bake's rows, followed fiber by fiber.
 
-use toile_assets::garment::layout::{DiagonalShare, Diagonals};
+use toile_base::garment::layout::{DiagonalShare, Diagonals};
 
 use super::{GarmentSpan, WIDTH, Workgroups};
 

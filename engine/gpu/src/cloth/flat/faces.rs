@@ -1,7 +1,7 @@
 //! Faces: the triangles that meet at each particle, in the order in which the CPU sums their normals.
 
-use toile_assets::garment::Garment;
-use toile_assets::mesh::vertex_normals;
+use toile_base::garment::Garment;
+use toile_base::mesh::vertex_normals;
 
 use super::{GarmentSpan, Workgroups};
 

@@ -1,7 +1,7 @@
 //! Fibers: the bake's bundles as they are, one behind the other.
 
-use toile_assets::garment::Solver;
-use toile_assets::garment::layout::Fibers;
+use toile_base::garment::Solver;
+use toile_base::garment::layout::Fibers;
 
 use super::{GarmentSpan, WIDTH, Workgroups};
 

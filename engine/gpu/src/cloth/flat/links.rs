@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use toile_assets::garment::layout::{ConstraintRun, Links, Zigzag};
+use toile_base::garment::layout::{ConstraintRun, Links, Zigzag};
 use toile_engine::cloth::links::LinkGains;
 
 use super::{GarmentSpan, Workgroups};

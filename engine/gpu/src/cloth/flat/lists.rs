@@ -1,7 +1,7 @@
 //! Lists: fibers by index list, an entry a fiber.
 
-use toile_assets::garment::Solver;
-use toile_assets::garment::layout::FiberLists;
+use toile_base::garment::Solver;
+use toile_base::garment::layout::FiberLists;
 
 use super::{GarmentSpan, Workgroups};
 

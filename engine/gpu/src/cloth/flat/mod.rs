@@ -13,7 +13,7 @@ mod lists;
 mod wind;
 mod workgroups;
 
-use toile_assets::garment::Garment;
+use toile_base::garment::Garment;
 use toile_engine::cloth::bending_matrix::BendingMatrix;
 use toile_engine::cloth::contact::reach;
 use toile_engine::colliders::Colliders;
@@ -126,8 +126,8 @@ impl Flat {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_assets::bake::bake;
     use toile_assets::scene::skirt::{self, Stretch};
+    use toile_bake::bake;
 
     /// Two skirts, laid flat.
     fn skirts() -> (Garment, Flat) {

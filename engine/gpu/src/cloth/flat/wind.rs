@@ -1,6 +1,6 @@
 //! Wind: triangles, and for each particle those around it, in the order in which the CPU adds them up.
 
-use toile_assets::garment::Garment;
+use toile_base::garment::Garment;
 use toile_engine::cloth::wind::Faces;
 
 use super::{GarmentSpan, Workgroups};

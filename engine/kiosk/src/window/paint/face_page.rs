@@ -13,12 +13,12 @@ use std::sync::Arc;
 
 use glam::{Affine3A, Vec2};
 use painted_face::{PaintedHead, Shot};
-use toile_assets::body::Sex;
+use toile_base::body::Sex;
+use toile_base::frame::Joints;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_fitting::dress::{dressed, session};
 use toile_pose::files::{self, NetworkPackage};
 use toile_sensors::colour_camera::ColourCamera;
-use toile_sensors::frame::Joints;
 use toile_view::figure::{Appearance, OwnHead};
 use toile_view::image::{Image, Size};
 use toile_view::raster::{AdapterChoice, Gpu, Offscreen};

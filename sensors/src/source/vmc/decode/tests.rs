@@ -1,7 +1,7 @@
 //! Laws of the decoder: frames are complete, time runs forwards, and whatever is wrong is counted.
 
 use rosc::{OscBundle, OscTime, encoder};
-use toile_assets::skeleton::Joint;
+use toile_base::skeleton::Joint;
 
 use super::*;
 

@@ -10,7 +10,7 @@ mod plain;
 mod tunnel;
 
 use glam::{Vec3, Vec3A, Vec4};
-use toile_assets::garment::Part;
+use toile_base::garment::Part;
 
 use super::*;
 use crate::cloth::state::{State, get, set};
