@@ -1,9 +1,35 @@
 //! The hashes as functions of a module of WebAssembly.
 
+use std::sync::Mutex;
+
 use toile_engine::lanes::Width;
 
-/// [`crate::skirt_hash`] on so many lanes, at most as many as there are.
+use crate::worn::Worn;
+
+/// The file of the worn garment, which the host writes.
+static FILE: Mutex<Vec<u8>> = Mutex::new(Vec::new());
+
+fn width(lanes: u32) -> Width {
+    Width::of(lanes as usize).unwrap_or(Width::One)
+}
+
+/// Makes room for the file of a worn garment and returns its address. The host writes the file there.
+#[unsafe(no_mangle)]
+pub extern "C" fn file(bytes: u32) -> *mut u8 {
+    let mut file = FILE.lock().expect("one thread");
+    *file = vec![0; bytes as usize];
+    file.as_mut_ptr()
+}
+
+/// The state hash of the skirt on so many lanes.
 #[unsafe(no_mangle)]
 pub extern "C" fn skirt_hash(lanes: u32) -> u64 {
-    crate::skirt_hash(Width::of(lanes as usize).unwrap_or(Width::One))
+    crate::skirt_hash(width(lanes))
+}
+
+/// The state hash of the worn garment on so many lanes; 0 where the file is not one.
+#[unsafe(no_mangle)]
+pub extern "C" fn dress_hash(lanes: u32) -> u64 {
+    let file = FILE.lock().expect("one thread");
+    Worn::from_bytes(&file).map_or(0, |worn| worn.hash(width(lanes)))
 }
