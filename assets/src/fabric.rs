@@ -223,6 +223,11 @@ mod tests {
     }
 
     #[test]
+    fn the_cotton_that_needs_no_file_is_the_built_in_one() {
+        assert_eq!(Fabric::cotton_lawn(), built_in("cotton-lawn").unwrap());
+    }
+
+    #[test]
     fn threads_are_read_and_have_usual_figures() {
         let text = include_str!("../data/fabrics/linen-twill.toml");
         let twill = parse("twill", text).unwrap();

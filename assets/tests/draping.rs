@@ -1,8 +1,5 @@
 //! Patterns by others, sewn up around a body: what is promised of every one, and what is refused.
 
-#[path = "../../tests/src/recordings.rs"]
-mod recordings;
-
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
@@ -16,6 +13,8 @@ use toile_base::body::{Body, Measures, Sex};
 use toile_base::fabric::Fabric;
 use toile_base::garment::{Garment, Part};
 use toile_base::skeleton::Joint;
+
+use crate::recordings;
 
 /// Spacing at which the laws are looked at (m): coarse, so that a test takes seconds.
 const SPACING: f64 = 0.03;

@@ -1,9 +1,6 @@
 //! Meshes by others, from their files to shapes on a shopper: held, repaired, recognised, and refused in one sentence where
 //! they are damaged.
 
-#[path = "../../tests/src/recordings.rs"]
-mod recordings;
-
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -16,6 +13,8 @@ use toile_assets::sizes::SizeTable;
 use toile_assets::wardrobe::own;
 use toile_bake::check::check;
 use toile_base::body::{Body, Measures, Sex};
+
+use crate::recordings;
 
 const OUTFITS: [&str; 3] = ["female_elegantsuit01", "female_sportsuit01", "male_casualsuit04"];
 

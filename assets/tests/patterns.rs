@@ -1,9 +1,6 @@
 //! Sewn patterns by others: read, meshed as promised, sewn into one surface, and refused in one sentence where they are
 //! damaged.
 
-#[path = "../../tests/src/recordings.rs"]
-mod recordings;
-
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -14,6 +11,8 @@ use toile_assets::pattern::Pattern;
 use toile_assets::tailor::{SewnMesh, TailorError, sew};
 use toile_bake::check::check;
 use toile_base::numeric::random::SplitMix64;
+
+use crate::recordings;
 
 /// Spacings at which the promises are held (m).
 const SPACINGS: [f64; 2] = [0.015, 0.025];

@@ -1,9 +1,8 @@
 //! The tables of FreeSewing's bodies against the measurements that they were made from.
 
-#[path = "../../tests/src/recordings.rs"]
-mod recordings;
-
 use toile_assets::sizes::SizeTable;
+
+use crate::recordings;
 
 #[test]
 fn every_freesewing_body_lies_in_the_middle_of_its_size() {

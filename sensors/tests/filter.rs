@@ -1,15 +1,14 @@
 //! Laws of the joint filter.
 
-mod common;
-
 use std::time::Instant;
 
-use common::samples::standing;
-use common::{data, filtered, median, session, top_speed};
 use glam::{Quat, Vec3};
 use toile_base::frame::{Joints, TrackedJoint};
 use toile_base::skeleton::Joint;
 use toile_sensors::filter::{FilterSettings, HELD_CONFIDENCE, JointFilter};
+
+use crate::common::samples::standing;
+use crate::common::{data, filtered, median, session, top_speed};
 
 /// Time between two frames at 30 Hz (ns).
 const PERIOD_NS: u64 = 33_333_333;

@@ -1,15 +1,14 @@
 //! Mutated recordings of every kind, found by proptest: an error of one sentence or a session that keeps its promises.
 
-mod common;
-
 use std::time::{Duration, Instant};
 
-use common::{data, samples};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 use toile_sensors::depth::Clean;
 use toile_sensors::source::read_bytes;
+
+use crate::common::{data, samples};
 
 /// One change of a file.
 #[derive(Debug, Clone)]

@@ -1,11 +1,10 @@
 //! No bytes whatever make a reader panic, hang or hand out a number that is not finite.
 
-mod common;
-
-use common::samples;
 use toile_base::numeric::random::SplitMix64;
 use toile_sensors::session::{self, Session};
 use toile_sensors::source::{SourceError, read_bytes};
+
+use crate::common::samples;
 
 /// One recording of every kind: its name, its bytes, and the camera where it needs one.
 fn kinds() -> Vec<(&'static str, Vec<u8>, Option<&'static str>)> {

@@ -1,11 +1,8 @@
 //! Skeleton trackers: each shows the same person standing as we see them, and nothing they send does harm.
 
-mod common;
-
 use std::fs;
 use std::path::PathBuf;
 
-use common::{samples, skeletons};
 use glam::Vec3;
 use proptest::prelude::*;
 use toile_base::filter::Filter;
@@ -18,6 +15,8 @@ use toile_sensors::filter::smoothing::Smoothing;
 use toile_sensors::filter::{FilterSettings, JointFilter};
 use toile_sensors::source::vmc::Decoder;
 use toile_sensors::source::{OpenOptions, open, read_bytes};
+
+use crate::common::{samples, skeletons};
 
 #[test]
 fn every_tracker_shows_the_same_person() {

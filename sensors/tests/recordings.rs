@@ -1,10 +1,7 @@
 //! Facts of the real recordings, before and after the filter.
 
-mod common;
-
 use std::path::Path;
 
-use common::{data, filtered, length, median, session, spread, top_speed};
 use glam::Vec3;
 use toile_base::clock::ticks_to_ns;
 use toile_base::frame::Joints;
@@ -14,6 +11,8 @@ use toile_sensors::filter::{FilterSettings, JointFilter};
 use toile_sensors::sample::sample;
 use toile_sensors::session::{self as recording, Session};
 use toile_sensors::source::{OpenOptions, open};
+
+use crate::common::{data, filtered, length, median, session, spread, top_speed};
 
 const KINECT: [(&str, usize); 4] = [
     ("skeleton/labanotation-kinect2/Ges01_wavehand.csv", 154),

@@ -1,11 +1,10 @@
 //! Session files as other programs write them, and what a session file keeps.
 
-mod common;
-
-use common::samples;
 use toile_base::frame::HandState;
 use toile_base::frame::HandState::{Closed, Open, Unknown};
 use toile_sensors::session;
+
+use crate::common::samples;
 
 const PYTHON_ZSTD: &[u8] = include_bytes!("data/python-zstd.mcap");
 const PYTHON_LZ4: &[u8] = include_bytes!("data/python-lz4.mcap");

@@ -1,8 +1,5 @@
 //! The shopper is found among all that a depth camera sees, and nobody else ever is in the mask.
 
-mod common;
-
-use common::data;
 use glam::{Quat, Vec3};
 use toile_base::body::{Body, Measures, Sex};
 use toile_base::clock::SECOND_NS;
@@ -12,6 +9,8 @@ use toile_sensors::segment::{Segmenter, Zone};
 use toile_sensors::source::synthetic::room::{self, PERSON, RoomView};
 use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera};
 use toile_sensors::source::{OpenOptions, open};
+
+use crate::common::data;
 
 fn camera() -> SyntheticCamera {
     SyntheticCamera::looking_at(Intrinsics::KINECT_V1, Vec3::new(0.0, 1.2, 2.5), Vec3::new(0.0, 0.9, 0.0))

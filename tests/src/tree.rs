@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 /// The crates, lowest floor first: a crate imports only those before it. Folder and name. A new crate gets a line here;
 /// the order of its rooms stands in its own `lib.rs`, as groups of `mod` parted by blank lines.
 pub const FLOORS: &[(&str, &str)] = &[
+    ("assets/base", "toile-base"),
+    ("assets/bake", "toile-bake"),
     ("assets", "toile-assets"),
     ("assets/sculpt", "toile-sculpt"),
     ("sensors", "toile-sensors"),

@@ -25,7 +25,7 @@
 #ifndef TOILE_H
 #define TOILE_H
 
-/* Generated of engine/c/src by cbindgen; TOILE_RENEW_API=1 cargo test -p toile-c --test header writes it anew. */
+/* Generated of engine/c/src by cbindgen; TOILE_RENEW_API=1 cargo test -p toile-c --test main header writes it anew. */
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -62,7 +62,7 @@ fn the_header_is_that_of_the_sources() {
     let differs = committed.lines().zip(generated.lines()).position(|(a, b)| a != b);
     assert!(
         committed == generated,
-        "include/toile.h is not that of the sources from line {:?} on; run TOILE_RENEW_API=1 cargo test -p toile-c --test header",
+        "include/toile.h is not that of the sources from line {:?} on; run TOILE_RENEW_API=1 cargo test -p toile-c --test main header",
         differs.map(|at| at + 1)
     );
 }

@@ -3,8 +3,6 @@
 //!
 //! The network's file is no part of the repository: where it is not fetched, these tests say so and do not run.
 
-#![cfg(feature = "window")]
-
 #[path = "common/painted_face.rs"]
 mod painted_face;
 

@@ -1,12 +1,10 @@
 //! A catalogue of two hundred garments with patterns, textures and photographs, and a visitor who opens thirty of them: time and memory.
 //!
-//! `cargo test --release -p toile-kiosk --features window --test large_catalogue -- --nocapture` prints the figures.
-
-#![cfg(all(target_os = "linux", feature = "window"))]
+//! `cargo test --release -p toile-kiosk --features window --test process large_catalogue -- --nocapture` prints the figures.
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, PoisonError};
 use std::time::{Duration, Instant};
 
 use toile_assets::catalogue::package;
@@ -24,6 +22,8 @@ use toile_kiosk::visitor::screen::{Action, Control, ControlStyle, Screen};
 use toile_kiosk::visitor::setup::VisitorSetup;
 use toile_kiosk::visitor::wardrobe::{Wardrobe, WornItem};
 use toile_view::figure::Appearance;
+
+use crate::ALONE;
 
 const GARMENTS: usize = 200;
 
@@ -130,6 +130,7 @@ fn done(worker: &mut DressingWorker, job: DressingJob) -> JobResult {
 
 #[test]
 fn thirty_of_two_hundred_garments_are_opened_in_a_fixed_memory() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let scratch = Scratch(std::env::temp_dir().join(format!("toile-large-{}", std::process::id())));
     shop(&scratch.0);
     let on_disk: u64 = fs::read_dir(&scratch.0).unwrap().flatten().map(|e| e.metadata().unwrap().len()).sum();

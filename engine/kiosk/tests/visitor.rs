@@ -1,8 +1,6 @@
 //! A whole visit through the service with the visitor's pages: the recording stands before the sensor, a finger presses, and nothing of it is
 //! written or sent.
 
-#![cfg(all(target_os = "linux", feature = "window"))]
-
 use std::collections::BTreeSet;
 use std::fs;
 use std::io::{self, Read, Write};
@@ -50,11 +48,10 @@ use toile_view::figure::{OwnHead, OwnHeadPicture};
 use toile_view::image::Size;
 use toile_view::own_picture::{OwnPicture, OwnPictureInput, OwnPictureModel, OwnPictureOptions};
 
+use crate::ALONE;
+
 /// Longest that a page is waited for, beside compilers.
 const LONGEST: Duration = Duration::from_secs(180);
-
-/// One visit at a time, for all that the process has open is looked at.
-static VISIT: Mutex<()> = Mutex::new(());
 
 /// A manager that ignores what it is notified of.
 struct Nobody;
@@ -205,7 +202,7 @@ fn written() -> i64 {
 
 #[test]
 fn a_whole_visit_opens_no_file_to_write_and_no_socket_and_writes_not_a_byte() {
-    let _alone = VISIT.lock().unwrap_or_else(PoisonError::into_inner);
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let before = (open_to_the_world(), written());
     let (over, opened) = (AtomicBool::new(false), Mutex::new(BTreeSet::new()));
     let mut states = Vec::new();
@@ -230,7 +227,7 @@ fn a_whole_visit_opens_no_file_to_write_and_no_socket_and_writes_not_a_byte() {
 /// A shop that serves pictures at an address of its own; the phone is in the same network.
 #[test]
 fn a_picture_by_a_link_is_large_and_gone_when_it_is_deleted() {
-    let _alone = VISIT.lock().unwrap_or_else(PoisonError::into_inner);
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let address = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
     let is_served = || TcpStream::connect(address).is_ok();
     serve(&format!("[picture]\nserve = \"{address}\"\nnetwork = \"Shop guest\"\n"), |finger| {
@@ -269,7 +266,7 @@ fn a_picture_by_a_link_is_large_and_gone_when_it_is_deleted() {
 /// the renderer could find it.
 #[test]
 fn who_sees_themselves_is_neither_stored_nor_sent() {
-    let _alone = VISIT.lock().unwrap_or_else(PoisonError::into_inner);
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let before = (open_to_the_world(), written());
     let (over, opened) = (AtomicBool::new(false), Mutex::new(BTreeSet::new()));
     thread::scope(|scope| {

@@ -83,31 +83,3 @@ pub(crate) fn named(word: &str) -> Result<(&'static str, En)> {
 pub(crate) fn name_of(standard: &str) -> &'static str {
     NAMES.iter().find(|(_, measure)| measure.name() == standard).map_or("measure", |(name, _)| name)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn words_mean_what_people_mean() {
-        for (word, name) in [
-            ("chest", "chest_girth"),
-            ("Bust", "chest_girth"),
-            ("hip girth", "hip_girth"),
-            ("shoulder-breadth", "shoulder_breadth"),
-            ("height", "stature"),
-            ("inseam", "inside_leg_height"),
-            ("upper arm", "upper_arm_girth"),
-        ] {
-            assert_eq!(named(word).unwrap().0, name, "{word}");
-        }
-        let refused = named("wasit").unwrap_err();
-        assert!(refused.sentence().contains("waist_girth"), "{refused}");
-    }
-
-    #[test]
-    fn every_measure_of_the_standard_has_a_name_of_its_own() {
-        assert_eq!(NAMES.map(|(_, measure)| measure).as_slice(), En::ALL);
-        assert!(En::ALL.iter().all(|m| name_of(m.name()) != "measure"));
-    }
-}

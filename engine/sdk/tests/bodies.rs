@@ -1,5 +1,8 @@
 //! Bodies have the measures that they were asked for, and measures the errors that they are known with.
 
+use std::collections::BTreeSet;
+
+use toile_assets::body::{En, Vocabulary};
 use toile_sdk::{Body, Recording, Sex, Shopper, measure_names};
 
 #[test]
@@ -46,4 +49,30 @@ fn what_is_measured_says_how_sure_it_is_and_a_tape_makes_it_surer() {
     assert!(
         ["stature", "shoulder_breadth", "chest_girth", "waist_girth", "hip_girth"].iter().all(|n| names.contains(n))
     );
+}
+
+#[test]
+fn words_mean_what_people_mean() {
+    let body = Body::average(Sex::Female).unwrap();
+    for (word, name) in [
+        ("chest", "chest_girth"),
+        ("Bust", "chest_girth"),
+        ("hip girth", "hip_girth"),
+        ("shoulder-breadth", "shoulder_breadth"),
+        ("height", "stature"),
+        ("inseam", "inside_leg_height"),
+        ("upper arm", "upper_arm_girth"),
+    ] {
+        assert_eq!(body.measure_mm(word).unwrap(), body.measure_mm(name).unwrap(), "{word}");
+    }
+    let refused = body.measure_mm("wasit").unwrap_err();
+    assert!(refused.sentence().contains("waist_girth"), "{refused}");
+}
+
+#[test]
+fn every_measure_of_the_standard_has_a_name_of_its_own() {
+    let names: BTreeSet<&str> = measure_names().into_iter().collect();
+    assert_eq!(names.len(), En::ALL.len());
+    let measured = Recording::embedded().unwrap().measure(&Shopper::default()).unwrap();
+    assert!(measured.measures().iter().all(|measure| names.contains(measure.name)), "a measure has no name here");
 }

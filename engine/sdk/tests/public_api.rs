@@ -195,7 +195,7 @@ fn the_public_items_are_those_that_were_agreed() {
     };
     panic!(
         "the public items of toile-sdk are no longer those of engine/sdk/{LIST}:\n{}{}If that is meant, write the list anew with\n  \
-         {RENEW}=1 cargo test -p toile-sdk --test public_api\nand raise the version as the crate's front page promises: what is gone \
+         {RENEW}=1 cargo test -p toile-sdk --test main public_api\nand raise the version as the crate's front page promises: what is gone \
          or changed breaks callers.",
         only(&agreed, &now, "-"),
         only(&now, &agreed, "+")

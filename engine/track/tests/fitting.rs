@@ -1,8 +1,5 @@
 //! The body fit held against truth: known bodies before a synthetic camera, and what a real one saw.
 
-#[path = "../../../tests/src/recordings.rs"]
-mod recordings;
-
 use glam::{Affine3A, Quat, Vec3};
 use toile_assets::body::shape::Shapes;
 use toile_assets::body::{En, Wanted};
@@ -16,6 +13,8 @@ use toile_track::fit::measuring::{self, MEASURES};
 use toile_track::fit::tracker::track;
 use toile_track::fit::{BodyFit, FitOptions};
 use toile_track::point_cloud::PersonFinder;
+
+use crate::recordings;
 
 /// A camera with half the pixels of an Azure Kinect each way, 2.3 m off and 1 m high.
 fn camera() -> SyntheticCamera {

@@ -1,8 +1,5 @@
 //! Measuring by joints and depth: what is refused, and what real sensors recorded.
 
-#[path = "../../../tests/src/recordings.rs"]
-mod recordings;
-
 use glam::{Affine3A, Mat3, Vec3};
 use toile_assets::sizes::Population;
 use toile_base::body::{Body, Measures as BodyMeasures, Sex};
@@ -13,6 +10,8 @@ use toile_sensors::source::{OpenOptions, open};
 use toile_track::fit::measuring::FRAMES;
 use toile_track::measure::{MeasureError, Measurements, Source, measure};
 use toile_track::measures::Hint;
+
+use crate::recordings;
 
 /// A rest pose as frames of joints, all believed, with a wobble of a centimetre that averages out.
 fn joints_of(body: &Body) -> Vec<Joints> {

@@ -3,9 +3,6 @@
 //!
 //! The network's file is no part of the repository: where it is not fetched, these tests say so and do not run.
 
-#[path = "common/twins.rs"]
-mod twins;
-
 use std::env;
 use std::ops::Range;
 use std::time::Instant;
@@ -14,6 +11,8 @@ use toile_base::numeric::random::SplitMix64;
 use toile_pose::face_finder::{DETECTOR, MESH};
 use toile_pose::files::{self, NetworkPackage, PoseFile};
 use toile_pose::network::{Network, logistic};
+
+use crate::common::twins;
 
 const REFERENCE: &[u8] = include_bytes!("data/face_reference.bin");
 const FACES: [(&[u8], usize); 2] =

@@ -2,18 +2,15 @@
 //!
 //! The network's files are no part of the repository: where they are not fetched, these tests say so and do not run.
 
-mod common;
-#[path = "common/twins.rs"]
-mod twins;
-
 use std::path::Path;
 use std::time::Instant;
 
-use common::network_folder;
 use toile_base::numeric::random::SplitMix64;
 use toile_base::numeric::statistics::median_of;
 use toile_pose::files::PoseFile;
 use toile_pose::network::Network;
+
+use crate::common::{network_folder, twins};
 
 const REFERENCE: &[u8] = include_bytes!("data/reference.bin");
 

@@ -2,9 +2,6 @@
 //!
 //! The network's files are no part of the repository: where they are not fetched, these tests say so and do not run.
 
-mod common;
-
-use common::network_folder;
 use image::imageops::{self, FilterType};
 use image::{Rgb, RgbImage};
 use toile_base::body::Sex;
@@ -16,6 +13,8 @@ use toile_pose::landmarks::Landmarks;
 use toile_pose::scale::WebcamMount;
 use toile_pose::tracker::{PoseModel, PoseTracker};
 use toile_sensors::source::live::ColourImage;
+
+use crate::common::network_folder;
 
 const STANDING: &[u8] = include_bytes!("data/standing.png");
 

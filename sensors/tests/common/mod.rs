@@ -1,7 +1,5 @@
 //! Finds the shared recordings, and measures joints.
 
-#![allow(dead_code, reason = "each test file uses its part")]
-
 #[path = "../../../tests/src/recordings.rs"]
 mod recordings;
 pub mod samples;

@@ -11,7 +11,7 @@ use toile_gpu::backend::{Backend, Backends, ClothStepper};
 use toile_gpu::cloth_batch::ClothBatch;
 use toile_gpu::graphics::Graphics;
 
-use crate::scene::{REST, around, nobody, skirt, swaying};
+use super::scene::{REST, around, nobody, skirt, swaying};
 
 /// An open device; none where this machine has none, which CI does not excuse.
 fn graphics() -> Option<Graphics> {

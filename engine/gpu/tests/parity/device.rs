@@ -6,7 +6,7 @@ use toile_base::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Settings};
 use toile_gpu::device::GpuError;
 
-use crate::scene::{REST, apart, around, disturbed, nobody, offload, skirt, swaying};
+use super::scene::{REST, apart, around, disturbed, nobody, offload, skirt, swaying};
 
 #[test]
 fn a_lost_device_is_an_error_and_the_last_places_stay() {

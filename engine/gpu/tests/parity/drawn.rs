@@ -11,7 +11,7 @@ use toile_gpu::cloth::Offload;
 use toile_gpu::cloth::cloth_device::ClothDevice;
 use toile_gpu::device::{AdapterChoice, Device, DeviceNeeds, GpuError};
 
-use crate::scene::{around, nobody, offload, skirt, swaying, worn};
+use super::scene::{REST, around, nobody, offload, skirt, swaying, worn};
 
 /// What a component of a unit normal may be off by on a device that fuses products and sums or rounds roots coarsely. In a
 /// crease the triangles around a particle add up to a hundredth of what they have each.
@@ -84,7 +84,7 @@ fn a_fault_of_one_side_is_known_to_the_other() {
     let mut gpu = drawn().expect("a small scene fits a device that was opened for none");
     device.lose();
     assert!(gpu.device().lost());
-    let step = [around(&crate::scene::REST, &nobody, &settings)];
+    let step = [around(&REST, &nobody, &settings)];
     assert!(matches!(gpu.step(&[&garment], &step), Err(GpuError::Lost(_))));
     assert!(matches!(drawn(), Err(GpuError::Lost(_))));
 }

@@ -17,7 +17,7 @@ use toile_engine::cloth::{
 use toile_engine::lanes::{RECORD, ReadColumn, Store, Width, WriteColumn};
 use toile_gpu::cloth::Kernel;
 
-use crate::scene::{apart, around, disturbed, nobody, offload, skirt, swaying, worn};
+use super::scene::{apart, around, disturbed, nobody, offload, skirt, swaying, worn};
 
 /// What a kernel may be off by on a device that fuses products and sums (m). A tenth of the f32 rounding of a metre, a
 /// hundredfold: a fiber's system carries errors of its upper links down.

@@ -13,7 +13,7 @@ use toile_gpu::device::{AdapterChoice, Device, GpuError};
 use toile_gpu::skin::{Skinning, needs};
 use wgpu::BufferUsages;
 
-use crate::scene::{REST, opened};
+use super::scene::{REST, opened};
 
 /// What a blend may be off by on a device that fuses products and sums and rounds quotients to 2.5 units of the last place
 /// (m, and of a unit normal): within 3 m of the origin a place is a dozen sums, each rounded to 1.2e-7 of up to 4 m.

@@ -5,7 +5,7 @@ use toile_assets::scene::skirt::{self as scene, Motion, Stretch};
 use toile_base::garment::Garment;
 use toile_engine::cloth::{Cloth, Quality, RootSettings, Settings, Wind, measure};
 
-use crate::scene::{
+use super::scene::{
     REST, apart, around, irregular, nobody, nudge, offload, offload_worn, skirt, swaying, walker, worn,
 };
 

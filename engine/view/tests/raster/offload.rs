@@ -17,8 +17,8 @@ use toile_view::image::Image;
 use toile_view::raster::{Backdrop, Gpu, ModelError, Renderer};
 use toile_view::scene::{Bounds, Camera};
 
-use crate::dressed::{Dressed, wearer};
-use crate::{AdapterChoice, FINE, Offscreen, RenderQuality, SIZE, gpu, pixels};
+use super::dressed::{Dressed, wearer};
+use super::{AdapterChoice, FINE, Offscreen, RenderQuality, SIZE, gpu, pixels};
 
 const HIDDEN_RETRY: [Affine3A; BONES] = [Affine3A::IDENTITY; BONES];
 

@@ -1,5 +1,7 @@
 //! The network's files for tests.
 
+pub mod twins;
+
 use std::env;
 use std::path::PathBuf;
 

@@ -1,7 +1,5 @@
-//! A base body as it is drawn, from all sides and near to.
-//!
-//! `cargo run --release -p toile-view --example body FOLDER [female|male] [VIEW]...` writes one PNG file a view; with
-//! `DRAWINGS=FOLDER` the drawings are read from there instead of from `assets/sculpt/data`.
+//! A base body as it is drawn, from all sides and near to: one PNG file a view. With `DRAWINGS=FOLDER` the drawings are read from
+//! there instead of from `assets/sculpt/data`.
 
 use std::{error::Error, fs::File, io::BufWriter, path::Path, time::Instant};
 
@@ -33,10 +31,8 @@ const VIEWS: [View; 11] = [
     ("elbow", [0.22, 0.67, 0.0], 0.24, &[0.0, 90.0, 180.0], 0.3, 0.42),
 ];
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let mut words = std::env::args().skip(1);
-    let folder = words.next().unwrap_or_else(|| ".".to_owned());
-    let wanted: Vec<String> = words.collect();
+/// Writes the wanted views of the wanted bodies; all of them where none is named.
+pub fn write_all(folder: &str, wanted: &[String]) -> Result<(), Box<dyn Error>> {
     let asked = |name: &str| wanted.iter().any(|w| w == name);
     for sex in ["female", "male"] {
         if !asked(sex) && (asked("female") || asked("male")) {
@@ -50,7 +46,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let any = VIEWS.iter().any(|v| asked(v.0));
         for view in VIEWS.iter().filter(|v| !any || asked(v.0)) {
             let image = picture(&drawn, view, asked("wire"));
-            let path = Path::new(&folder).join(format!("{sex}-{}.png", view.0));
+            let path = Path::new(folder).join(format!("{sex}-{}.png", view.0));
             image.write_png(&mut BufWriter::new(File::create(path)?))?;
         }
     }

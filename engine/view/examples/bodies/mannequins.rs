@@ -1,9 +1,7 @@
-//! Mannequins by choice: the head that all have, five tones of skin, three caps of hair.
-//!
-//! `cargo run --release -p toile-view --example mannequins [FILE]` writes one PNG file (mannequins.png by default).
+//! Mannequins by choice: the head that all have, five tones of skin, three caps of hair, in `mannequins.png`.
 
 use std::f32::consts::FRAC_PI_2;
-use std::{error::Error, fs::File, io::BufWriter};
+use std::{error::Error, fs::File, io::BufWriter, path::Path};
 
 use glam::Vec3;
 use toile_base::body::{Body, Measures, Sex};
@@ -29,8 +27,9 @@ const FRONT: f32 = 0.0;
 const TURNED: f32 = 0.55;
 const SIDE: f32 = FRAC_PI_2;
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let path = std::env::args().nth(1).unwrap_or_else(|| "mannequins.png".to_owned());
+/// Writes the picture of all mannequins.
+pub fn write_all(folder: &str) -> Result<(), Box<dyn Error>> {
+    let path = Path::new(folder).join("mannequins.png");
     let [woman, man] = Sex::ALL.map(|sex| toile_assets::body::build(sex, &Measures::average(sex)));
     let (woman, man) = (woman?, man?);
     let plain = Appearance::default();

@@ -1,7 +1,5 @@
-//! Bodies of clothes sizes, and at the ends of what people measure, from four sides.
-//!
-//! `cargo run --release -p toile-view --example sizes FOLDER` writes five PNG files into the folder: `bodies.png` has the
-//! EN sizes 34, 42, 50 and 46, 52, 58 side by side; for each sex there are these sizes from all sides, and the short and
+//! Bodies of clothes sizes, and at the ends of what people measure, from four sides: five PNG files. `bodies.png` has the EN
+//! sizes 34, 42, 50 and 46, 52, 58 side by side; for each sex there are these sizes from all sides, and the short and
 //! tall, slight and stout of the 1st and 99th percentile of ANSUR II.
 
 use std::{error::Error, fs::File, io::BufWriter, path::Path};
@@ -39,8 +37,8 @@ const SIZES: [[(&str, f32, f32, f32); 3]; 2] = [
     [("46", 0.92, 0.80, 0.94), ("52", 1.04, 0.92, 1.06), ("58", 1.16, 1.08, 1.18)],
 ];
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let folder = std::env::args().nth(1).unwrap_or_else(|| ".".to_owned());
+/// Writes the pictures of all sizes.
+pub fn write_all(folder: &str) -> Result<(), Box<dyn Error>> {
     let mut six = Vec::new();
     for (sex, name) in [(Sex::Female, "women"), (Sex::Male, "men")] {
         let mut sizes = Vec::new();
@@ -53,7 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 .with(En::HipGirth, hip);
             sizes.push((format!("EN {code}"), toile_assets::body::fitted(sex, &wanted)?.body));
         }
-        write(&folder, &format!("{name}-sizes"), &sizes)?;
+        write(folder, &format!("{name}-sizes"), &sizes)?;
         six.extend(sizes.into_iter().map(|(code, body)| (format!("{name} {code}"), body)));
         let mut ends = Vec::new();
         for (tall, stout) in [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)] {
@@ -67,15 +65,11 @@ fn main() -> Result<(), Box<dyn Error>> {
             let words = [["short", "tall"][usize::from(tall > 0.0)], ["slight", "stout"][usize::from(stout > 0.0)]];
             ends.push((words.join(", "), toile_assets::body::fitted(sex, &wanted)?.body));
         }
-        write(&folder, &format!("{name}-ends"), &ends)?;
+        write(folder, &format!("{name}-ends"), &ends)?;
     }
     let images: Vec<Image> = six.iter().map(|(_, body)| picture(body, QUARTER, TOGETHER)).collect();
     let captions: Vec<&str> = six.iter().map(|(name, _)| name.as_str()).collect();
-    save(
-        &folder,
-        "bodies",
-        &contact_sheet::contact_sheet(&images.iter().collect::<Vec<_>>(), SIZES[0].len(), &captions),
-    )
+    save(folder, "bodies", &contact_sheet::contact_sheet(&images.iter().collect::<Vec<_>>(), SIZES[0].len(), &captions))
 }
 
 /// One row a body, one column a side.

@@ -1,0 +1,3 @@
+//! All integration tests of the crate, linked once.
+
+mod pattern_sizes;

@@ -1,0 +1,7 @@
+//! All integration tests of the crate, linked once.
+
+mod fitting;
+mod measuring;
+mod recommending;
+#[path = "../../../tests/src/recordings.rs"]
+mod recordings;

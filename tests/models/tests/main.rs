@@ -1,0 +1,4 @@
+//! All integration tests of the crate, linked once.
+
+mod triple;
+mod workers;
