@@ -1,6 +1,6 @@
 //! Prints the state hashes, one a line: scene, lanes, hash.
 //!
-//! Usage: toile-platforms FILE   FILE is what `toile-platforms-record` wrote
+//! Usage: toile-platforms FILE [LANES]...   FILE is what `toile-platforms-record` wrote; without lanes, all that there are
 
 use std::process::ExitCode;
 
@@ -9,18 +9,19 @@ use toile_platforms::skirt_hash;
 use toile_platforms::worn::Worn;
 
 fn main() -> ExitCode {
-    let widths = || Width::ALL.into_iter().filter(|width| width.available());
-    for width in widths() {
-        println!("skirt {width} {:016x}", skirt_hash(width));
-    }
-    let Some(path) = std::env::args().nth(1) else { return ExitCode::SUCCESS };
+    let mut arguments = std::env::args().skip(1);
+    let path = arguments.next().unwrap_or_default();
+    let asked: Vec<usize> = arguments.filter_map(|lanes| lanes.parse().ok()).collect();
+    let widths = || {
+        let available = Width::ALL.into_iter().filter(|width| width.available());
+        available.filter(|width| asked.is_empty() || asked.contains(&width.lanes()))
+    };
     let worn = std::fs::read(&path).ok().and_then(|bytes| Worn::from_bytes(&bytes));
     let Some(worn) = worn else {
-        eprintln!("{path} is not a worn garment; write one with toile-platforms-record");
+        eprintln!("{path:?} is not a worn garment; write one with toile-platforms-record FILE");
         return ExitCode::FAILURE;
     };
-    for width in widths() {
-        println!("dress {width} {:016x}", worn.hash(width));
-    }
+    widths().for_each(|width| println!("skirt {width} {:016x}", skirt_hash(width)));
+    widths().for_each(|width| println!("dress {width} {:016x}", worn.hash(width)));
     ExitCode::SUCCESS
 }
