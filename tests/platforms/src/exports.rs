@@ -4,16 +4,16 @@ use std::sync::Mutex;
 
 use toile_engine::lanes::Width;
 
-use crate::worn::Worn;
+use crate::dress_recording::DressRecording;
 
-/// The file of the worn garment, which the host writes.
+/// The recording, which the host writes.
 static FILE: Mutex<Vec<u8>> = Mutex::new(Vec::new());
 
 fn width(lanes: u32) -> Width {
     Width::of(lanes as usize).unwrap_or(Width::One)
 }
 
-/// Makes room for the file of a worn garment and returns its address. The host writes the file there.
+/// Makes room for a recording and returns its address. The host writes the recording there.
 #[unsafe(no_mangle)]
 pub extern "C" fn file(bytes: u32) -> *mut u8 {
     let mut file = FILE.lock().expect("one thread");
@@ -27,9 +27,9 @@ pub extern "C" fn skirt_hash(lanes: u32) -> u64 {
     crate::skirt_hash(width(lanes))
 }
 
-/// The state hash of the worn garment on so many lanes; 0 where the file is not one.
+/// The state hash of the recorded dress on so many lanes; 0 where the bytes are no recording.
 #[unsafe(no_mangle)]
 pub extern "C" fn dress_hash(lanes: u32) -> u64 {
     let file = FILE.lock().expect("one thread");
-    Worn::from_bytes(&file).map_or(0, |worn| worn.hash(width(lanes)))
+    DressRecording::from_bytes(&file).map_or(0, |recording| recording.hash(width(lanes)))
 }

@@ -1,15 +1,15 @@
-//! State hashes that every platform must reproduce: 600 steps of the benchmark's skirt, and of a baked dress that is worn.
+//! State hashes that every platform must reproduce: 600 steps of the benchmark's skirt, and of a baked dress on a moving body.
 //!
 //! One source serves all platforms. A program prints the hashes where there is a standard output; WebAssembly exports them.
 //! The skirt is baked on the platform itself. The dress comes from a file, in the byte form of a baked garment.
 
+pub mod dress_recording;
 #[cfg(target_arch = "wasm32")]
 #[expect(unsafe_code, reason = "functions that a host calls by their names")]
 mod exports;
 #[path = "../../../assets/src/scene/skirt/mod.rs"]
 pub mod skirt;
 mod skirt_scene;
-pub mod worn;
 
 use glam::Vec3A;
 use toile_base::numeric::hash;

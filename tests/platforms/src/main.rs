@@ -5,8 +5,8 @@
 use std::process::ExitCode;
 
 use toile_engine::lanes::Width;
+use toile_platforms::dress_recording::DressRecording;
 use toile_platforms::skirt_hash;
-use toile_platforms::worn::Worn;
 
 fn main() -> ExitCode {
     let mut arguments = std::env::args().skip(1);
@@ -16,12 +16,12 @@ fn main() -> ExitCode {
         let available = Width::ALL.into_iter().filter(|width| width.available());
         available.filter(|width| asked.is_empty() || asked.contains(&width.lanes()))
     };
-    let worn = std::fs::read(&path).ok().and_then(|bytes| Worn::from_bytes(&bytes));
-    let Some(worn) = worn else {
-        eprintln!("{path:?} is not a worn garment; write one with toile-platforms-record FILE");
+    let recording = std::fs::read(&path).ok().and_then(|bytes| DressRecording::from_bytes(&bytes));
+    let Some(recording) = recording else {
+        eprintln!("{path:?} is not a recording; write one with toile-platforms-record FILE");
         return ExitCode::FAILURE;
     };
     widths().for_each(|width| println!("skirt {width} {:016x}", skirt_hash(width)));
-    widths().for_each(|width| println!("dress {width} {:016x}", worn.hash(width)));
+    widths().for_each(|width| println!("dress {width} {:016x}", recording.hash(width)));
     ExitCode::SUCCESS
 }

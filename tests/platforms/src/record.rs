@@ -1,4 +1,4 @@
-//! Writes the worn dress that every platform steps: the shopper of the embedded session in the default dress.
+//! Writes the recording that every platform steps: the shopper of the embedded session in the default dress.
 //!
 //! Usage: toile-platforms-record FILE
 
@@ -9,7 +9,7 @@ use toile_base::limits::STEP_SECONDS;
 use toile_base::skeleton::Pose;
 use toile_engine::colliders::RestSphere;
 use toile_platforms::STEPS;
-use toile_platforms::worn::Worn;
+use toile_platforms::dress_recording::DressRecording;
 
 /// Garment and size.
 const DRESS: [&str; 2] = ["strap-dress", "38"];
@@ -36,8 +36,9 @@ fn main() -> ExitCode {
     });
     let session = (1..=STEPS).map(|step| scene::shopper(&body.skeleton, step as f32 * STEP_SECONDS));
     let poses = begin.chain(session).collect();
-    let worn = Worn { spheres: spheres.collect(), capsules: fitted.capsules.to_vec(), garment, poses, body };
-    if let Err(error) = std::fs::write(&path, worn.to_bytes()) {
+    let recording =
+        DressRecording { spheres: spheres.collect(), capsules: fitted.capsules.to_vec(), garment, poses, body };
+    if let Err(error) = std::fs::write(&path, recording.to_bytes()) {
         eprintln!("{path} cannot be written: {error}");
         return ExitCode::FAILURE;
     }

@@ -34,7 +34,7 @@ const NO_LEVELS: Levels = Levels {
 };
 
 /// A body, its colliders, a garment, and how the body moves.
-pub struct Worn {
+pub struct DressRecording {
     /// The body; of its measures and levels nothing is stored.
     pub body: Body,
     /// The spheres of its rig in the rest pose.
@@ -94,7 +94,7 @@ impl<'a> Source<'a> {
     }
 }
 
-impl Worn {
+impl DressRecording {
     /// The file's bytes.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut out = Numbers::default();
