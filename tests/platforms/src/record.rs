@@ -4,7 +4,7 @@
 
 use std::process::ExitCode;
 
-use toile_assets::{body, rig, scene, wardrobe};
+use toile_assets::{body, drafting, rig, scene};
 use toile_base::limits::STEP_SECONDS;
 use toile_base::skeleton::Pose;
 use toile_engine::colliders::RestSphere;
@@ -25,8 +25,9 @@ fn main() -> ExitCode {
     let body = body::build(scene::SHOPPER.0, &scene::SHOPPER.1).expect("the session's shopper can be built");
     let fitted = rig::fit(&body);
     let spheres = fitted.spheres.iter().map(|s| RestSphere::on_bone(&body.skeleton, s.bone, s.offset, s.radius));
-    let style = wardrobe::style(DRESS[0]).expect("a garment of the wardrobe");
-    let garment = style.dress(DRESS[1], &body).expect("a garment that can be worn");
+    let style = drafting::style(DRESS[0]).expect("a garment that is drafted");
+    let package = style.package().expect("the sizes of its table");
+    let garment = package.dress(DRESS[1], &body).expect("a garment that can be worn");
     let rest = Pose::rest(&body.skeleton);
     let first = scene::shopper(&body.skeleton, 0.0);
     let begin = (1..=DRESS_STEPS).map(|step| {
