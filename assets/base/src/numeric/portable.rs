@@ -190,6 +190,43 @@ pub fn atan2(y: f32, x: f32) -> f32 {
     }
 }
 
+/// Angle of a cosine (rad), 0 to pi; not a number beyond -1 to 1. Rational functions around 0 and 1, as fdlibm has them.
+pub fn acos(cosine: f32) -> f32 {
+    const ABOVE: [f32; 6] =
+        [1.666_666_7e-1, -3.255_658_1e-1, 2.012_125_3e-1, -4.005_553_6e-2, 7.915_35e-4, 3.479_331e-5];
+    const BELOW: [f32; 5] = [1.0, -2.403_395e0, 2.020_945_8e0, -6.882_84e-1, 7.703_815_4e-2];
+    /// Half of pi in two parts, and twice the first.
+    const HALF: f32 = 1.570_796_3;
+    const LOW: f32 = 7.549_789_4e-8;
+    const WHOLE: f32 = 2.0 * HALF;
+    let polynomial = |coefficients: &[f32], x: f32| coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c);
+    let ratio = |z: f32| z * polynomial(&ABOVE, z) / polynomial(&BELOW, z);
+    let size = cosine.abs();
+    if size >= 1.0 || cosine.is_nan() {
+        return if cosine == 1.0 {
+            0.0
+        } else if cosine == -1.0 {
+            WHOLE + 2.0 * LOW
+        } else {
+            f32::NAN
+        };
+    }
+    if size <= f32::from_bits(0x3280_0000) {
+        return HALF + LOW;
+    }
+    if size < 0.5 {
+        return HALF - (cosine - (LOW - cosine * ratio(cosine * cosine)));
+    }
+    let z = (1.0 - size) * 0.5;
+    let root = z.sqrt();
+    if cosine < 0.0 {
+        return WHOLE - 2.0 * (root + (ratio(z) * root - LOW));
+    }
+    let high = f32::from_bits(root.to_bits() & 0xFFFF_F000);
+    let rest = (z - high * high) / (root + high);
+    2.0 * (high + (ratio(z) * root + rest))
+}
+
 /// The cross product.
 pub fn cross(a: Vec3A, b: Vec3A) -> Vec3A {
     Vec3A::new(a.y * b.z - b.y * a.z, a.z * b.x - b.z * a.x, a.x * b.y - b.x * a.y)
@@ -306,6 +343,16 @@ mod tests {
         }
         for (y, x) in [(0.0, 1.0), (-0.0, 1.0), (0.0, -1.0), (-0.0, -1.0), (1.0, 0.0), (-2.0, 0.0), (1e30, 1e-30)] {
             assert_eq!(atan2(y, x).to_bits(), f32::atan2(y, x).to_bits(), "{y} {x}");
+        }
+    }
+
+    #[test]
+    #[cfg(all(target_os = "linux", target_env = "gnu", target_arch = "x86_64"))]
+    fn arc_cosines_have_the_bits_of_the_system() {
+        for bits in (0..=1f32.to_bits()).step_by(50) {
+            for cosine in [f32::from_bits(bits), -f32::from_bits(bits)] {
+                assert_eq!(acos(cosine).to_bits(), cosine.acos().to_bits(), "{cosine}");
+            }
         }
     }
 
