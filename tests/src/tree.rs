@@ -27,6 +27,7 @@ pub const FLOORS: &[(&str, &str)] = &[
     ("engine/app", "toile"),
     ("perf", "toile-perf"),
     ("tests/models", "toile-models"),
+    ("tests/platforms", "toile-platforms"),
     ("tests", "toile-tests"),
 ];
 

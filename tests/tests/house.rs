@@ -8,8 +8,8 @@ use toile_tests::scan;
 use toile_tests::tree::{self, FLOORS};
 
 /// Files that may hold unsafe code, each with its reason.
-const UNSAFE_FILES: [(&str, &str); 40] = [
-    ("engine/cli/src/heap.rs", "the programs' allocator counts, for which it has to implement an unsafe trait"),
+const UNSAFE_FILES: [(&str, &str); 44] = [
+    ("engine/app/src/heap.rs", "the program's allocator counts, for which it has to implement an unsafe trait"),
     ("engine/c/src/border.rs", "what C hands over is read and written"),
     ("engine/c/src/failure.rs", "a function that C calls by its name"),
     ("engine/c/src/version.rs", "the same"),
@@ -29,6 +29,9 @@ const UNSAFE_FILES: [(&str, &str); 40] = [
     ("engine/core/src/cloth/work.rs", "the workers of a step share its columns"),
     ("engine/core/src/cloth/layers/work.rs", "the workers of a step share the contacts"),
     ("engine/core/src/lanes/column.rs", "columns are raw pointers, so that copies may write through them"),
+    ("engine/core/src/lanes/neon.rs", "vector instructions of aarch64"),
+    ("engine/core/src/lanes/simd128.rs", "vector instructions of WebAssembly read and write by address"),
+    ("engine/core/src/lanes/vector.rs", "what is alike for the vectors of every processor"),
     ("engine/core/src/lanes/x86.rs", "vector instructions that are picked at run time"),
     ("engine/core/src/lanes/x86/widths.rs", "the same"),
     ("engine/core/src/lanes/records.rs", "records are read where their list was checked once"),
@@ -37,6 +40,7 @@ const UNSAFE_FILES: [(&str, &str); 40] = [
     ("engine/core/src/sync.rs", "a value that threads keep apart by other means"),
     ("tests/models/src/sync.rs", "the same value as the models have it"),
     ("tests/models/src/triple.rs", "the protocol of the triple buffer in a model"),
+    ("tests/platforms/src/exports.rs", "functions that a host of WebAssembly calls by their names"),
     ("tests/models/tests/workers.rs", "plain memory that a model watches"),
     ("sensors/src/source/openni_library.rs", "OpenNI's C library is called"),
     ("sensors/src/source/live/library.rs", "libraries of cameras are loaded at run time"),

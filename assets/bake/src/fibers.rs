@@ -14,6 +14,7 @@ pub mod warp;
 use std::collections::BTreeMap;
 
 use glam::{Vec2, Vec3};
+use toile_base::numeric::portable;
 
 use crate::check::{corners, is_quad};
 use crate::shape::{Face, NO_VERTEX, Shape, area as area_of};
@@ -138,7 +139,7 @@ impl EdgeDirection {
             rest,
             width: self.share / rest,
             direction,
-            angle: self.along.y.atan2(self.along.x),
+            angle: portable::atan2(self.along.y, self.along.x),
             side: self.side,
         }
     }

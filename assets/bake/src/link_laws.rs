@@ -9,6 +9,7 @@ use super::fibers::{Direction, Edge};
 use toile_base::fabric::Fabric;
 use toile_base::fabric::link_law::{ARC_FORCE, ARC_SLOPE};
 use toile_base::garment::link_laws::{Law, ONE_SLOPE};
+use toile_base::numeric::portable;
 
 /// What the links of a garment follow.
 #[derive(Debug, Clone)]
@@ -72,7 +73,7 @@ fn thread(edge: &Edge, curve: Option<[f32; 4]>, [below, beyond]: [f32; 2], buckl
 
 fn bias(edge: &Edge, fabric: &Fabric) -> Law {
     let mut law = ONE_SLOPE;
-    let (sin, cos) = edge.angle.sin_cos();
+    let (sin, cos) = portable::sin_cos(edge.angle);
     let longer = (sin * cos).abs();
     if longer < LEANS {
         return law;

@@ -18,6 +18,7 @@ use toile_base::garment::layout::{
     Tethers,
 };
 use toile_base::garment::link_laws::{LawTable, LinkLaws, ONE_SLOPE};
+use toile_base::numeric::portable;
 
 /// What baking has found out about a shape so far.
 pub struct BakeInput<'a> {
@@ -169,7 +170,7 @@ fn diagonals<'a>(
     for fiber in leaning {
         let ends = fiber.vertices.windows(2).map(|v| [particle(v[0]), particle(v[1])]);
         let links: Vec<_> = fiber.edges.iter().map(|&e| e as usize).zip(ends).collect();
-        let (sin, cos) = baking.edges[links[0].0].angle.sin_cos();
+        let (sin, cos) = portable::sin_cos(baking.edges[links[0].0].angle);
         // Links between two fixed particles are nobody's.
         for part in links.split(|l| !open[l.0]).filter(|p| !p.is_empty()) {
             fibers.push(BiasFiber { towards: sin * cos > 0.0, links: part.to_vec() });

@@ -14,6 +14,7 @@
 
 use super::fibers::{Direction, Edge, Fiber};
 use toile_base::fabric::Fabric;
+use toile_base::numeric::portable;
 
 /// Stiffness of an edge (N/m) as part of a fiber of the given direction.
 pub fn stretch(edge: &Edge, fiber: Direction, fabric: &Fabric) -> f32 {
@@ -27,7 +28,7 @@ pub fn stretch(edge: &Edge, fiber: Direction, fabric: &Fabric) -> f32 {
 
 /// Modulus of a strip cut at an angle to the warp (N/m; rad).
 pub fn off_axis(angle: f32, fabric: &Fabric) -> f32 {
-    let (sin, cos) = angle.sin_cos();
+    let (sin, cos) = portable::sin_cos(angle);
     let (s, c) = (sin * sin, cos * cos);
     (c * c / fabric.stretch_warp_n_m + s * s / fabric.stretch_weft_n_m + s * c / fabric.shear_n_m).recip()
 }

@@ -11,6 +11,7 @@ use toile_base::body::Body;
 use toile_base::garment::{Garment, Part};
 use toile_base::limits::{STEP_HZ, STEP_SECONDS};
 use toile_base::numeric::hash::Fnv1a;
+use toile_base::numeric::portable;
 use toile_base::rig::Rig;
 use toile_base::skeleton::{BONES, Pose};
 use toile_base::frame::Joints;
@@ -435,7 +436,10 @@ impl Fingerprint {
 
 /// A pose between two others.
 fn blend(from: &Pose, to: &Pose, t: f32) -> Pose {
-    Pose { root: from.root.lerp(to.root, t), local: std::array::from_fn(|i| from.local[i].slerp(to.local[i], t)) }
+    Pose {
+        root: from.root.lerp(to.root, t),
+        local: std::array::from_fn(|i| portable::slerp(from.local[i], to.local[i], t)),
+    }
 }
 
 #[cfg(test)]

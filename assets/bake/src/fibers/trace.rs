@@ -8,6 +8,7 @@
 //! close to hoops. What remains runs along the bias.
 
 use glam::Vec3;
+use toile_base::numeric::portable;
 
 use super::{Direction, Edge, Fiber};
 
@@ -88,19 +89,20 @@ impl<'a> FiberCandidates<'a> {
     /// By how far an edge is off the direction, rounded so that edges that are alike but for rounding tie; then those that
     /// lean one way come first.
     fn rank(&self, e: u32) -> (u32, bool, u32) {
-        let off = self.along(e).abs().min(1.0).acos();
+        let off = portable::acos(self.along(e).abs().min(1.0));
         ((off * 1e5).round() as u32, self.lean(e) < 0.0, e)
     }
 
     /// Cosine between the edge from a to b and the direction.
     fn along(&self, e: u32) -> f32 {
         let angle = self.edges[e as usize].angle;
-        if self.direction == Direction::Warp { angle.cos() } else { angle.sin() }
+        let (sin, cos) = portable::sin_cos(angle);
+        if self.direction == Direction::Warp { cos } else { sin }
     }
 
     /// Which way the edge leans as it leads on: its sine, towards the weft or against the warp.
     fn lean(&self, e: u32) -> f32 {
-        let (sin, cos) = self.edges[e as usize].angle.sin_cos();
+        let (sin, cos) = portable::sin_cos(self.edges[e as usize].angle);
         if self.direction == Direction::Warp { sin * cos.signum() } else { -cos * sin.signum() }
     }
 

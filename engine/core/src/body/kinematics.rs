@@ -6,6 +6,7 @@
 //! the joint at the far end with all of it, so that no stretch of skin between two bones bears more than 18 degrees.
 
 use glam::{Affine3A, Mat3A, Quat, Vec3, Vec3A};
+use toile_base::numeric::portable;
 use toile_base::skeleton::{BONES, JOINTS, Joint, Pose, Skeleton, TWISTS};
 
 /// Where every joint stands and how it is turned, in the world.
@@ -25,8 +26,8 @@ impl JointFrames {
             let i = joint.index();
             if let Some(parent) = joint.parent().map(Joint::index) {
                 let turn = frames.rotation[parent];
-                frames.position[i] = frames.position[parent] + turn * skeleton.offset(joint);
-                frames.rotation[i] = (turn * pose.local[i]).normalize();
+                frames.position[i] = frames.position[parent] + portable::turned(turn, skeleton.offset(joint));
+                frames.rotation[i] = portable::unit(turn * pose.local[i]);
             }
         }
         frames
@@ -59,7 +60,7 @@ pub fn palette(skeleton: &Skeleton, pose: &Pose, palette: &mut [Affine3A; BONES]
         let angle = angle_about(turn, axis);
         palette[twist.from.index()] = skin_matrix(start, root, rest);
         for (k, bone) in twist.bones().enumerate() {
-            let part = Quat::from_scaled_axis(axis * (twist.share(k + 1) * angle));
+            let part = portable::from_scaled_axis(axis * (twist.share(k + 1) * angle));
             // All turn about the limb's axis, on which its root lies.
             palette[bone] = skin_matrix(start * part, root, rest);
         }
@@ -87,5 +88,5 @@ pub fn swing_twist(turn: Quat, axis: Vec3) -> (Quat, Quat) {
 /// Angle (rad, -pi to pi) of a rotation about `axis`, of which the rotation is known to be a twist.
 pub fn angle_about(twist: Quat, axis: Vec3) -> f32 {
     let along = twist.xyz().dot(axis);
-    if twist.w < 0.0 { 2.0 * (-along).atan2(-twist.w) } else { 2.0 * along.atan2(twist.w) }
+    2.0 * if twist.w < 0.0 { portable::atan2(-along, -twist.w) } else { portable::atan2(along, twist.w) }
 }

@@ -1,6 +1,7 @@
 //! Guard: no NaN or infinity enters the cloth, stays in it, or is published.
 
 use glam::Vec3A;
+use toile_base::numeric::portable;
 
 use super::state::{self, ParticleColumns};
 use crate::lanes::{Kernel, Lanes, Mask, WriteColumn};
@@ -123,7 +124,7 @@ pub fn repair(columns: ParticleColumns<'_>, good: &[Vec3A]) -> u64 {
 /// Puts the whole garment back, `towards` of the way from its last good place to where it was dressed, at rest.
 pub fn roll_back(columns: ParticleColumns<'_>, good: &[Vec3A], dressed: impl Fn(usize) -> Vec3A, towards: f32) {
     for (i, &good) in good.iter().enumerate() {
-        let goal = if towards > 0.0 { good.lerp(dressed(i), towards) } else { good };
+        let goal = if towards > 0.0 { portable::lerp(good, dressed(i), towards) } else { good };
         let goal = if goal.is_finite() { goal } else { good };
         state::set(columns.x, i, goal);
         state::set(columns.previous, i, goal);

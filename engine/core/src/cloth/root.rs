@@ -15,6 +15,7 @@
 //! that is not finite is held where it last was.
 
 use glam::{Affine3A, Mat3A, Quat, Vec3A};
+use toile_base::numeric::portable;
 
 use super::state::ParticleColumns;
 use crate::lanes::{Kernel, Lanes, V3, Width, WriteColumn};
@@ -118,7 +119,7 @@ impl RootMotion {
         };
         let after = if rigid { *root } else { before };
         self.at = Some(after);
-        let turn = Quat::from_mat3a(&(after.matrix3 * before.matrix3.transpose())).normalize();
+        let turn = portable::unit(Quat::from_mat3a(&(after.matrix3 * before.matrix3.transpose())));
         let moved = after.translation - before.translation;
         // Made of the turn, not of the product of two matrices: nothing that it carries may grow over the hours.
         let turned = Mat3A::from_quat(turn);

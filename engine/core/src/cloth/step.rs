@@ -6,6 +6,7 @@ use std::time::Instant;
 use glam::{Affine3A, Vec3A};
 use toile_base::garment::Garment;
 use toile_base::garment::layout::OWNERS;
+use toile_base::numeric::portable;
 
 use super::program::METERED_STAGES;
 use super::root::{Carried, RootStep};
@@ -157,7 +158,7 @@ impl Cloth {
             limited: [AtomicU64::new(0), AtomicU64::new(0)],
             pins: &self.pins,
             fall: step.settings.gravity * dt,
-            kept: (-garment.fabric.damping_per_s * dt).exp(),
+            kept: portable::exp(-garment.fabric.damping_per_s * dt),
             width: step.settings.width,
         }
     }

@@ -9,6 +9,7 @@ use std::sync::atomic::Ordering::Relaxed;
 use glam::Vec3A;
 use toile_base::garment::Garment;
 use toile_base::garment::layout::{FiberLists, Layout, Links, OWNERS};
+use toile_base::numeric::portable;
 
 use super::link_gain::Passes;
 use super::link_laws::{self, FollowLaws, LawColumns, LawGain};
@@ -335,7 +336,7 @@ impl OwnerShare<'_, '_> {
             let range = run.number as usize..(run.number + run.len) as usize;
             let places = work.pins.start[range.clone()].iter().zip(&work.pins.end[range]);
             for (i, (start, end)) in (run.first as usize..).zip(places) {
-                state::set(columns.x, i, start.lerp(*end, to));
+                state::set(columns.x, i, portable::lerp(*start, *end, to));
             }
         }
     }

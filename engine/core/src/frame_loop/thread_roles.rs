@@ -6,7 +6,7 @@
 //! milliseconds late under load. No thread with such a priority waits by spinning for longer than
 //! [`crate::workers::AWAKE`], far from the 950 ms a second at which Linux stops it.
 
-use thread_priority::{ThreadPriority, ThreadPriorityValue};
+use thread_priority::ThreadPriority;
 
 toile_base::named! {
     /// What a thread does in the loop. Its thread has its name, with `toile-` before it.
@@ -100,7 +100,7 @@ fn pin(placement: &mut Placement) {
 
 #[cfg(target_os = "linux")]
 fn raise(priority: u8) -> Result<(), String> {
-    use thread_priority::{RealtimeThreadSchedulePolicy, ThreadSchedulePolicy};
+    use thread_priority::{RealtimeThreadSchedulePolicy, ThreadPriorityValue, ThreadSchedulePolicy};
     let value = ThreadPriorityValue::try_from(priority).map_err(|e| e.to_string())?;
     let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
     let thread = thread_priority::thread_native_id();

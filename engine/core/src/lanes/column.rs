@@ -214,6 +214,7 @@ impl<'a> ReadColumn<'a> {
     /// # Panics
     /// Where they are not all there.
     #[inline(always)]
+    #[allow(dead_code, reason = "only vectors of a processor read four numbers at once")]
     pub(super) fn quads(self, at: &[u32; 4]) -> [*const f32; 4] {
         let last = at[0].max(at[1]).max(at[2].max(at[3]));
         self.place(last as usize, 4);
@@ -310,6 +311,7 @@ impl<'a> WriteColumn<'a> {
     /// # Panics
     /// Where they are not all there.
     #[inline(always)]
+    #[allow(dead_code, reason = "only vectors of a processor read four numbers at once")]
     pub(super) fn quads(self, at: &[u32; 4]) -> [*mut f32; 4] {
         self.reader().quads(at).map(<*const f32>::cast_mut)
     }

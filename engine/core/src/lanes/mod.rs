@@ -8,13 +8,24 @@
 #[expect(unsafe_code, reason = "the workers of a step share its columns")]
 mod column;
 mod math;
-#[cfg(not(target_arch = "x86_64"))]
+#[cfg(target_arch = "aarch64")]
+#[expect(unsafe_code, reason = "vector instructions, which every aarch64 has")]
+mod neon;
+#[cfg(not(any(
+    target_arch = "x86_64",
+    target_arch = "aarch64",
+    all(target_arch = "wasm32", target_feature = "simd128")
+)))]
 mod quad;
 #[expect(unsafe_code, reason = "places that were checked when they were listed")]
 mod records;
 mod scalar;
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+#[expect(unsafe_code, reason = "numbers are read and written at places that were checked")]
+mod simd128;
 mod traits;
 mod two;
+mod vector;
 #[cfg(target_arch = "x86_64")]
 #[expect(unsafe_code, reason = "vector instructions, picked at run time")]
 mod x86;
@@ -28,13 +39,26 @@ pub use records::{DOUBLE, RECORD, RecordList, RecordRun, Records, RecordsAt};
 pub use traits::{Kernel, Lanes, Mask, Numbers};
 pub use two::Two;
 
+#[cfg(target_arch = "aarch64")]
+use neon::Four;
+#[cfg(not(any(
+    target_arch = "x86_64",
+    target_arch = "aarch64",
+    all(target_arch = "wasm32", target_feature = "simd128")
+)))]
+use quad::Four;
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+use simd128::Four;
+#[cfg(target_arch = "x86_64")]
+use x86::Four;
+
 toile_base::named! {
     /// How many lanes kernels run on, narrowest first.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
     pub enum Width {
         /// Plain f32: the twin that the others are held against.
         One,
-        /// What every x86-64 and aarch64 has.
+        /// What every x86-64 and aarch64 has, and WebAssembly with SIMD128.
         Four,
         /// 256 bits at once: AVX2.
         Eight,
@@ -86,10 +110,7 @@ impl Width {
             #[cfg(target_arch = "x86_64")]
             Self::Eight | Self::Sixteen if Self::Eight.available() => x86::run8(kernel),
             Self::One => kernel.run::<f32>(),
-            #[cfg(target_arch = "x86_64")]
-            _ => kernel.run::<x86::Four>(),
-            #[cfg(not(target_arch = "x86_64"))]
-            _ => kernel.run::<quad::Four>(),
+            _ => kernel.run::<Four>(),
         }
     }
 }

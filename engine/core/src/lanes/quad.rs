@@ -1,4 +1,4 @@
-//! Four lanes in plain Rust, for processors other than x86-64; the compiler makes vectors of them.
+//! Four lanes in plain Rust, for processors whose vectors no other module has; the compiler makes vectors of them.
 
 use std::ops::{Add, Mul, Neg, Sub};
 

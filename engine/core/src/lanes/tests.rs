@@ -204,3 +204,85 @@ fn a_record_behind_the_end_of_a_column_stops_the_kernel() {
     Width::widest()
         .run(DoubleRecords { list: &RecordList::new((0..16).map(|k| k * 4)), column: WriteColumn::new(&mut column) });
 }
+
+/// Every way in which lanes change places, written one after the other.
+struct Places<'a> {
+    numbers: &'a [f32; 2 * MOST],
+    list: &'a RecordList,
+    out: WriteColumn<'a>,
+    doubles: WriteColumn<'a>,
+}
+
+impl Kernel for Places<'_> {
+    type Out = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let numbers = ReadColumn::new(self.numbers);
+        let index: [u32; MOST] = std::array::from_fn(|i| (i as u32 * 7 + 3) % 32);
+        let (a, b) = (L::load(numbers, 0), L::load(numbers, MOST));
+        let picked = L::among(self.numbers, &index) + L::gather(numbers, &index, L::N);
+        let moved = [a.rotate_down(), a.rotate_up(), a.with_first(b), picked, L::splat(a.least())];
+        moved.into_iter().enumerate().for_each(|(i, v)| v.store(self.out, i * L::N));
+        for k in (0..self.list.len()).step_by(L::N) {
+            let values = std::array::from_fn(|number| L::splat((k * DOUBLE + number) as f32) + a);
+            L::store_doubles(values, self.list.within(self.doubles), k);
+        }
+    }
+}
+
+#[test]
+fn lanes_change_places_alike_at_every_width() {
+    let numbers: [f32; 2 * MOST] = std::array::from_fn(|i| (i * 11 % 32) as f32);
+    let list = RecordList::doubles((0..MOST as u32).map(|k| k * 2));
+    for width in Width::ALL.into_iter().filter(|w| w.available()) {
+        let n = width.lanes();
+        let (mut out, mut doubles) = (vec![0.0; 5 * n], vec![-1.0; MOST * DOUBLE]);
+        let (column, records) = (WriteColumn::new(&mut out), WriteColumn::new(&mut doubles));
+        width.run(Places { numbers: &numbers, list: &list, out: column, doubles: records });
+        let least = numbers[..n].iter().copied().fold(f32::INFINITY, f32::min);
+        let first = |i: usize| if i == 0 { numbers[MOST] } else { numbers[i] };
+        for i in 0..n {
+            let picked = 2.0 * numbers[(i * 7 + 3) % 32];
+            let expected = [numbers[(i + 1) % n], numbers[(i + n - 1) % n], first(i), picked, least];
+            let got: [f32; 5] = std::array::from_fn(|row| out[row * n + i]);
+            assert_eq!(got, expected, "{width} lanes, lane {i}");
+        }
+        for (k, double) in doubles.chunks_exact(DOUBLE).enumerate() {
+            let begin = (k / n * n * DOUBLE) as f32 + numbers[k % n];
+            let expected: [f32; DOUBLE] = std::array::from_fn(|number| begin + number as f32);
+            assert_eq!(double, expected, "{width} lanes, record {k}");
+        }
+    }
+}
+
+/// The lesser and the greater number of pairs with zeros of both signs and no numbers.
+struct Extremes<'a>(&'a [f32; MOST], &'a [f32; MOST], [WriteColumn<'a>; 2]);
+
+impl Kernel for Extremes<'_> {
+    type Out = ();
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        for at in (0..MOST).step_by(L::N) {
+            let (a, b) = (L::load(ReadColumn::new(self.0), at), L::load(ReadColumn::new(self.1), at));
+            a.min(b).store(self.2[0], at);
+            a.max(b).store(self.2[1], at);
+        }
+    }
+}
+
+#[test]
+fn extremes_take_the_second_number_in_doubt() {
+    let special = [0.0, -0.0, f32::NAN, 1.0];
+    let a: [f32; MOST] = std::array::from_fn(|i| special[i / 4]);
+    let b: [f32; MOST] = std::array::from_fn(|i| special[i % 4]);
+    let bits = |values: &[f32]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+    let lesser: [f32; MOST] = std::array::from_fn(|i| if a[i] < b[i] { a[i] } else { b[i] });
+    let greater: [f32; MOST] = std::array::from_fn(|i| if a[i] > b[i] { a[i] } else { b[i] });
+    for width in Width::ALL.into_iter().filter(|w| w.available()) {
+        let mut out = [[0.0; MOST]; 2];
+        let [min, max] = &mut out;
+        width.run(Extremes(&a, &b, [WriteColumn::new(min), WriteColumn::new(max)]));
+        assert_eq!(bits(&out[0]), bits(&lesser), "{width} lanes");
+        assert_eq!(bits(&out[1]), bits(&greater), "{width} lanes");
+    }
+}

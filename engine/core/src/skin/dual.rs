@@ -1,6 +1,7 @@
 //! Dual quaternions of a palette: rotation and, in the dual part, half the translation times the rotation.
 
 use glam::{Affine3A, Mat3, Quat, Vec3, Vec4};
+use toile_base::numeric::portable;
 use toile_base::skeleton::{BONE_CHAIN, BONES};
 
 /// A rigid motion as eight numbers.
@@ -18,7 +19,7 @@ impl DualQuat {
 
     /// The motion of a matrix of rotation and translation.
     pub fn of(matrix: &Affine3A) -> Self {
-        let real = Quat::from_mat3(&Mat3::from(matrix.matrix3)).normalize();
+        let real = portable::unit(Quat::from_mat3(&Mat3::from(matrix.matrix3)));
         let t = Vec3::from(matrix.translation) * 0.5;
         Self { real: real.into(), dual: (Quat::from_xyzw(t.x, t.y, t.z, 0.0) * real).into() }
     }
@@ -36,7 +37,8 @@ pub fn palette(palette: &[Affine3A; BONES]) -> [DualQuat; BONES] {
     let mut duals = [DualQuat::IDENTITY; BONES];
     for (bone, parent) in BONE_CHAIN {
         let own = DualQuat::of(&palette[bone]);
-        let beside = parent.is_none_or(|p| duals[p].real.dot(own.real) >= 0.0);
+        let turn = |dual: &DualQuat| Quat::from_vec4(dual.real);
+        let beside = parent.is_none_or(|p| portable::inner(turn(&duals[p]), turn(&own)) >= 0.0);
         duals[bone] = if beside { own } else { own.negated() };
     }
     duals

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use glam::Vec3A;
+use toile_base::numeric::portable;
 
 /// Instead of a triangle: there is none.
 pub const NO_TRIANGLE: u32 = u32::MAX;
@@ -148,7 +149,7 @@ impl SurfaceMesh {
     pub fn normal(&self, triangle: u32, feature: Feature, at: impl Fn(u32) -> Vec3A) -> Vec3A {
         let face = |t: u32| {
             let [a, b, c] = self.corners(t).map(&at);
-            (b - a).cross(c - a).normalize_or_zero()
+            portable::cross(b - a, c - a).normalize_or_zero()
         };
         match feature {
             Feature::Face => face(triangle),
@@ -175,7 +176,7 @@ impl SurfaceMesh {
     pub fn vertex_normal(&self, vertex: u32, at: impl Fn(u32) -> Vec3A) -> Vec3A {
         let face = |&t: &u32| {
             let [a, b, c] = self.corners(t).map(&at);
-            (b - a).cross(c - a)
+            portable::cross(b - a, c - a)
         };
         self.fan(vertex).iter().map(face).sum::<Vec3A>().normalize_or_zero()
     }

@@ -14,6 +14,9 @@ use toile_base::frame::{Intrinsics, Joints};
 /// Stamps of one moment differ by so much, for clocks count in milliseconds (ns).
 const SLACK_NS: f32 = 1e6;
 
+/// Focal length over the longer side of a webcam that sees 60 degrees.
+const WEBCAM_FOCAL: f32 = 0.87;
+
 /// How a camera is opened.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct CameraOptions {
@@ -23,6 +26,19 @@ pub struct CameraOptions {
     pub quarter_turns: u8,
     /// Folders in which its library is sought first.
     pub libraries: Vec<PathBuf>,
+}
+
+impl CameraOptions {
+    /// Refuses options that a webcam does not have.
+    ///
+    /// # Errors
+    /// `Unknown` where its pictures are to be turned.
+    pub(super) fn check_webcam(&self) -> Result<(), CameraError> {
+        if self.quarter_turns == 0 {
+            return Ok(());
+        }
+        Err(CameraError::Unknown("a webcam cannot be turned; mount it upright, and leave --turned out".to_owned()))
+    }
 }
 
 /// What is known of a camera that is open.
@@ -53,6 +69,14 @@ pub(in crate::source) enum ColourPlace {
 }
 
 impl CameraInfo {
+    /// A camera of colour alone, with the lens of an average webcam.
+    pub(super) fn webcam(device: String, [width, height]: [u32; 2], rate_hz: f32) -> Self {
+        let focal = WEBCAM_FOCAL * width.max(height) as f32;
+        let (cx, cy) = (0.5 * (width as f32 - 1.0), 0.5 * (height as f32 - 1.0));
+        let camera = Camera::pinhole(Intrinsics { width, height, fx: focal, fy: focal, cx, cy });
+        Self { device, camera, rate_hz, placed: None, colour: ColourPlace::Unknown }
+    }
+
     /// The images as the camera gives them, before its lens is straightened.
     pub fn sensor(&self) -> Intrinsics {
         self.camera.intrinsics

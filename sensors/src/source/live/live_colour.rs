@@ -177,7 +177,7 @@ mod tests {
 
     fn looked(pictures: &[(u32, u8)], looks: usize) -> (Vec<(bool, u32, CameraState)>, CameraCounts) {
         let pictures = pictures.to_vec();
-        let info = crate::source::live::webcam::info("played".to_owned(), [64, 64], 30.0);
+        let info = CameraInfo::webcam("played".to_owned(), [64, 64], 30.0);
         let opener = Box::new(move || Ok(Box::new(Played(pictures.clone(), 0, info.clone())) as Box<dyn LiveCamera>));
         let mut colour = LiveColour::open(opener, 0).unwrap();
         let clock = Arc::new(AtomicU64::new(0));

@@ -38,8 +38,14 @@ mod recorded;
 mod recorder;
 #[cfg(target_os = "linux")]
 mod v4l2;
+#[cfg(target_os = "linux")]
 mod webcam;
 mod webcam_file;
+#[cfg(any(test, not(target_os = "linux")))]
+mod webcam_unsupported;
+
+#[cfg(not(target_os = "linux"))]
+use webcam_unsupported as webcam;
 
 pub use device_clock::DeviceClock;
 pub use error::CameraError;

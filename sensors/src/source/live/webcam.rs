@@ -5,10 +5,8 @@ use std::time::Duration;
 
 use super::colour_decode as decode;
 use super::error::CameraError;
-use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourPlace, LiveCamera};
+use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, LiveCamera};
 use super::v4l2::{FourCc, MJPG, VideoStream, YUYV};
-use crate::source::camera::Camera;
-use toile_base::frame::Intrinsics;
 
 const NAME: &str = "webcam";
 
@@ -21,9 +19,6 @@ const MODES: [(FourCc, u32, u32); 4] = [(YUYV, 640, 480), (MJPG, 640, 480), (MJP
 
 /// Frames a second that are asked for (Hz).
 const RATE_HZ: u32 = 30;
-
-/// Focal length over the longer side of a webcam that sees 60 degrees.
-const FOCAL: f32 = 0.87;
 
 /// A webcam that is open.
 pub(super) struct Webcam {
@@ -47,7 +42,7 @@ pub fn webcams() -> Vec<PathBuf> {
 impl Webcam {
     pub fn open(which: Option<&str>, options: &CameraOptions) -> Result<Self, CameraError> {
         let path = which.unwrap_or(FIRST);
-        no_turns(options)?;
+        options.check_webcam()?;
         let refused = |e: std::io::Error| match e.kind() {
             std::io::ErrorKind::NotFound => {
                 let cure = "plug it in, and name it by webcam:/dev/videoN";
@@ -67,25 +62,9 @@ impl Webcam {
         let stream = VideoStream::open(Path::new(path), &MODES, RATE_HZ).map_err(refused)?;
         let mode = stream.mode;
         let device = format!("{} ({path})", stream.card);
-        let info = info(device, [mode.width, mode.height], mode.rate_hz as f32);
+        let info = CameraInfo::webcam(device, [mode.width, mode.height], mode.rate_hz as f32);
         Ok(Self { stream, info, scratch: Vec::new() })
     }
-}
-
-/// A webcam's pictures are not turned.
-pub(super) fn no_turns(options: &CameraOptions) -> Result<(), CameraError> {
-    if options.quarter_turns == 0 {
-        return Ok(());
-    }
-    Err(CameraError::Unknown("a webcam cannot be turned; mount it upright, and leave --turned out".to_owned()))
-}
-
-/// What is known of a camera of colour alone.
-pub(super) fn info(device: String, [width, height]: [u32; 2], rate_hz: f32) -> CameraInfo {
-    let focal = FOCAL * width.max(height) as f32;
-    let (cx, cy) = (0.5 * (width as f32 - 1.0), 0.5 * (height as f32 - 1.0));
-    let camera = Camera::pinhole(Intrinsics { width, height, fx: focal, fy: focal, cx, cy });
-    CameraInfo { device, camera, rate_hz, placed: None, colour: ColourPlace::Unknown }
 }
 
 impl LiveCamera for Webcam {

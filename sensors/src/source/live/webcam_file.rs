@@ -11,7 +11,6 @@ use std::time::{Duration, Instant};
 use super::colour_decode::{self as decode, JPEG, JPEG_END};
 use super::error::CameraError;
 use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, LiveCamera};
-use super::webcam::{info, no_turns};
 use crate::limits::{MAX_FILE_BYTES, MAX_FOLDER_FILES};
 
 /// Time between two pictures (ns): 30 Hz.
@@ -46,12 +45,12 @@ fn refused(path: &Path, what: impl std::fmt::Display) -> CameraError {
 
 impl WebcamFile {
     pub fn open(path: &str, options: &CameraOptions) -> Result<Self, CameraError> {
-        no_turns(options)?;
+        options.check_webcam()?;
         let path = Path::new(path);
         let pictures = Pictures::of(path)?;
         let mut camera = Self {
             pictures,
-            info: info(format!("webcam of {}", path.display()), [1, 1], 1e9 / PERIOD_NS as f32),
+            info: CameraInfo::webcam(format!("webcam of {}", path.display()), [1, 1], 1e9 / PERIOD_NS as f32),
             next: 0,
             begun: Instant::now(),
             bytes: Vec::new(),
@@ -59,7 +58,7 @@ impl WebcamFile {
         };
         let mut frame = CameraFrame::default();
         camera.picture(&mut frame).map_err(|what| refused(path, format!("its first picture: {what}")))?;
-        camera.info.camera = info(String::new(), [frame.colour.width, frame.colour.height], 30.0).camera;
+        camera.info.camera = CameraInfo::webcam(String::new(), [frame.colour.width, frame.colour.height], 30.0).camera;
         Ok(camera)
     }
 

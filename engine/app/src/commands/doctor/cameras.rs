@@ -41,6 +41,10 @@ fn network(package: NetworkPackage, needed_for: &'static str) -> Check {
 /// Webcams that the kernel knows.
 pub fn webcams() -> Check {
     let (name, needed_for) = words(CameraKind::Webcam);
+    if !cfg!(target_os = "linux") {
+        let cure = "connect a depth camera".to_owned();
+        return Check::missing(name, needed_for, "webcams are supported on Linux only", cure);
+    }
     let found: Vec<String> = live::webcams().iter().map(|path| path.display().to_string()).collect();
     if found.is_empty() {
         return Check::missing(name, needed_for, "no /dev/video is there", "plug a webcam in".to_owned());

@@ -8,6 +8,7 @@
 use std::ops::Range;
 
 use glam::Vec3A;
+use toile_base::numeric::portable;
 
 use super::contact::{CONTACTS_AN_EDGE, ContactMemory, LayerContact};
 use super::contact_list::ContactList;
@@ -152,7 +153,7 @@ impl Looking {
             // How far the end is behind each edge, as seen along the normal, by which side of it the third corner is.
             let behind = |k: usize| {
                 let [c, d, third] = [corners[(k + 1) % 3], corners[(k + 2) % 3], corners[k]];
-                let inwards = (d - c).cross(self.normal);
+                let inwards = portable::cross(d - c, self.normal);
                 (self.ends[0] - c).dot(inwards) * (third - c).dot(inwards).signum()
             };
             let most = (0..3).map(|k| (behind(k), mesh.across(triangle)[k])).min_by(|a, b| a.0.total_cmp(&b.0));
@@ -193,7 +194,7 @@ impl Looking {
     fn across(&self, [c, d]: [Vec3A; 2]) -> Option<Across> {
         let [p, q] = self.ends;
         let (own, other, from) = (q - p, d - c, c - p);
-        let (beside_own, beside_other) = (own.cross(self.normal), other.cross(self.normal));
+        let (beside_own, beside_other) = (portable::cross(own, self.normal), portable::cross(other, self.normal));
         let sine = own.dot(beside_other);
         let along = [from.dot(beside_other) / sine, from.dot(beside_own) / sine];
         let clear = sine * sine > ACROSS * ACROSS * beside_own.length_squared() * beside_other.length_squared();

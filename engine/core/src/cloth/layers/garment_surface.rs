@@ -2,6 +2,7 @@
 
 use glam::Vec3A;
 use toile_base::garment::{Garment, Part};
+use toile_base::numeric::portable;
 
 use super::fold_motion::FoldMotion;
 use super::fold_surface::FoldSurface;
@@ -93,7 +94,7 @@ impl GarmentMotion {
             let corners = surface.mesh.corners(t).map(|v| v as usize);
             let [a, b, c] = corners.map(|v| get(columns.x, v));
             // Weighted by the area.
-            let normal = (b - a).cross(c - a);
+            let normal = portable::cross(b - a, c - a);
             corners.into_iter().for_each(|v| self.normals[v] += normal);
         }
         self.normals.iter_mut().for_each(|n| *n = n.normalize_or_zero());

@@ -6,6 +6,7 @@
 //! what nobody saw begin; and it is slow, so that it never throws anything.
 
 use glam::Vec3A;
+use toile_base::numeric::portable;
 
 use super::contact::LayerContact;
 use super::contact_list::ContactList;
@@ -192,12 +193,12 @@ impl Tangle<'_> {
         let [p, q] = edge.map(|e| self.at(e));
         let [a, b, c] = corners.map(|v| self.at(v));
         let (way, ab, ac) = (q - p, b - a, c - a);
-        let across = way.cross(ac);
+        let across = portable::cross(way, ac);
         let volume = ab.dot(across);
         let inverse = volume.recip();
         let from = p - a;
         let v = from.dot(across) * inverse;
-        let up = from.cross(ab);
+        let up = portable::cross(from, ab);
         let w = way.dot(up) * inverse;
         let along = ac.dot(up) * inverse;
         // Not so where anything is not a number.
@@ -219,7 +220,7 @@ impl Tangle<'_> {
         let [i, j] = crossing.edge;
         for &t in self.mesh.fan(i).iter().filter(|t| self.mesh.corners(**t).contains(&j)) {
             let Some(face) = self.face(t) else { continue };
-            let curve = normal.cross(face).normalize_or_zero();
+            let curve = portable::cross(normal, face).normalize_or_zero();
             let corners = self.mesh.corners(t);
             // Into the face: towards the corner that is not the edge's.
             let third = corners.into_iter().find(|c| *c != i && *c != j).unwrap_or(i);
@@ -232,7 +233,7 @@ impl Tangle<'_> {
 
     fn face(&self, triangle: u32) -> Option<Vec3A> {
         let [a, b, c] = self.mesh.corners(triangle).map(|v| self.at(v));
-        (b - a).cross(c - a).try_normalize()
+        portable::cross(b - a, c - a).try_normalize()
     }
 }
 

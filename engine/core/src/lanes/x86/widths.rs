@@ -51,40 +51,6 @@ impl Four {
     }
 }
 
-/// One number after another: what widths without such an instruction do.
-macro_rules! by_hand {
-    ($name:ident, $($method:ident),+) => {
-        impl $name {
-            $(by_hand!(@ $method);)+
-        }
-    };
-    (@ pick) => {
-        #[inline(always)]
-        pub(super) fn pick_among(table: &[f32; TABLE], at: &[u32; MOST]) -> Self {
-            Self::pick(ReadColumn::new(table), &at[..Self::N])
-        }
-        #[inline(always)]
-        pub(super) fn pick(from: impl Readable, index: &[u32]) -> Self {
-            if index.len() == Self::N {
-                // Never by way of an array, as in `Four::read`.
-                return Self::pick_all(from, index);
-            }
-            let mut values = [0.0; MOST];
-            for (v, &i) in values.iter_mut().zip(index) {
-                *v = from.reader().get(i as usize);
-            }
-            Self::from_array(&values)
-        }
-    };
-    (@ spread) => {
-        #[inline(always)]
-        pub(super) fn spread(self, to: WriteColumn<'_>, index: &[u32]) {
-            for (v, &i) in self.to_array().into_iter().zip(index) {
-                to.set(i as usize, v);
-            }
-        }
-    };
-}
 by_hand!(Four, pick, spread);
 by_hand!(Eight, pick, spread);
 
