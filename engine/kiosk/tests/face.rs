@@ -14,7 +14,7 @@ use glam::{DMat3, DVec3, Vec2};
 use image::RgbImage;
 use painted_face::{PaintedHead, Shot};
 use toile_base::body::Sex;
-use toile_capture::face::{self, FaceView};
+use toile_pose::face::{self, FaceView};
 use toile_kiosk::visitor::face_maker::FaceMaker;
 use toile_kiosk::visitor::own_face::{FaceTrouble, Portrait};
 use toile_pose::face_finder::{FaceFault, FaceFinder};
