@@ -4,9 +4,9 @@
 use std::process::ExitCode;
 
 use glam::{DMat4, DVec4};
+use toile_assets::sizes::Population;
 use toile_base::body::Sex;
 use toile_base::numeric::random::SplitMix64;
-use toile_assets::sizes::Population;
 use toile_perf::agreement::Mannequin;
 use toile_track::anthropometry::LEVELS;
 use toile_track::estimate::temporal_mean;

@@ -18,12 +18,12 @@
 
 use glam::{Affine3A, Quat, Vec3};
 use toile_assets::body::{BodyError, tape};
-use toile_base::body::{Body, Measures, Region, Sex};
-use toile_base::numeric::random::SplitMix64;
-use toile_base::numeric::statistics::quantile;
 use toile_assets::sizes::Population;
+use toile_base::body::{Body, Measures, Region, Sex};
 use toile_base::frame::DepthFrame;
 use toile_base::frame::Intrinsics;
+use toile_base::numeric::random::SplitMix64;
+use toile_base::numeric::statistics::quantile;
 use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera};
 use toile_track::estimate::Estimate;
 use toile_track::measure::{Measurements, measure};

@@ -3,9 +3,9 @@
 //! Real people's girths are measured again with errors of a known sigma, and the size recommended is compared with the one
 //! that their true girths get.
 
+use toile_assets::sizes::{GarmentKind, SizeError, SizeTable};
 use toile_base::body::Sex;
 use toile_base::numeric::random::SplitMix64;
-use toile_assets::sizes::{GarmentKind, SizeError, SizeTable};
 use toile_track::estimate::Estimate;
 use toile_track::measure::{Measurements, Source};
 use toile_track::measures::Measures;

@@ -1,9 +1,9 @@
 //! How closely the collision body follows the skin of people of many sizes.
 
 use toile_assets::body::{Ansur, Wanted};
-use toile_base::body::{Body, Sex};
 use toile_assets::people;
 use toile_assets::rig::{MEAN_GOAL_MM, P95_GOAL_MM, Zone};
+use toile_base::body::{Body, Sex};
 
 /// The 5th, 50th and 95th percentile of ANSUR II (m): stature, neck, chest, waist at the navel, buttocks, crotch height,
 /// sleeve from the spine, biacromial breadth.

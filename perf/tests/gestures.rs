@@ -2,10 +2,10 @@
 
 use crate::recordings;
 use glam::{Quat, Vec3};
+use toile_base::frame::{DepthFrame, HandState, Joints, TrackedJoint};
 use toile_base::skeleton::Joint;
 use toile_perf::gestures::{Act, GestureConditions, GestureCount, count, events, held_up, sequence};
 use toile_sensors::filter::JointFilter;
-use toile_base::frame::{DepthFrame, HandState, Joints, TrackedJoint};
 use toile_sensors::source::{OpenOptions, open};
 use toile_track::gesture::{Gesture, GestureEvent, Gestures, HandRegion, HandSegmenter, Side};
 

@@ -2,10 +2,10 @@
 
 use glam::{Quat, Vec3};
 use toile_base::body::{Measures, Sex};
+use toile_base::frame::{DepthFrame, Intrinsics};
 use toile_base::skeleton::{Joint, Pose};
 use toile_engine::body::JointFrames;
 use toile_fitting::dress::depth::posed;
-use toile_base::frame::{DepthFrame, Intrinsics};
 use toile_sensors::source::synthetic::SyntheticCamera;
 use toile_track::fit::{BodyFit, FitOptions};
 

@@ -2,10 +2,10 @@
 
 use glam::Vec3;
 use toile_base::body::Body;
+use toile_base::frame::DepthFrame;
 use toile_base::mesh::vertex_normals;
 use toile_base::skeleton::Pose;
 use toile_fitting::dress::depth::posed;
-use toile_base::frame::DepthFrame;
 use toile_sensors::source::synthetic::SyntheticCamera;
 use toile_view::image::{Image, Size};
 

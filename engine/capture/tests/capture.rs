@@ -6,8 +6,8 @@ use std::process::{Command, Output, Stdio};
 
 use crate::common::{Scratch, sentence};
 use glam::DVec3;
-use toile_base::body::Sex;
 use toile_assets::body::shape::Shapes;
+use toile_base::body::Sex;
 use toile_pose::depth_buffer::DepthBuffer;
 use toile_pose::face::FaceLandmarks;
 use toile_pose::files::{self, NetworkPackage};

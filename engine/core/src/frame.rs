@@ -8,13 +8,13 @@ mod meters;
 
 use glam::{Affine3A, Vec3};
 use toile_base::body::Body;
+use toile_base::frame::Joints;
 use toile_base::garment::{Garment, Part};
 use toile_base::limits::{STEP_HZ, STEP_SECONDS};
 use toile_base::numeric::hash::Fnv1a;
 use toile_base::numeric::portable;
 use toile_base::rig::Rig;
 use toile_base::skeleton::{BONES, Pose};
-use toile_base::frame::Joints;
 
 use crate::body::{Poser, palette};
 use crate::body_surface::BodySurface;

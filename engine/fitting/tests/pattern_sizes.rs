@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use toile_base::body::{Body, Measures as BodyMeasures, Sex};
 use toile_assets::draping::{PatternPackage, PatternSizes, SizedDraft, read_package};
 use toile_assets::sizes::{GarmentKind, SizeTable};
+use toile_base::body::{Body, Measures as BodyMeasures, Sex};
 use toile_fitting::dress::garment_source::{GarmentSource, SourceKind};
 use toile_track::estimate::Estimate;
 use toile_track::measure::{Measurements, Source};

@@ -352,7 +352,7 @@ fn on_device(
 mod tests {
     use glam::{Affine3A, Vec3};
     use toile_bake::bake;
-    
+
     use toile_bake::Shape;
     use toile_base::skeleton::BONES;
 

@@ -8,6 +8,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use toile_base::frame::Joints;
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::frame::{Frame, Snapshot, SnapshotTimes};
 use toile_engine::frame_loop::governor::Rung;
@@ -24,7 +25,6 @@ use toile_kiosk::service::runner::{Service, ServiceEnvironment, ServiceOptions};
 use toile_kiosk::service::service_manager::{ServiceManager, ServiceStatus, StopSignal};
 use toile_kiosk::service::stock::Stock;
 use toile_kiosk::visitor::setup::VisitorSetup;
-use toile_base::frame::Joints;
 
 /// Hangs whoever passes it while it is shut.
 type Gate = Arc<AtomicBool>;

@@ -11,8 +11,8 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use toile_base::body::Sex;
 use toile_assets::body::shape::Shapes;
+use toile_base::body::Sex;
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::frame::Snapshot;
 use toile_engine::frame_loop::physics_thread::FrameScene;

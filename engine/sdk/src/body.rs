@@ -4,9 +4,9 @@ use std::path::Path;
 
 use glam::Vec3;
 use toile_assets::body::{BodyError, En, Readings, Wanted};
-use toile_base::body::{Body as BodyShape, Sex};
 use toile_assets::import::avatar::{self, ImportOptions};
 use toile_assets::sizes::Population;
+use toile_base::body::{Body as BodyShape, Sex};
 use toile_fitting::dress::measured;
 use toile_track::estimate::Estimate;
 use toile_track::fit::measuring::{FittedMeasure, MEASURES};

@@ -3,11 +3,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use toile_base::body::{Measures, Sex};
 use toile_assets::draping::{AS_DRAFTED, TO_MEASURE};
-use toile_base::fabric::Fabric;
 use toile_assets::file::{self, FileKind};
 use toile_assets::{drafting, wardrobe};
+use toile_base::body::{Measures, Sex};
+use toile_base::fabric::Fabric;
 use toile_fitting::dress::garment_source::{GarmentSource, SourceKind};
 use toile_fitting::dress::try_on::RequestedGarment;
 
@@ -129,7 +129,8 @@ impl Garment {
 }
 
 fn built_in(name: &str) -> Result<Fabric> {
-    toile_assets::fabric::built_in(name).map_err(|error| Error::input(format!("{error}; there are {}", toile_assets::fabric::names().join(", "))))
+    toile_assets::fabric::built_in(name)
+        .map_err(|error| Error::input(format!("{error}; there are {}", toile_assets::fabric::names().join(", "))))
 }
 
 fn read_fabric(path: &Path) -> Result<Fabric> {

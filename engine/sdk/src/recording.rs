@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use toile_base::body::Sex;
+use toile_base::frame::{DepthFrame, Joints};
 use toile_fitting::dress::measured::{self, ShopperFacts};
 use toile_fitting::dress::{garment_source, session};
-use toile_base::frame::{DepthFrame, Joints};
 use toile_sensors::source::Session;
 use toile_track::fit::measuring::FittedMeasures;
 use toile_track::measures::definition;

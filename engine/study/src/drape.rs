@@ -3,11 +3,12 @@
 use std::f32::consts::TAU;
 
 use glam::{Vec2, Vec3};
+use toile_assets::sizes::Girth;
 use toile_base::body::{Body, Region};
+use toile_base::frame::Joints;
 use toile_base::garment::{Garment, Part};
 use toile_base::numeric::statistics::quantile;
 use toile_base::rig::Rig;
-use toile_assets::sizes::Girth;
 use toile_base::skeleton::Pose;
 use toile_engine::cloth::{Cloth, Settings, measure};
 use toile_engine::frame::{Frame, Snapshot};
@@ -16,7 +17,6 @@ use toile_fitting::dress::player::Player;
 use toile_fitting::dress::session;
 use toile_fitting::dress::try_on::DressedBody;
 use toile_fitting::wearing::{self, CoveredZone, poses};
-use toile_base::frame::Joints;
 
 use crate::error::{Result, StudyError};
 use crate::garments::{DrapeStart, TriedGarment};

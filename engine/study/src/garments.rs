@@ -4,9 +4,9 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize};
-use toile_base::body::{Body, Measures, Sex};
 use toile_assets::draping::HungPattern;
 use toile_assets::sizes::{Girth, Population as MadeFor};
+use toile_base::body::{Body, Measures, Sex};
 use toile_fitting::dress::garment_source::{FittedGarment, GarmentSource};
 use toile_fitting::dress::offer::GarmentOffer;
 
@@ -96,8 +96,9 @@ impl TriedGarment {
         let found = if beside.is_file() { beside.display().to_string() } else { wanted.name.clone() };
         let mut source = GarmentSource::find(&found)?;
         if let Some(fabric) = &wanted.fabric {
-            let fabric = toile_assets::fabric::built_in(fabric)
-                .map_err(|e| StudyError::Input(format!("{e}; there are {}", toile_assets::fabric::names().join(", "))))?;
+            let fabric = toile_assets::fabric::built_in(fabric).map_err(|e| {
+                StudyError::Input(format!("{e}; there are {}", toile_assets::fabric::names().join(", ")))
+            })?;
             source = source.in_fabric(fabric);
         }
         let made_for = source.population()?;

@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use serde_json::json;
+use toile_assets::sizes::Girth;
 use toile_base::body::{Body, Measures};
 use toile_base::limits::STEP_HZ;
 use toile_base::rig::Rig;
-use toile_assets::sizes::Girth;
 use toile_engine::cloth::{Quality, Settings};
 use toile_track::estimate::Estimate;
 use toile_track::measure::Measurements;

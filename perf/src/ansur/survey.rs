@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use toile_base::body::Sex;
 use toile_assets::file::{self, FileError, FileKind};
+use toile_base::body::Sex;
 
 /// A survey as a table: ANSUR II has 3 MB and more people than any other that is public.
 const SURVEY: FileKind = FileKind {

@@ -2,11 +2,11 @@
 
 use glam::{Affine3A, DVec2, DVec3, Vec3};
 use thiserror::Error;
-use toile_bake::bake;
 use toile_assets::fabric::FabricError;
-use toile_base::fabric::Fabric;
 use toile_bake::Shape;
+use toile_bake::bake;
 use toile_bake::check::MeshError;
+use toile_base::fabric::Fabric;
 use toile_base::garment::{Garment, Part};
 use toile_base::mesh::{SkinWeights, vertex_normals};
 use toile_base::skeleton::BONES;

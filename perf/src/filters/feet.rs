@@ -2,14 +2,14 @@
 
 use glam::Vec3;
 use serde::Serialize;
+use toile_base::clock::{ns_to_ticks, ticks_to_ns};
+use toile_base::frame::Joints;
 use toile_base::limits::STEP_SECONDS;
 use toile_base::numeric::statistics::quantile;
 use toile_base::skeleton::{Joint, Skeleton};
 use toile_engine::body::ground::soles;
 use toile_engine::body::{JointFrames, Poser};
-use toile_base::clock::{ns_to_ticks, ticks_to_ns};
 use toile_sensors::filter::JointFilter;
-use toile_base::frame::Joints;
 use toile_sensors::sample::{between, sample};
 use toile_sensors::source::Session;
 

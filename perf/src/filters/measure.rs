@@ -1,11 +1,11 @@
 //! Jitter, lag and overshoot of a filtered track.
 
 use glam::Vec3;
+use toile_base::filter::Filter;
+use toile_base::frame::Joints;
 use toile_base::numeric::statistics::quantile;
 use toile_base::skeleton::{Joint, Skeleton};
 use toile_fitting::timing;
-use toile_base::filter::Filter;
-use toile_base::frame::Joints;
 use toile_sensors::sample::sample;
 use toile_sensors::source::Session;
 

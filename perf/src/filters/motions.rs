@@ -1,11 +1,11 @@
 //! Motions whose truth is known, and what a sensor shows of them at 30 Hz.
 
 use glam::{Quat, Vec3};
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::Joints;
 use toile_base::numeric::random::SplitMix64;
 use toile_base::skeleton::{JOINTS, Joint, Pose, Skeleton};
 use toile_engine::body::JointFrames;
-use toile_base::clock::SECOND_NS;
-use toile_base::frame::Joints;
 use toile_sensors::source::synthetic::JointNoise;
 
 /// Frames a second.

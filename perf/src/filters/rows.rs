@@ -1,5 +1,7 @@
 //! The filters that are compared.
 
+use toile_base::filter::Filter;
+use toile_base::frame::Joints;
 use toile_base::skeleton::Skeleton;
 use toile_engine::body::Poser;
 use toile_engine::body::filters::{LimitFilter, PoseFilter};
@@ -8,9 +10,7 @@ use toile_sensors::filter::holt::{HoltSettings, NOMINAL_PERIOD};
 use toile_sensors::filter::one_euro::OneEuroSettings;
 use toile_sensors::filter::predict::Predictor;
 use toile_sensors::filter::smoothing::Smoothing;
-use toile_base::filter::Filter;
 use toile_sensors::filter::{FilterSettings, JointFilter};
-use toile_base::frame::Joints;
 
 /// Names of the rows, in their order.
 pub const NAMES: [&str; 14] = [

@@ -3,8 +3,8 @@
 use std::f32::consts::TAU;
 
 use glam::{Quat, Vec3};
-use toile_base::numeric::random::SplitMix64;
 use toile_base::frame::{DepthFrame, Intrinsics};
+use toile_base::numeric::random::SplitMix64;
 use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera};
 use toile_track::gesture::{Grip, HandRegion, HandSegmenter, HandShape};
 

@@ -12,10 +12,10 @@ mod motion;
 mod person;
 mod table;
 
-use toile_base::numeric::random::SplitMix64;
 use toile_base::clock::SECOND_NS;
-use toile_sensors::filter::JointFilter;
 use toile_base::frame::Joints;
+use toile_base::numeric::random::SplitMix64;
+use toile_sensors::filter::JointFilter;
 use toile_track::gesture::{GestureEvent, Gestures};
 
 use motion::GestureMotion;

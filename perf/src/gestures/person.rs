@@ -4,9 +4,9 @@
 //! not those that it assumes.
 
 use glam::{Quat, Vec3};
+use toile_base::frame::{Joints, TrackedJoint};
 use toile_base::numeric::random::SplitMix64;
 use toile_base::skeleton::Joint;
-use toile_base::frame::{Joints, TrackedJoint};
 use toile_sensors::source::synthetic::JointNoise;
 
 /// Mean and standard deviation of stature (m), ANSUR II women and men.

@@ -3,6 +3,8 @@
 use std::thread;
 use std::time::Duration;
 
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::Joints;
 use toile_base::garment::Garment;
 use toile_base::limits::STEP_HZ;
 use toile_engine::clock::{Clock, RealClock};
@@ -23,8 +25,6 @@ use toile_fitting::live::lateness::{LatenessAttribution, ThreadAccount};
 use toile_fitting::live::live_loop::LiveLoop;
 use toile_fitting::live::report::{Quantiles, QueueUse, ThreadPlacement};
 use toile_fitting::live::scene_changer::DressedScene;
-use toile_base::clock::SECOND_NS;
-use toile_base::frame::Joints;
 
 use super::error::LatencyError;
 use super::load::LoadThreads;

@@ -9,9 +9,9 @@ use std::path::Path;
 
 use glam::{Quat, Vec2, Vec3};
 use toile_assets::body::tape::{girth, hull, perimeter, slice};
-use toile_base::body::{Body, Region, Sex};
 use toile_assets::import::avatar::{AvatarError, ImportOptions};
 use toile_assets::import::makehuman::{self, MakehumanOptions};
+use toile_base::body::{Body, Region, Sex};
 use toile_base::numeric::random::SplitMix64;
 use toile_base::numeric::statistics::quantile;
 use toile_base::skeleton::{Joint, Pose};

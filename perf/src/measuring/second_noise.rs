@@ -4,8 +4,8 @@
 //! Noise of neighbouring pixels goes together here (a disparity is matched over a window), outlines are ragged in blocks,
 //! the projector casts a shadow, depth has a slow ripple: what a fit may not have been tuned on.
 
-use toile_base::numeric::random::SplitMix64;
 use toile_base::frame::Intrinsics;
+use toile_base::numeric::random::SplitMix64;
 
 /// Standard deviation of a structured light camera's depth over the square of the depth (1/m): 1.425e-5 in centimetres,
 /// Khoshelham and Elberink (2012), equation 10.

@@ -1,8 +1,8 @@
 //! The two depth cameras of the study, each with small errors of its calibration.
 
 use glam::{Affine3A, Quat, Vec3};
-use toile_base::numeric::random::SplitMix64;
 use toile_base::frame::{DepthFrame, Intrinsics};
+use toile_base::numeric::random::SplitMix64;
 use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera};
 
 use super::second_noise;

@@ -4,13 +4,13 @@ use std::f32::consts::TAU;
 use std::path::PathBuf;
 
 use serde::Serialize;
+use toile_assets::sizes::Population;
 use toile_base::body::Sex;
+use toile_base::frame::DepthFrame;
 use toile_base::numeric::random::SplitMix64;
 use toile_base::numeric::statistics::quantile;
-use toile_assets::sizes::Population;
 use toile_base::skeleton::Joint;
 use toile_fitting::timing::OnCore;
-use toile_base::frame::DepthFrame;
 use toile_track::estimate::Estimate;
 use toile_track::fit::measuring::{self, FittedMeasures, MEASURES, model_error};
 use toile_track::fit::{self, BodyFit};

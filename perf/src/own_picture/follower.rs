@@ -3,9 +3,11 @@
 use std::path::Path;
 use std::time::Instant;
 
-use toile_base::body::Measures;
 use toile_assets::scene::SHOPPER;
 use toile_assets::sizes::Population;
+use toile_base::body::Measures;
+use toile_base::clock::ticks_to_ns;
+use toile_base::frame::{DepthFrame, Joints};
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::frame_loop::motion_input::MotionInput;
 use toile_engine::triple_buffer::Reader;
@@ -14,10 +16,8 @@ use toile_fitting::dress::measured::{self, Measured, ShopperFacts};
 use toile_fitting::dress::session;
 use toile_fitting::dress::try_on::{DressedWorld, RequestedGarment, TryOn};
 use toile_fitting::live::webcam::{WebcamJoints, WebcamOptions};
-use toile_base::clock::ticks_to_ns;
 use toile_sensors::colour_camera::ColourCamera;
 use toile_sensors::filter::JointFilter;
-use toile_base::frame::{DepthFrame, Joints};
 use toile_sensors::person_mask::PersonMask;
 use toile_sensors::segment::Zone;
 use toile_track::fit::FitOptions;

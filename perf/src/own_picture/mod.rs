@@ -17,8 +17,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::Serialize;
-use toile_base::numeric::statistics::quantile_of;
 use toile_assets::put_line;
+use toile_base::numeric::statistics::quantile_of;
 use toile_view::image::Image;
 
 use follower::{Follower, Seer};

@@ -4,9 +4,9 @@ use std::f32::consts::{PI, TAU};
 
 use glam::{Quat, Vec3};
 use toile_assets::scene::shopper;
+use toile_base::frame::Joints;
 use toile_base::skeleton::{Joint, Pose, Skeleton};
 use toile_engine::body::JointFrames;
-use toile_base::frame::Joints;
 
 /// Time in which they stand still first, and in which they begin to move (s).
 const STILL_S: f32 = 1.2;

@@ -1,14 +1,14 @@
 //! Somebody who really wears the garment: what the cameras see of them without it, and where it really is.
 
 use glam::Vec3;
-use toile_base::numeric::random::SplitMix64;
 use toile_assets::scene::SHOPPER;
+use toile_base::clock::ticks_to_ns;
+use toile_base::frame::{DepthFrame, Intrinsics};
+use toile_base::numeric::random::SplitMix64;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::triple_buffer::Reader;
 use toile_fitting::FittingError;
 use toile_fitting::dress::try_on::{DressedWorld, RequestedGarment, TryOn};
-use toile_base::clock::ticks_to_ns;
-use toile_base::frame::{DepthFrame, Intrinsics};
 use toile_sensors::source::live::ColourImage;
 use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera, room};
 use toile_view::drawn_frame::DrawnFrame;

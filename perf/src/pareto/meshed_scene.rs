@@ -1,13 +1,13 @@
 //! A scene as data: a shape in a fabric, and what the surroundings do at a time.
 
 use glam::{Affine3A, DVec3, Vec4};
-use toile_bake::bake;
-use toile_base::fabric::Fabric;
+use toile_assets::scene::skirt::{self, Motion};
 use toile_bake::Shape;
+use toile_bake::bake;
 use toile_bake::overrides::Overrides;
+use toile_base::fabric::Fabric;
 use toile_base::garment::{Garment, Solver};
 use toile_base::limits::STEP_SECONDS;
-use toile_assets::scene::skirt::{self, Motion};
 use toile_base::skeleton::{BONES, Pose, Skeleton};
 use toile_engine::body::palette;
 use toile_engine::colliders::Colliders;

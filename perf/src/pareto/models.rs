@@ -3,11 +3,11 @@
 //!
 //! x* has the model, with very many substeps of `fine`. Moments carry what friction remembers.
 
+use toile_assets::scene::skirt;
 use toile_base::fabric::Fabric;
 use toile_base::fabric::stretch_curve::{ShearLock, StretchCurve, StretchCurves};
 use toile_base::garment::Garment;
 use toile_base::numeric::statistics::median_of;
-use toile_assets::scene::skirt;
 use toile_engine::cloth::Quality;
 
 use super::error::ParetoError;

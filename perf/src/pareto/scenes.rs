@@ -1,10 +1,10 @@
 //! The scenes: the cantilever in four meshes, the skirt in three and meshed irregularly, the garments of the wardrobe on an average mannequin.
 
 use glam::DVec3;
-use toile_base::fabric::Fabric;
-use toile_bake::Shape;
 use toile_assets::scene::shopper;
 use toile_assets::scene::skirt::{self, Motion, Stretch};
+use toile_bake::Shape;
+use toile_base::fabric::Fabric;
 use toile_engine::colliders::{Colliders, RestSphere};
 
 use super::error::ParetoError;

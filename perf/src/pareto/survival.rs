@@ -1,7 +1,7 @@
 //! The survival map: a skirt whose hem is heavier and heavier, at longer and longer steps.
 
-use toile_bake::Shape;
 use toile_assets::scene::skirt;
+use toile_bake::Shape;
 use toile_fitting::heap::HeapProbe;
 
 use super::error::ParetoError;

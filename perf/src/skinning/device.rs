@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use glam::Affine3A;
 use serde::Serialize;
-use toile_base::numeric::statistics::median;
 use toile_assets::put_line;
+use toile_base::numeric::statistics::median;
 use toile_base::skeleton::BONES;
 use toile_engine::lanes::Width;
 use toile_engine::skin::{Blend, SkinningJob};

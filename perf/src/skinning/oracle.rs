@@ -2,7 +2,7 @@
 
 use glam::{Affine3A, DMat3, DQuat, DVec3, DVec4, Vec3};
 use toile_base::mesh::SkinWeights;
-use toile_base::skeleton::{BONES, BONE_CHAIN};
+use toile_base::skeleton::{BONE_CHAIN, BONES};
 use toile_engine::skin::{Blend, Posed};
 
 use toile_fitting::scene::surface::Surface;

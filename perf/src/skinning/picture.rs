@@ -1,9 +1,9 @@
 //! The picture of the twist test: the shopper's forearm with its hand turned, by each blend, split and not.
 
 use glam::{Affine3A, Quat, Vec3};
+use toile_assets::scene;
 use toile_base::body::Body;
 use toile_base::mesh::{SkinWeights, vertex_normals};
-use toile_assets::scene;
 use toile_base::skeleton::{BONES, Joint, Pose};
 use toile_engine::body::palette;
 use toile_engine::skin::Blend;

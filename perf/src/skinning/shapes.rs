@@ -3,9 +3,9 @@
 
 use glam::{Affine3A, Quat, Vec3};
 use serde::Serialize;
+use toile_assets::scene;
 use toile_base::body::{Body, Region};
 use toile_base::mesh::{Influences, SkinWeights, WideWeights};
-use toile_assets::scene;
 use toile_base::skeleton;
 use toile_base::skeleton::{BONES, Joint, Pose};
 use toile_engine::body::{JointFrames, palette};

@@ -2,8 +2,8 @@
 
 use glam::{Affine3A, Vec3, Vec3A, Vec4};
 use serde::Serialize;
-use toile_bake::Shape;
 use toile_assets::scene::skirt;
+use toile_bake::Shape;
 use toile_fitting::heap::HeapProbe;
 use toile_fitting::scene::events::ClothEvents;
 

@@ -3,11 +3,11 @@
 use std::collections::BTreeMap;
 
 use glam::{Affine3A, Vec3, Vec3A, Vec4};
-use toile_bake::bake;
+use toile_assets::scene::skirt;
 use toile_bake::Shape;
+use toile_bake::bake;
 use toile_base::garment::Garment;
 use toile_base::numeric::hash;
-use toile_assets::scene::skirt;
 use toile_base::skeleton::BONES;
 use toile_engine::cloth::layers::Layers;
 use toile_engine::cloth::program::METERED_STAGES;

@@ -4,8 +4,8 @@
 use std::fmt::Write;
 
 use serde::Serialize;
-use toile_bake::Shape;
 use toile_assets::scene::skirt::{Motion, Stretch};
+use toile_bake::Shape;
 use toile_engine::lanes::Width;
 use toile_fitting::heap::HeapProbe;
 use toile_gpu::backend::Backends;

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use glam::Vec3;
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::{Joints, TrackedJoint};
 use toile_base::numeric::random::SplitMix64;
 use toile_engine::clock::Clock;
 use toile_engine::frame_loop::sensor_thread::{FrameSource, SourceFrame};
-use toile_base::clock::SECOND_NS;
-use toile_base::frame::{Joints, TrackedJoint};
 
 use super::fault_kind::FaultKind;
 use super::scenario::{CAMERA_HZ, Fault, Scenario};

@@ -13,14 +13,14 @@ use std::time::Duration;
 
 use glam::{Affine3A, Vec3};
 use toile_base::body::Sex;
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::{DepthFrame, Joints, TrackedJoint};
 use toile_base::numeric::random::SplitMix64;
 use toile_engine::clock::Clock;
 use toile_engine::frame_loop::ThreadLoop;
 use toile_engine::frame_loop::sensor_thread::{DepthImage, FrameSource, SourceFrame};
 use toile_engine::triple_buffer::{Reader, TripleBuffer, Writer};
 use toile_fitting::live::depth_camera::{self, CameraFeed, TrackerOptions};
-use toile_base::clock::SECOND_NS;
-use toile_base::frame::{DepthFrame, Joints, TrackedJoint};
 use toile_sensors::segment::Zone;
 use toile_sensors::source::live::fault_injection::{FaultClock, FaultPlan, FaultyCamera, SimulatedCamera, TimedFault};
 use toile_sensors::source::live::{

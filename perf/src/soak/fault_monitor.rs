@@ -4,12 +4,12 @@
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
+use toile_base::clock::SECOND_NS;
 use toile_engine::clock::{Clock, RealClock, SimClock};
 use toile_engine::frame_loop::ThreadLoop;
 use toile_engine::frame_loop::queue::{Capacity, Receiver};
 use toile_engine::meter::PERIOD_NS;
 use toile_fitting::heap::HeapProbe;
-use toile_base::clock::SECOND_NS;
 use toile_sensors::source::live::CameraState;
 use toile_sensors::source::live::fault_injection::CameraFault;
 

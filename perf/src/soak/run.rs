@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
+use toile_base::clock::SECOND_NS;
 use toile_engine::clock::{Clock, SimClock};
 use toile_engine::frame_loop::ThreadLoop;
 use toile_engine::frame_loop::event::NoCounters;
@@ -20,7 +21,6 @@ use toile_fitting::heap::HeapProbe;
 use toile_fitting::live::assembly::{Assembly, LoopOptions, LoopParts, LoopQueues, SensorLoop, assemble};
 use toile_fitting::live::running::{EndedLoops, Loops, RunningLoop};
 use toile_fitting::live::scene_changer::DressedScene;
-use toile_base::clock::SECOND_NS;
 
 use super::camera::Camera;
 use super::depth_camera::{self, CameraLoop, SoakSource};

@@ -3,14 +3,14 @@
 use std::f64::consts::TAU;
 
 use glam::Vec3;
-use toile_base::body::{Measures, Sex};
-use toile_base::numeric::random::SplitMix64;
 use toile_assets::scene;
 use toile_assets::sizes::Population;
-use toile_base::skeleton::{JOINTS, Skeleton};
 use toile_assets::wardrobe;
-use toile_engine::body::JointFrames;
+use toile_base::body::{Measures, Sex};
 use toile_base::clock::SECOND_NS;
+use toile_base::numeric::random::SplitMix64;
+use toile_base::skeleton::{JOINTS, Skeleton};
+use toile_engine::body::JointFrames;
 
 use super::error::SoakError;
 use super::fault_kind::FaultKind;

@@ -2,15 +2,15 @@
 
 use std::sync::Arc;
 
+use toile_assets::wardrobe;
 use toile_base::body::Body;
+use toile_base::frame::Joints;
 use toile_base::garment::Garment;
 use toile_base::rig::Rig;
-use toile_assets::wardrobe;
 use toile_engine::cloth::{Quality, Settings};
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::triple_buffer::Reader;
 use toile_fitting::dress::try_on::DressedBody;
-use toile_base::frame::Joints;
 
 use super::error::SoakError;
 use super::options::SceneWeight;

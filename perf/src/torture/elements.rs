@@ -1,8 +1,8 @@
 //! Cases of meshes with sides without length and faces without area.
 
 use glam::Vec3;
-use toile_bake::bake;
 use toile_bake::Shape;
+use toile_bake::bake;
 use toile_bake::check::MeshError;
 
 use super::outcome::TrialFindings;

@@ -1,8 +1,8 @@
 //! One trial of cloths over one another, and what is seen of them from the first step on.
 
 use glam::{Affine3A, DVec3, Vec3, Vec3A};
-use toile_bake::bake;
 use toile_bake::Shape;
+use toile_bake::bake;
 use toile_bake::check::MeshError;
 use toile_base::garment::{Garment, Part};
 use toile_base::skeleton::BONES;

@@ -3,9 +3,9 @@
 use std::f32::consts::TAU;
 
 use glam::{Affine3A, DVec3, Vec3, Vec3A};
+use toile_bake::Shape;
 use toile_bake::bake;
 use toile_base::fabric::Fabric;
-use toile_bake::Shape;
 use toile_base::garment::{Garment, Part};
 use toile_base::mesh::SkinWeights;
 use toile_base::skeleton::BONES;

@@ -1,9 +1,9 @@
 //! Cases of masses and stiffnesses far apart, with the two chains and the strand that others have published.
 
 use glam::{Quat, Vec3};
+use toile_bake::Shape;
 use toile_bake::bake;
 use toile_base::fabric::Fabric;
-use toile_bake::Shape;
 use toile_base::garment::{Garment, Part};
 use toile_base::mesh::SkinWeights;
 use toile_engine::cloth::Settings;

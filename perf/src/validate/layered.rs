@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use glam::{Affine3A, DVec3};
-use toile_bake::bake;
 use toile_bake::Shape;
+use toile_bake::bake;
 use toile_base::garment::Garment;
 use toile_base::numeric::statistics::median_of;
 use toile_base::skeleton::BONES;

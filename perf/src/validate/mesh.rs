@@ -6,13 +6,13 @@
 
 use delaunator::{Point, triangulate};
 use glam::{DVec2, DVec3};
+use toile_bake::Shape;
+use toile_bake::shape::Face;
+use toile_bake::shape::NO_VERTEX;
 use toile_base::fabric::loop_widths::LoopWidths;
 use toile_base::fabric::stretch_curve::{ShearLock, StretchCurve, StretchCurves};
 use toile_base::fabric::{Fabric, USUAL_SHEEN, USUAL_THREADS, Weave};
-use toile_bake::shape::NO_VERTEX;
 use toile_base::garment::Part;
-use toile_bake::Shape;
-use toile_bake::shape::Face;
 use toile_base::mesh::SkinWeights;
 use toile_base::numeric::random::SplitMix64;
 

@@ -4,11 +4,11 @@ use std::time::Instant;
 
 use glam::{Affine3A, DVec3, Vec4};
 use thiserror::Error;
-use toile_bake::bake;
-use toile_base::garment::layout::{Bends, ENDED, Hubs};
 use toile_bake::Shape;
+use toile_bake::bake;
 use toile_bake::check::MeshError;
 use toile_base::garment::Garment;
+use toile_base::garment::layout::{Bends, ENDED, Hubs};
 use toile_base::numeric::statistics::median_of;
 use toile_base::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Quality, Settings, Step};

@@ -6,13 +6,13 @@
 use std::f64::consts::SQRT_2;
 
 use glam::{DVec2, DVec3};
-use toile_bake::shape::NO_VERTEX;
-use toile_base::garment::Part;
-use toile_bake::Shape;
-use toile_bake::shape::Face;
-use toile_base::mesh::SkinWeights;
 use toile_assets::pattern::{Curve, Panel, PanelEdge, Pattern, Seam, SeamSide};
 use toile_assets::tailor;
+use toile_bake::Shape;
+use toile_bake::shape::Face;
+use toile_bake::shape::NO_VERTEX;
+use toile_base::garment::Part;
+use toile_base::mesh::SkinWeights;
 
 use super::mesh::{EndSupport, MeshStyle, Strip};
 

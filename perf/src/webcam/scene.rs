@@ -2,16 +2,16 @@
 
 use glam::{Affine3A, Vec3};
 use toile_assets::body::BodyError;
-use toile_base::body::Body;
-use toile_base::numeric::random::SplitMix64;
 use toile_assets::scene::shopper;
+use toile_base::body::Body;
+use toile_base::clock::SECOND_NS;
+use toile_base::frame::{DepthFrame, Intrinsics, Joints};
+use toile_base::numeric::random::SplitMix64;
 use toile_base::skeleton::BONES;
 use toile_engine::body::{JointFrames, palette};
 use toile_engine::frame::BLEND;
 use toile_engine::skin::SkinningJob;
 use toile_pose::scale::WebcamMount;
-use toile_base::clock::SECOND_NS;
-use toile_base::frame::{DepthFrame, Intrinsics, Joints};
 use toile_sensors::source::live::ColourImage;
 use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera, room};
 use toile_view::image::Size;

@@ -3,9 +3,9 @@
 use thiserror::Error;
 use toile_assets::body::BodyError;
 use toile_assets::fabric::FabricError;
-use toile_bake::check::MeshError;
 use toile_assets::sizes::SizeError;
 use toile_assets::wardrobe::WardrobeError;
+use toile_bake::check::MeshError;
 use toile_engine::colliders::ColliderError;
 use toile_engine::skin::SkinError;
 use toile_engine::workers::WorkerPoolError;

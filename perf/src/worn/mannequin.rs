@@ -1,10 +1,10 @@
 //! A mannequin of average measures, and garments of the wardrobe in the size nearest to it.
 
-use toile_base::body::{Body, Measures, Sex};
-use toile_base::fabric::Fabric;
-use toile_bake::Shape;
 use toile_assets::sizes::{Population, SizeTable};
 use toile_assets::wardrobe;
+use toile_bake::Shape;
+use toile_base::body::{Body, Measures, Sex};
+use toile_base::fabric::Fabric;
 use toile_engine::colliders::{Colliders, RestSphere};
 
 use super::error::WornError;
@@ -36,8 +36,7 @@ impl AverageBody {
     /// Where the engine does not take them.
     pub fn colliders(&self) -> Result<Colliders, WornError> {
         let rig = toile_assets::rig::fit(&self.body);
-        let sphere =
-            |s: &toile_base::rig::Sphere| RestSphere::on_bone(&self.body.skeleton, s.bone, s.offset, s.radius);
+        let sphere = |s: &toile_base::rig::Sphere| RestSphere::on_bone(&self.body.skeleton, s.bone, s.offset, s.radius);
         let spheres = rig.spheres.each_ref().map(sphere);
         Ok(Colliders::new(&spheres, &rig.capsules, true)?)
     }

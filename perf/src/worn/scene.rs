@@ -1,15 +1,15 @@
 //! Garments on a performing mannequin, ready to be stepped.
 
 use glam::{Affine3A, Vec3};
+use toile_assets::scene::{self, shopper};
+use toile_assets::wardrobe;
 use toile_bake::bake;
 use toile_base::body::Body;
 use toile_base::garment::{Garment, Part};
 use toile_base::limits::STEP_SECONDS;
 use toile_base::mesh::SkinWeights;
 use toile_base::numeric::hash;
-use toile_assets::scene::{self, shopper};
 use toile_base::skeleton::{BONES, Pose, Skeleton};
-use toile_assets::wardrobe;
 use toile_engine::body::palette;
 use toile_engine::body_surface::BodySurface;
 use toile_engine::cloth::layers::{Layers, lay_outside};

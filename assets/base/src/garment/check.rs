@@ -112,12 +112,13 @@ fn owners(layout: &Layout, n: usize) -> Result<(), LayoutError> {
     let mut spans = vec![false; n];
     for (owner, all) in layout.spans.iter().enumerate() {
         for &(first, len) in all {
-            bound("spans", first as usize + len as usize, n)?;
-            for particle in first as usize..first as usize + len as usize {
-                if spans[particle] || usize::from(layout.owner[particle]) != owner {
-                    return Err(LayoutError::Owner { particle });
+            let (first, len) = (first as usize, len as usize);
+            bound("spans", first + len, n)?;
+            for (k, taken) in spans[first..first + len].iter_mut().enumerate() {
+                if *taken || usize::from(layout.owner[first + k]) != owner {
+                    return Err(LayoutError::Owner { particle: first + k });
                 }
-                spans[particle] = true;
+                *taken = true;
             }
         }
     }

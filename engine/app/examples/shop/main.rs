@@ -13,10 +13,10 @@ use std::{env, fs};
 
 use garments::{GARMENTS, ShopGarment};
 use toile_assets::catalogue::package;
+use toile_base::frame::Joints;
 use toile_fitting::dress::measured::ShopperFacts;
 use toile_fitting::dress::session;
 use toile_fitting::dress::try_on::TryOn;
-use toile_base::frame::Joints;
 use toile_view::drawn_frame::{self, DrawnFrame};
 use toile_view::figure::Appearance;
 use toile_view::image::{Size, linear};

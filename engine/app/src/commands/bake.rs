@@ -6,17 +6,17 @@ use std::time::Instant;
 
 use serde::Serialize;
 use toile_assets::adapt::{OwnMesh, source};
-use toile_bake;
-use toile_bake::survey::{MeshSurvey, survey};
-use toile_base::body::{Measures, Sex};
 use toile_assets::drafting;
 use toile_assets::draping::{self, PatternPackage};
-use toile_base::fabric::Fabric;
 use toile_assets::file::{self, FileKind};
-use toile_bake::Shape;
-use toile_base::garment::Garment;
 use toile_assets::sizes::Population;
 use toile_assets::wardrobe::{self, WardrobeError, own};
+use toile_bake;
+use toile_bake::Shape;
+use toile_bake::survey::{MeshSurvey, survey};
+use toile_base::body::{Measures, Sex};
+use toile_base::fabric::Fabric;
+use toile_base::garment::Garment;
 use toile_cli::document::Document;
 use toile_cli::exit::AppError;
 use toile_cli::terminal::{self, Paint, Tone};
@@ -249,7 +249,8 @@ fn draft(args: &BakeArgs) -> Result<DraftedShape, AppError> {
 
 /// Drapes a pattern or a package on the average woman, or in a size on the body that it is for.
 fn draft_pattern(package: PatternPackage, size: Option<String>) -> Result<DraftedShape, AppError> {
-    let average = toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(AppError::internal)?;
+    let average =
+        toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(AppError::internal)?;
     let (size, body) = match size {
         None => (package.own_size().to_owned(), average),
         Some(size) => {
@@ -275,8 +276,11 @@ fn fabric(name: &str) -> Result<Fabric, AppError> {
 fn report(garment: &Garment, found: MeshSurvey, bake_ms: f64) -> BakeReport {
     let covered = &found.coverage;
     let layout = garment.layout();
-    let solver =
-        |s: &toile_bake::survey::SolverCount| SolverCounts { solver: s.solver.name(), fibers: s.fibers, edges: s.edges };
+    let solver = |s: &toile_bake::survey::SolverCount| SolverCounts {
+        solver: s.solver.name(),
+        fibers: s.fibers,
+        edges: s.edges,
+    };
     BakeReport {
         garment: garment.name.clone(),
         size: garment.size.clone(),

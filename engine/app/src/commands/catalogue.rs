@@ -8,11 +8,12 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde::Serialize;
-use toile_base::body::{Measures, Sex};
 use toile_assets::catalogue::{
     Catalogue, CatalogueItem, GarmentManifest, GarmentPackage, ShopTheme, ThemeColours, contrast, package, word,
 };
 use toile_assets::wardrobe::own;
+use toile_base::body::{Measures, Sex};
+use toile_base::frame::Joints;
 use toile_cli::arguments::Printing;
 use toile_cli::document::Document;
 use toile_cli::exit::AppError;
@@ -21,7 +22,6 @@ use toile_cli::terminal::{self, Paint, Tone, Words};
 use toile_fitting::dress::garment_source::GarmentSource;
 use toile_fitting::dress::session;
 use toile_fitting::dress::try_on::{RequestedGarment, TryOn};
-use toile_base::frame::Joints;
 use toile_view::contact_sheet;
 use toile_view::drawn_frame::{self, DrawnFrame};
 use toile_view::figure::Appearance;
@@ -203,7 +203,8 @@ fn opened(path: &Path) -> Result<(GarmentSource, Vec<String>), AppError> {
 }
 
 fn sizes(source: &GarmentSource) -> Result<Vec<String>, AppError> {
-    let average = toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(AppError::internal)?;
+    let average =
+        toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(AppError::internal)?;
     source.fabric()?;
     let offer = source.offer(&average)?;
     let unsized_code = || vec![own::UNKNOWN.to_owned()];

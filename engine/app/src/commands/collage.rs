@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
-use toile_base::body::{Body, Measures, Sex};
 use toile_assets::catalogue::{CollageGarment, CollagePictures, limits};
 use toile_assets::file::{self, FileKind};
 use toile_assets::sizes::SizeTable;
+use toile_base::body::{Body, Measures, Sex};
 use toile_cli::arguments::{Printing, count, one_of};
 use toile_cli::document::Document;
 use toile_cli::exit::AppError;

@@ -7,10 +7,10 @@ use std::time::Instant;
 
 use glam::Vec3;
 use serde::Serialize;
-use toile_base::body::Body;
-use toile_base::numeric::statistics::quantile;
 use toile_assets::people;
 use toile_assets::rig::{MEAN_GOAL_MM, P95_GOAL_MM};
+use toile_base::body::Body;
+use toile_base::numeric::statistics::quantile;
 use toile_cli::document::Document;
 use toile_cli::exit::AppError;
 use toile_cli::output::{Inputs, OutputFolder};

@@ -8,10 +8,10 @@ mod loops;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
-use toile_base::fabric::Fabric;
 use toile_assets::fabric::sheet::MeasuredSheet;
 use toile_assets::file::{self, FileKind};
 use toile_assets::put_line;
+use toile_base::fabric::Fabric;
 use toile_cli::arguments::Printing;
 use toile_cli::document::Document;
 use toile_cli::exit::AppError;

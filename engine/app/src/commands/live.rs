@@ -6,8 +6,9 @@ use std::time::{Duration, Instant};
 
 use clap::value_parser;
 use serde::Serialize;
-use toile_base::body::Sex;
 use toile_assets::put_line;
+use toile_base::body::Sex;
+use toile_base::frame::DepthFrame;
 use toile_cli::arguments::Printing;
 use toile_cli::camera::{self, CameraUse, MountArgs};
 use toile_cli::document::Document;
@@ -20,7 +21,6 @@ use toile_engine::frame_loop::sensor_thread::{FrameSource, SourceFrame};
 use toile_fitting::live::camera_start::StartedCamera;
 use toile_fitting::live::depth_camera::{CameraFeed, CameraFigures, CameraHandle};
 use toile_fitting::live::report::Quantiles;
-use toile_base::frame::DepthFrame;
 use toile_sensors::source::live::{CameraName, CameraState, ColourImage};
 use toile_view::image::{Image, Size};
 

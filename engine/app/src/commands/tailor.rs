@@ -12,11 +12,11 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use serde::Serialize;
-use toile_base::body::Sex;
 use toile_assets::drafting;
 use toile_assets::draping::{self, DrapedPattern, PatternPackage};
 use toile_assets::sizes::GarmentKind;
 use toile_assets::tailor::PanelQuality;
+use toile_base::body::Sex;
 use toile_cli::arguments::{Printing, one_of};
 use toile_cli::document::Document;
 use toile_cli::exit::AppError;

@@ -15,12 +15,12 @@ use toile_engine::cloth::Quality;
 
 use glam::Affine3A;
 use toile_assets::adapt::MeshReport;
-use toile_base::body::Body;
 use toile_assets::export::{self, glb};
 use toile_assets::import::avatar::MovingBody;
+use toile_assets::{drafting, wardrobe};
+use toile_base::body::Body;
 use toile_base::limits::STEP_SECONDS;
 use toile_base::skeleton::{BONES, Joint};
-use toile_assets::{drafting, wardrobe};
 use toile_cli::arguments::{Printing, TapeArgs, one_of, quality};
 use toile_cli::document::{Document, hash_text};
 use toile_cli::exit::AppError;

@@ -7,8 +7,8 @@
 use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
-use toile_base::body::Sex;
 use toile_assets::body::shape::{BodyShape, Shapes};
+use toile_base::body::Sex;
 use toile_base::skeleton::{JOINTS, Joint};
 use toile_track::fit::{
     BodyModel, FitState, NormalEquations, PosePrior, PosedBody, SeenSurface, ShapeFilter, ShapeQuadratic, Stance,

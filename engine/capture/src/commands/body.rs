@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use glam::{DVec3, Vec3};
 use serde::Serialize;
-use toile_base::body::Sex;
 use toile_assets::export::ply;
+use toile_base::body::Sex;
 use toile_capture::body::{
     JointPoint, SilhouetteBody, SilhouetteOptions, SilhouetteView, joint_points, measure, overlay_png,
 };

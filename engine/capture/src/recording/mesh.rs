@@ -4,8 +4,8 @@ use std::path::Path;
 
 use glam::Vec2;
 use toile_assets::file::{self, FileKind};
-use toile_bake::check::corners;
 use toile_assets::import::plain::parse_obj;
+use toile_bake::check::corners;
 
 use crate::error::CaptureError;
 use crate::surface::Surface;

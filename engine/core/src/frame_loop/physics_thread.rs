@@ -1,7 +1,7 @@
 //! The physics thread: it steps the scene 120 times a second.
 
-use toile_base::limits::STEP_HZ;
 use toile_base::frame::Joints;
+use toile_base::limits::STEP_HZ;
 
 use super::ThreadLoop;
 use super::event::{CounterSource, Counters, Event, EventKind, Miss, SENSOR_LOST_NS};

@@ -5,18 +5,18 @@ use std::path::Path;
 use std::sync::Arc;
 
 use toile_assets::adapt::{AdaptError, MeshReport, OwnMesh, source};
-use toile_base::body::{Body, Measures, Sex};
 use toile_assets::catalogue::limits::{MAX_PACKAGE_BYTES, MAX_TOML_BYTES};
 use toile_assets::catalogue::package::ENDING;
 use toile_assets::catalogue::{GarmentPackage, GarmentPhotographs, word};
 use toile_assets::drafting;
 use toile_assets::draping::{self, AS_DRAFTED, HungPattern, PatternPackage, TO_MEASURE};
-use toile_base::fabric::Fabric;
-use toile_base::garment::Garment;
 use toile_assets::sizes::{Population, SizeTable};
 use toile_assets::wardrobe::own;
 use toile_assets::wardrobe::style::Style;
 use toile_assets::wardrobe::{self, WardrobeError};
+use toile_base::body::{Body, Measures, Sex};
+use toile_base::fabric::Fabric;
+use toile_base::garment::Garment;
 use toile_track::measure::Measurements;
 use toile_track::recommend::Recommendation;
 

@@ -5,10 +5,10 @@
 
 use serde::{Deserialize, Serialize};
 use toile_assets::body::BodyError;
-use toile_base::body::{Body, Measures as BodyMeasures, Sex};
 use toile_assets::sizes::Population;
-use toile_base::skeleton::Joint;
+use toile_base::body::{Body, Measures as BodyMeasures, Sex};
 use toile_base::frame::Joints;
+use toile_base::skeleton::Joint;
 use toile_sensors::source::Session;
 use toile_track::child::child_odds;
 use toile_track::estimate::Estimate;

@@ -7,17 +7,17 @@
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
+use toile_assets::sizes::{Girth, Population};
+use toile_assets::wardrobe::own;
 use toile_base::body::{Body, Measures, Sex};
+use toile_base::frame::Joints;
 use toile_base::garment::Garment;
 use toile_base::limits::MAX_GARMENTS;
 use toile_base::rig::Rig;
-use toile_assets::sizes::{Girth, Population};
-use toile_assets::wardrobe::own;
 use toile_engine::cloth::layers::tuck_in;
 use toile_engine::cloth::{Quality, Settings};
 use toile_engine::frame::{Frame, FrameError, Snapshot};
 use toile_engine::triple_buffer::Reader;
-use toile_base::frame::Joints;
 use toile_sensors::source::Session;
 use toile_track::measure::Measurements;
 
@@ -232,7 +232,8 @@ impl TryOn {
     /// # Errors
     /// A size that is not made; a garment that cannot be laid on the body or tucked in.
     pub fn put_on(&self, body: Body, measured: &Measurements) -> Result<DressedBody, FittingError> {
-        let (mut dressed, mut beneath) = (DressedBody::new(toile_assets::rig::fit(&body), body, Vec::new()), Vec::new());
+        let (mut dressed, mut beneath) =
+            (DressedBody::new(toile_assets::rig::fit(&body), body, Vec::new()), Vec::new());
         for garment in &self.garments {
             let source = garment.source()?;
             dressed.add(source.put_on(garment.size.as_deref(), measured, &dressed.body, &beneath)?);

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use toile_base::frame::Joints;
 use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::frame_loop::flight_recorder::FlightRecorder;
 use toile_engine::frame_loop::handover::{HandoverSender, SceneChange};
@@ -10,7 +11,6 @@ use toile_engine::frame_loop::physics_thread::Scene;
 use toile_engine::frame_loop::recording::SceneNote;
 use toile_engine::frame_loop::render_thread::SceneView;
 use toile_engine::triple_buffer::Reader;
-use toile_base::frame::Joints;
 
 use super::live_scene::{LiveScene, SceneHandover};
 use crate::dress::try_on::DressedWorld;

@@ -9,16 +9,16 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use glam::Vec3;
+use toile_assets::scene_file::{SceneFile, SceneSource};
 use toile_base::body::Body;
+use toile_base::frame::Joints;
 use toile_base::mesh::SkinWeights;
 use toile_base::numeric::statistics::quantile;
 use toile_base::rig::Rig;
-use toile_assets::scene_file::{SceneFile, SceneSource};
 use toile_base::skeleton::Joint;
 use toile_engine::cloth::{Settings, program};
 use toile_engine::meter::STAGES as STEP_STAGES;
 use toile_engine::workers::{SHARES, WorkerPool};
-use toile_base::frame::Joints;
 
 use super::PlanError;
 use super::cost::Costs;

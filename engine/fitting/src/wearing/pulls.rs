@@ -210,9 +210,8 @@ fn compare(garment: &Garment, levels: &Levels, before: &Seen, now: &Seen) -> Gar
 
 #[cfg(test)]
 mod tests {
-    use toile_base::body::{Measures, Sex};
     use toile_assets::drafting;
-    
+    use toile_base::body::{Measures, Sex};
 
     use super::*;
 

@@ -5,8 +5,8 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
-use toile_base::body::Sex;
 use toile_assets::file::{self, FileKind};
+use toile_base::body::Sex;
 use toile_engine::cloth::Quality;
 use toile_engine::workers::SHARES;
 

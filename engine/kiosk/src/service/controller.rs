@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
+use toile_base::frame::Joints;
 use toile_engine::frame::Frame;
 use toile_engine::frame_loop::physics_thread::Scene;
 use toile_engine::frame_loop::sensor_thread::ObservedFrame;
 use toile_fitting::dress::try_on::{DressedWorld, TryOn};
 use toile_fitting::live::background::{BackgroundJob, Finished};
 use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
-use toile_base::frame::Joints;
 
 use super::session::{SessionState, StateChange};
 use super::stock_watch::StockFigures;

@@ -29,6 +29,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use toile_base::frame::Joints;
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::frame::Frame;
 use toile_engine::frame_loop::physics_thread::FrameScene;
@@ -45,7 +46,6 @@ use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
 use toile_fitting::live::shopper_source::ShopperSource;
 use toile_fitting::live::source::{Feed, Visits};
 use toile_fitting::live::{crash, recording};
-use toile_base::frame::Joints;
 use toile_sensors::source::Session;
 
 use crate::error::KioskError;
@@ -215,7 +215,7 @@ where
     };
     let start = ControllerStart { played: service_options.played.clone(), switch, portraits, pose };
     let controller = (frontend.controller)(start)?;
-    let ran = Service::new(live, changer, controller, service_options, environment).run();
+    let ran = Service::new(live, changer, controller, &service_options, environment).run();
     crash::forget();
     let (ended, capacities, mut record) = ran?;
     record.threads.extend(worker.map(ThreadPlacement::from));

@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
+use toile_base::frame::Joints;
 use toile_engine::frame_loop::flight_recorder::FlightRecorder;
 use toile_engine::frame_loop::physics_thread::Scene;
 use toile_engine::frame_loop::queue::Capacity;
@@ -18,7 +19,6 @@ use toile_fitting::live::scene_changer::SceneChanger;
 use toile_fitting::live::shopper_source::ShopperSource;
 use toile_fitting::live::source::Feed;
 use toile_fitting::live::watchdog::Watchdog;
-use toile_base::frame::Joints;
 
 use super::controller::{ControllerContext, SessionController, ToScene};
 use super::health::{HealthCounter, HealthFigures};
@@ -103,7 +103,7 @@ impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
         live: LiveLoop<S, E, Feed>,
         changer: SceneChanger<S, E::Outfit>,
         controller: Box<dyn SessionController<S, E::Outfit> + 'a>,
-        options: ServiceOptions,
+        options: &ServiceOptions,
         environment: ServiceEnvironment<'a, S, E::Outfit>,
     ) -> Self {
         let now = live.now_ns();

@@ -9,8 +9,8 @@ use std::thread;
 use std::time::Duration;
 
 use toile_assets::catalogue::Catalogue;
-use toile_fitting::dress::try_on::DressedWorld;
 use toile_base::frame::Joints;
+use toile_fitting::dress::try_on::DressedWorld;
 
 use super::config::Config;
 use super::stock::{self, FilesSeen, LeftOut, Stock};

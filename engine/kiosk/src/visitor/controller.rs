@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use toile_assets::sizes::Population;
+use toile_base::frame::Joints;
 use toile_engine::frame_loop::physics_thread::Scene;
 use toile_engine::frame_loop::sensor_thread::ObservedFrame;
 use toile_fitting::dress::measured;
 use toile_fitting::dress::session;
 use toile_fitting::live::own_picture::PictureSwitch;
 use toile_fitting::live::shopper_source::ShopperSource;
-use toile_base::frame::Joints;
 use toile_track::gesture::Gestures;
 
 use super::dressing_worker::{

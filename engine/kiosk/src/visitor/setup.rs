@@ -19,8 +19,8 @@ use crate::service::config::{self, Config};
 use crate::service::picture_config::OwnPictureUse;
 use crate::service::stock::{LeftOut, Stock};
 use crate::service::stock_watch::{Hang, LOOK_EVERY, StockWatch, WatchStart};
-use toile_fitting::live::shopper_source::ShopperSource;
 use toile_base::frame::Joints;
+use toile_fitting::live::shopper_source::ShopperSource;
 
 /// A minute (s).
 const MINUTE_S: f64 = 60.0;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 use toile_base::body::Body as BodyShape;
+use toile_base::frame::Joints;
 use toile_base::garment::Garment as BakedGarment;
 use toile_base::skeleton::Joint;
 use toile_engine::cloth::measure;
@@ -12,7 +13,6 @@ use toile_engine::triple_buffer::Reader;
 use toile_fitting::dress::garment_source::{FittedGarment, SourceKind};
 use toile_fitting::dress::player::Player;
 use toile_fitting::dress::try_on::{DressedBody, TryOn};
-use toile_base::frame::Joints;
 use toile_view::drawn_frame::DrawnFrame;
 use toile_view::figure::Appearance;
 use toile_view::fit_map::{self, JudgedTightness};

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use toile_assets::body::shape::Shapes;
 use toile_assets::body::En;
+use toile_assets::body::shape::Shapes;
+use toile_assets::sizes::{GarmentKind, Girth, SizeTable};
 use toile_base::body::{Measures, Sex};
 use toile_base::numeric::random::SplitMix64;
-use toile_assets::sizes::{GarmentKind, Girth, SizeTable};
 use toile_track::estimate::Estimate;
 use toile_track::fit::measuring::{FittedMeasure, MEASURES};
 use toile_track::tape_readings::{self, BodyEstimate};

@@ -7,9 +7,9 @@ use bytes::Bytes;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 use toile_assets::body::{BodyError, En, Wanted};
-use toile_base::body::Sex;
 use toile_assets::file::{self, FileKind};
 use toile_assets::toml_keys;
+use toile_base::body::Sex;
 use toile_track::fit::measuring::{FittedMeasure, MEASURES};
 
 use crate::error::{Result, StudyError};

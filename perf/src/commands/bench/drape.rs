@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use serde::Serialize;
-use toile_base::fabric::Fabric;
 use toile_assets::put_line;
+use toile_base::fabric::Fabric;
 use toile_cli::arguments::quality;
 use toile_cli::document::Document;
 use toile_cli::exit::AppError;

@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use glam::{Affine3A, DVec3, Vec3A, Vec4};
-use toile_base::fabric::USUAL_THICKNESS_MM;
 use toile_bake::Shape;
+use toile_base::fabric::USUAL_THICKNESS_MM;
 
 use crate::validate::CaseSetup;
 use crate::validate::case::{CaseOutcome, ValidationCase};

@@ -7,9 +7,9 @@ use glam::{Quat, Vec3};
 
 use super::bones::{BoneMap, COUNT, Local, bone};
 use super::osc::{self, OscArgument, OscMessage, OscPacket};
+use crate::limits::{MAX_OSC_BUNDLES, MAX_PACKET_BYTES};
 use toile_base::clock::SECOND_NS;
 use toile_base::frame::Joints;
-use crate::limits::{MAX_OSC_BUNDLES, MAX_PACKET_BYTES};
 use toile_base::limits::MAX_COORDINATE;
 
 /// A sender's time that goes back by more than this (s) is that of a sender that began anew; by less, a late packet's.

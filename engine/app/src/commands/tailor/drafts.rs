@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use toile_base::body::{Measures, Sex};
 use toile_assets::draping::{self, PatternPackage, PatternSizes, SizedDraft};
 use toile_assets::sizes::{GarmentKind, SizeTable};
+use toile_base::body::{Measures, Sex};
 
 use toile_cli::exit::AppError;
 use toile_fitting::dress::offer;

@@ -5,9 +5,9 @@ use std::fmt::Write;
 
 use glam::Vec3;
 use toile_assets::draping::DrapedPattern;
-use toile_base::fabric::Fabric;
-use toile_bake::check::corners;
 use toile_bake::Shape;
+use toile_bake::check::corners;
+use toile_base::fabric::Fabric;
 use toile_base::mesh::vertex_normals;
 use toile_cli::exit::AppError;
 use toile_cli::output::OutputFolder;

@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use serde_json::Value;
-use toile_base::body::{Body, Measures, Sex};
 use toile_assets::draping::{self, PatternPackage, PatternSizes, TO_MEASURE};
 use toile_assets::file::{self, FileKind};
 use toile_assets::pattern::Pattern;
 use toile_assets::sizes::SizeTable;
+use toile_base::body::{Body, Measures, Sex};
 use toile_cli::exit::AppError;
 
 /// A body, what it is called, and the pattern for it.

@@ -1,8 +1,8 @@
 //! Laws of layers: order, weight, equal bits, and that a fault stays where it is.
 
 use glam::{Affine3A, Vec3, Vec3A};
-use toile_bake::bake;
 use toile_bake::Shape;
+use toile_bake::bake;
 use toile_base::garment::Garment;
 use toile_base::mesh::Influences;
 use toile_base::skeleton::BONES;
