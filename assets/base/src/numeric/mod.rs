@@ -7,6 +7,7 @@
 
 pub mod hash;
 pub mod linear;
+#[expect(clippy::approx_constant, reason = "constants in two parts: the first is not the nearest number to the whole")]
 pub mod portable;
 pub mod random;
 pub mod statistics;

@@ -101,7 +101,7 @@ pub fn exp(x: f32) -> f32 {
     if x.is_nan() {
         return x;
     }
-    if x < RANGE[0] || x > RANGE[1] {
+    if !(RANGE[0]..=RANGE[1]).contains(&x) {
         return if x < 0.0 { 0.0 } else { f32::INFINITY };
     }
     let z = f64::from(x) * THIRTY_SECONDS;
@@ -145,10 +145,10 @@ fn arc_tangent(x: f32) -> f32 {
     }
     let (point, x) = match x.to_bits() {
         ..0x3EE0_0000 => (None, x),
-        ..0x3F30_0000 => (Some(POINTS[0]), (2.0 * x - 1.0) / (2.0 + x)),
-        ..0x3F98_0000 => (Some(POINTS[1]), (x - 1.0) / (x + 1.0)),
-        ..0x401C_0000 => (Some(POINTS[2]), (x - 1.5) / (1.0 + 1.5 * x)),
-        _ => (Some(POINTS[3]), -1.0 / x),
+        0x3EE0_0000..0x3F30_0000 => (Some(POINTS[0]), (2.0 * x - 1.0) / (2.0 + x)),
+        0x3F30_0000..0x3F98_0000 => (Some(POINTS[1]), (x - 1.0) / (x + 1.0)),
+        0x3F98_0000..0x401C_0000 => (Some(POINTS[2]), (x - 1.5) / (1.0 + 1.5 * x)),
+        0x401C_0000.. => (Some(POINTS[3]), -1.0 / x),
     };
     let z = x * x;
     let w = z * z;
