@@ -155,7 +155,7 @@ fn serve(diary: &Diary, display: Gate, meanwhile: impl FnOnce() + Send) {
             flight_recorder: None,
         };
         let (changer, controller) = (SceneChanger::new(handover, true, None), Box::new(setup.headless(None)));
-        Service::new(live, changer, controller, options, environment).run().unwrap();
+        Service::new(live, changer, controller, &options, environment).run().unwrap();
     });
 }
 
