@@ -1,4 +1,4 @@
-//! The rules of the house that a compiler does not know: doors, sizes, unsafe code, words.
+//! Structure that a compiler does not check: sizes of files and functions, unsafe code, lints, paths of one machine.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +9,7 @@ use toile_tests::tree::{self, FLOORS};
 
 /// Files that may hold unsafe code, each with its reason.
 const UNSAFE_FILES: [(&str, &str); 44] = [
-    ("engine/app/src/heap.rs", "the program's allocator counts, for which it has to implement an unsafe trait"),
+    ("engine/cli/src/heap.rs", "the program's allocator counts, for which it has to implement an unsafe trait"),
     ("engine/c/src/border.rs", "what C hands over is read and written"),
     ("engine/c/src/failure.rs", "a function that C calls by its name"),
     ("engine/c/src/version.rs", "the same"),
@@ -60,47 +60,6 @@ const MAX_LINES: usize = 500;
 
 fn all_rust_files() -> Vec<PathBuf> {
     FLOORS.iter().flat_map(|(folder, _)| tree::crate_files(folder)).collect()
-}
-
-/// Which of a door's four lines its opening comment lacks.
-fn missing_lines(source: &str) -> Vec<&'static str> {
-    let opening: String = source.lines().take_while(|l| l.starts_with("//!")).collect();
-    ["Reads:", "Writes:", "Budget:", "Thread:"].into_iter().filter(|word| !opening.contains(word)).collect()
-}
-
-/// Whether a file is the door of a crate or a room: `lib.rs`, `mod.rs`, or `foo.rs` beside a `foo/` that holds more
-/// than tests.
-fn is_door(file: &Path) -> bool {
-    let in_src = file.components().any(|c| c.as_os_str() == "src");
-    let named_so = file.file_name().is_some_and(|name| name == "lib.rs" || name == "mod.rs");
-    let beside = || {
-        let folder = file.with_extension("");
-        let real = |f: &PathBuf| f.file_stem().is_some_and(|stem| stem != "tests");
-        folder.is_dir() && !folder.ends_with("tests") && tree::rust_files(&folder).iter().any(real)
-    };
-    in_src && (named_so || beside())
-}
-
-#[test]
-fn every_door_says_what_it_reads_writes_costs_and_where_it_runs() {
-    let doors: Vec<PathBuf> = all_rust_files().into_iter().filter(|f| is_door(f)).collect();
-    assert!(doors.len() >= FLOORS.len(), "only {} doors were found", doors.len());
-    let incomplete = doors.iter().filter(|file| !missing_lines(&tree::read(file)).is_empty());
-    exceptions::hold("doors_without_their_four_lines", &incomplete.map(|file| tree::name(file)).collect());
-}
-
-#[test]
-fn a_file_beside_its_folder_is_a_door() {
-    let src = tree::root().join("tests/src");
-    assert!(is_door(&src.join("lib.rs")) && is_door(&tree::root().join("assets/src/rig.rs")));
-    assert!(!is_door(&src.join("tree.rs")) && !is_door(&tree::root().join("tests/tests/house.rs")));
-}
-
-#[test]
-fn a_door_without_its_lines_is_found() {
-    assert!(missing_lines("//! A room.\n//!\n//! Reads: a. Writes: b.\n//! Budget: c.\n//! Thread: d.\n").is_empty());
-    let bare = "//! A room.\n//! Reads: a.\nfn f() {} // Writes: Budget: Thread:";
-    assert_eq!(missing_lines(bare), ["Writes:", "Budget:", "Thread:"]);
 }
 
 fn has_unsafe(source: &str) -> bool {

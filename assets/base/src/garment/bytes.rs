@@ -10,15 +10,21 @@ use std::sync::Arc;
 use glam::{Vec2, Vec3};
 use thiserror::Error;
 
+use super::baked::Garment;
 use super::bend_friction::{BendFriction, FrictionSlot};
+use super::check::LayoutError;
+use super::data::GarmentData;
+use super::direction::Direction;
 use super::layout::{
     Bends, BundleRow, ConstraintRun, ConstraintSet, DiagonalShare, Diagonals, FiberBundle, FiberList, FiberLists,
     Fibers, HubGroup, Hubs, Layout, Links, OwnerShare, Tethers, Tuples, Zigzag,
 };
 use super::link_laws::{LawTable, LinkLaws};
 use super::look::{Look, MeshPicture};
+use super::part::Part;
+use super::solver::Solver;
 use super::trim::{ClothTrim, TrimKind};
-use super::{Direction, Garment, GarmentData, LayoutError, Part, Solver, Tuck};
+use super::tuck::Tuck;
 use crate::fabric::loop_widths::LoopWidths;
 use crate::fabric::print::{Print, PrintPattern};
 use crate::fabric::stretch_curve::{ShearLock, StretchCurve, StretchCurves};

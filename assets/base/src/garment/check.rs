@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use thiserror::Error;
 
-use super::GarmentData;
+use super::data::GarmentData;
 use super::layout::{ConstraintSet, Diagonals, FiberLists, Fibers, Layout, Links, OWNERS, Tuples};
 use super::link_laws::LawTable;
 

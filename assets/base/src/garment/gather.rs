@@ -3,9 +3,12 @@
 
 use glam::Vec3;
 
+use super::baked::Garment;
+use super::data::GarmentData;
+use super::direction::Direction;
 use super::layout::{ConstraintRun, Diagonals, FiberLists, Links};
+use super::part::Part;
 use super::tuck::{SLIPS_M, Tuck};
-use super::{Direction, Garment, GarmentData, Part};
 
 /// Cloth is not gathered to less than this share of its width (1).
 const LEAST_WIDTH: f32 = 0.5;

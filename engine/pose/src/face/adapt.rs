@@ -7,7 +7,7 @@ use super::head_mesh::HeadMesh;
 use super::head_pose::{POSE_ROUNDS, first_pose, pose_step};
 use super::landmarks::FaceLandmarks;
 use super::outline::{OutlineStretch, seen_outlines, stretches};
-use super::prior::Field;
+use super::prior::OffsetField;
 use super::sighting::{HeadPose, Sighting, across, marked_points, observations, residual};
 use super::unfit::UnfitFace;
 use super::view::FaceView;
@@ -53,7 +53,7 @@ struct HeadSearch<'a> {
     /// The 68 points on the mannequin's head and on this one (m, from the middle).
     drawn: Vec<DVec3>,
     marks: Vec<DVec3>,
-    field: Field,
+    field: OffsetField,
     pose: HeadPose,
     /// What the outlines last showed.
     outlines: Vec<Sighting>,
@@ -68,7 +68,8 @@ pub fn adapt(views: &[FaceView], sex: Sex) -> Result<AdaptedHead, UnfitFace> {
     let drawn = FaceLandmarks::new().on(&mesh.positions);
     let pose = first_pose(views, &drawn)?;
     let marks = drawn.clone();
-    let mut search = HeadSearch { views, mesh, drawn, marks, field: Field::default(), pose, outlines: Vec::new() };
+    let mut search =
+        HeadSearch { views, mesh, drawn, marks, field: OffsetField::default(), pose, outlines: Vec::new() };
     for _ in 0..ROUNDS {
         search.round();
     }
@@ -105,7 +106,7 @@ impl HeadSearch<'_> {
     /// Pose, then field.
     fn round(&mut self) {
         self.settle();
-        self.field = Field::of(&observations(self.views, &self.sightings(), self.pose));
+        self.field = OffsetField::of(&observations(self.views, &self.sightings(), self.pose));
         self.marks = self.drawn.iter().map(|p| *p + self.field.at(*p)).collect();
         // Places of the rim lie above the neck, where all of the field counts.
         self.outlines.iter_mut().for_each(|s| s.own = s.drawn + self.field.at(s.drawn));
@@ -141,7 +142,7 @@ impl HeadSearch<'_> {
 
 impl AdaptedHead {
     /// The head that a field makes of the mannequin's, where it stands; nothing is said of what was seen of it.
-    pub(super) fn of(sex: Sex, mesh: &HeadMesh, field: &Field, pose: HeadPose) -> Self {
+    pub(super) fn of(sex: Sex, mesh: &HeadMesh, field: &OffsetField, pose: HeadPose) -> Self {
         let own = mesh.moved(field);
         let face: Vec<f64> = (0..own.len())
             .filter(|v| mesh.share[*v] > 0.0 && mesh.positions[*v].z > FACE)

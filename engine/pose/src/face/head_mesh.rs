@@ -5,7 +5,7 @@ use toile_assets::body::shape::Shapes;
 use toile_base::body::{Region, Sex};
 use toile_base::skeleton::Joint;
 
-use super::prior::Field;
+use super::prior::OffsetField;
 
 /// Distance from the head's border with the body over which the neck takes over (m); the chin is farther.
 const NECK: f64 = 0.018;
@@ -48,7 +48,7 @@ impl HeadMesh {
     }
 
     /// Its vertices where a field has brought them (m) `[vertices]`.
-    pub(super) fn moved(&self, field: &Field) -> Vec<DVec3> {
+    pub(super) fn moved(&self, field: &OffsetField) -> Vec<DVec3> {
         let one = |(p, share): (&DVec3, &f64)| if *share > 0.0 { *p + field.at(*p) * *share } else { *p };
         self.positions.iter().zip(&self.share).map(one).collect()
     }

@@ -53,11 +53,11 @@ pub(super) struct Observation {
 
 /// The most likely field: a sum of the prior's functions around the observations.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Field {
+pub(super) struct OffsetField {
     parts: Vec<(DVec3, DVec3)>,
 }
 
-impl Field {
+impl OffsetField {
     /// Of all observations together.
     pub(super) fn of(observations: &[Observation]) -> Self {
         let n = observations.len();
@@ -108,7 +108,7 @@ mod tests {
         let place = DVec3::new(0.04, -0.02, 0.08);
         let observed = DVec3::new(0.003, -0.002, 0.004);
         let of = |along: DVec3, value: f64| Observation { place, along, value, sigma: 1e-6 };
-        let field = Field::of(&[of(DVec3::X, observed.x), of(DVec3::Y, observed.y), of(DVec3::Z, observed.z)]);
+        let field = OffsetField::of(&[of(DVec3::X, observed.x), of(DVec3::Y, observed.y), of(DVec3::Z, observed.z)]);
         assert!(field.at(place).distance(observed) < 1e-5);
         let mirror = DVec3::new(-1.0, 1.0, 1.0);
         let other = field.at(place * mirror);

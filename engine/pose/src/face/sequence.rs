@@ -10,7 +10,7 @@ use toile_base::body::Sex;
 
 use super::adapt::{AdaptedHead, adapt};
 use super::head_mesh::HeadMesh;
-use super::prior::{Field, Observation};
+use super::prior::{OffsetField, Observation};
 use super::sighting::observations;
 use super::track::{FEWEST, HeadTracker, TrackedFrame, TrackedState};
 use super::unfit::UnfitFace;
@@ -90,8 +90,8 @@ fn most_different(found: &[(TrackedFrame, TrackedState)]) -> Vec<(usize, Tracked
 }
 
 /// Poses of the kept frames and the field of all of them, in turn; the tracker has the points of that field.
-fn refined(tracker: &mut HeadTracker, frames: &[FaceView], kept: &mut [(usize, TrackedState)]) -> Field {
-    let mut field = Field::default();
+fn refined(tracker: &mut HeadTracker, frames: &[FaceView], kept: &mut [(usize, TrackedState)]) -> OffsetField {
+    let mut field = OffsetField::default();
     for _ in 0..ROUNDS {
         let mut all: Vec<Observation> = Vec::new();
         for (k, state) in kept.iter_mut() {
@@ -99,7 +99,7 @@ fn refined(tracker: &mut HeadTracker, frames: &[FaceView], kept: &mut [(usize, T
             let (_, sightings) = tracker.sightings(&frames[*k], *state);
             all.extend(observations(from_ref(&frames[*k]), &sightings, state.pose));
         }
-        field = Field::of(&all);
+        field = OffsetField::of(&all);
         tracker.marks = tracker.drawn.iter().map(|p| *p + field.at(*p)).collect();
     }
     field
