@@ -73,6 +73,4 @@ fn words_mean_what_people_mean() {
 fn every_measure_of_the_standard_has_a_name_of_its_own() {
     let names: BTreeSet<&str> = measure_names().into_iter().collect();
     assert_eq!(names.len(), En::ALL.len());
-    let measured = Recording::embedded().unwrap().measure(&Shopper::default()).unwrap();
-    assert!(measured.measures().iter().all(|measure| names.contains(measure.name)), "a measure has no name here");
 }

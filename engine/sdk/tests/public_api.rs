@@ -16,11 +16,11 @@ const RENEW: &str = "TOILE_RENEW_API";
 
 /// Files of other crates that define what this one shows of them, from the workspace's folder.
 const BORROWED: [&str; 5] = [
-    "assets/src/body/anatomy.rs",
+    "assets/base/src/body.rs",
     "assets/src/scene_file/mod.rs",
-    "assets/src/skeleton/joint.rs",
+    "assets/base/src/skeleton/joint.rs",
     "engine/core/src/cloth/settings.rs",
-    "sensors/src/frame.rs",
+    "assets/base/src/frame.rs",
 ];
 
 fn here(path: &str) -> PathBuf {

@@ -4,7 +4,7 @@
 //! jobs for the dressing worker; nothing to a disk or a network, and nothing of a shopper once they have left.
 //! Budget: 0.5 ms a poll, 10 ms where a size is judged. Thread: the service's.
 //!
-//! [`model`] is a state machine that knows the time and its inputs, and nothing else; [`pages`] makes a [`screen::Screen`] of it. docs/screens.md
+//! [`model`] is a state machine that knows the time and its inputs, and nothing else; `pages` makes a [`screen::Screen`] of it. docs/screens.md
 //! shows what leads where.
 
 mod actions;
