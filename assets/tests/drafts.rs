@@ -3,7 +3,7 @@
 use glam::Vec3;
 use toile_assets::drafting;
 use toile_assets::draping::{DrapedPattern, PatternPackage};
-use toile_base::body::Body;
+use toile_base::body::{Body, Measures, Sex};
 use toile_base::skeleton::Joint;
 
 /// Strain of all but one in a hundred edges (1): trousers reach it at the crotch.
@@ -106,4 +106,11 @@ fn a_scarf_lies_around_the_neck_and_is_held_by_nothing() {
         let garment = package.dress(size, &body).unwrap();
         assert!(garment.layer == 6 && garment.fixed.is_empty(), "{size}: {} are held", garment.fixed.len());
     }
+}
+
+#[test]
+fn a_dress_comes_back_from_its_bytes() {
+    let body = toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
+    let dress = toile_assets::wardrobe::style("sun-dress").unwrap().dress("38", &body).unwrap();
+    assert_eq!(toile_base::garment::Garment::from_bytes(&dress.to_bytes()).unwrap(), dress);
 }

@@ -105,7 +105,7 @@ mod tests {
 
     /// Energy of a rectangle's edges under a small shear against G/2 gamma^2 area.
     fn shear_ratio(faces: &[[u32; 4]], width: f32, height: f32) -> f32 {
-        let mut fabric = toile_assets::fabric::built_in("cotton-lawn").unwrap();
+        let mut fabric = Fabric::cotton_lawn();
         (fabric.stretch_warp_n_m, fabric.stretch_weft_n_m) = (1e6, 1e6);
         let corner = |x: f32, y: f32| Vec3::new(x * width, y * height, 0.0);
         let p = [corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)];
@@ -132,7 +132,7 @@ mod tests {
 
     #[test]
     fn a_strip_along_a_thread_has_the_threads_modulus() {
-        let fabric = toile_assets::fabric::built_in("cotton-lawn").unwrap();
+        let fabric = Fabric::cotton_lawn();
         let quarter = std::f32::consts::FRAC_PI_2;
         assert!((off_axis(0.0, &fabric) / fabric.stretch_warp_n_m - 1.0).abs() < 1e-6);
         assert!((off_axis(quarter, &fabric) / fabric.stretch_weft_n_m - 1.0).abs() < 1e-4);
@@ -144,7 +144,7 @@ mod tests {
     fn a_strip_of_any_mesh_has_the_modulus_of_its_fabric() {
         use crate::meshes::{rough_sheet, sheet, split};
         for stretch in [60.0, 600.0, 6000.0] {
-            let mut fabric = toile_assets::fabric::built_in("cotton-lawn").unwrap();
+            let mut fabric = Fabric::cotton_lawn();
             (fabric.stretch_warp_n_m, fabric.stretch_weft_n_m, fabric.shear_n_m) = (stretch, 0.6 * stretch, 60.0);
             let grid = sheet(12, 16, 0.02, 0.03);
             for (positions, faces) in [split(grid.clone(), true), grid, rough_sheet(0.4, 0.4, 0.03, 3)] {
@@ -164,7 +164,7 @@ mod tests {
 
     #[test]
     fn threads_that_do_not_stretch_stay_as_they_are() {
-        let mut fabric = toile_assets::fabric::built_in("cotton-lawn").unwrap();
+        let mut fabric = Fabric::cotton_lawn();
         fabric.stretch_warp_n_m = f32::INFINITY;
         assert_eq!(threads(&[], &[], 1.0, &fabric), fabric);
     }

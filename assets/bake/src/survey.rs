@@ -176,7 +176,7 @@ mod tests {
     }
 
     fn surveyed(shape: &Shape) -> MeshSurvey {
-        survey(shape, &toile_assets::fabric::built_in("cotton-lawn").unwrap())
+        survey(shape, &Fabric::cotton_lawn())
     }
 
     #[test]

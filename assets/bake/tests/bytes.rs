@@ -14,17 +14,6 @@ fn a_garment_comes_back_from_its_bytes() {
 }
 
 #[test]
-fn the_default_dress_comes_back_from_its_bytes() {
-    let body = toile_assets::body::build(
-        toile_base::body::Sex::Female,
-        &toile_base::body::Measures::average(toile_base::body::Sex::Female),
-    );
-    let style = toile_assets::wardrobe::style("sun-dress").unwrap();
-    let dress = style.dress("38", &body.unwrap()).unwrap();
-    assert_eq!(Garment::from_bytes(&dress.to_bytes()).unwrap(), dress);
-}
-
-#[test]
 fn other_versions_and_damage_are_refused_by_name() {
     let bytes = cloth().to_bytes();
     assert_eq!(Garment::from_bytes(b"a picture of a dress"), Err(BytesError::NotAGarment));

@@ -46,7 +46,7 @@ impl Reading {
 
     /// The least and the most that a body is built for (m).
     pub(super) const fn range(self) -> [f32; 2] {
-        use Reading::*;
+        use super::reading::Reading::*;
         match self {
             Stature => [1.2, 2.2],
             CervicaleHeight => [1.0, 1.95],

@@ -243,7 +243,11 @@ fn an_unknown_garment_or_size_is_told_what_there_is() {
 #[test]
 fn what_cannot_be_tucked_in_is_refused_with_the_cure() {
     let scratch = Scratch::new("tucked");
-    refused(&scratch, &["--garment", "t-shirt", "--tuck", "t-shirt"], &["cannot be tucked in", "waistband", "wear trousers"]);
+    refused(
+        &scratch,
+        &["--garment", "t-shirt", "--tuck", "t-shirt"],
+        &["cannot be tucked in", "waistband", "wear trousers"],
+    );
     let trousers = ["--garment", "wide-trousers"];
     refused(
         &scratch,

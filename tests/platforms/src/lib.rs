@@ -4,12 +4,14 @@
 //! The skirt is baked on the platform itself. The dress comes from a file, in the byte form of a baked garment.
 
 pub mod dress_recording;
+#[path = "../../../assets/src/scene/skirt/mod.rs"]
+pub mod skirt;
+
+mod skirt_scene;
+
 #[cfg(target_arch = "wasm32")]
 #[expect(unsafe_code, reason = "functions that a host calls by their names")]
 mod exports;
-#[path = "../../../assets/src/scene/skirt/mod.rs"]
-pub mod skirt;
-mod skirt_scene;
 
 use glam::Vec3A;
 use toile_base::numeric::hash;

@@ -9,7 +9,7 @@ use crate::fibers;
 use crate::meshes::{TestMesh, rough_sheet, rough_skirt, sheet, split, tube};
 
 fn fabric(bias: Option<f32>) -> Fabric {
-    let mut fabric = toile_assets::fabric::built_in("linen-twill").unwrap();
+    let mut fabric = Fabric::cotton_lawn();
     (fabric.bend_warp_un_m, fabric.bend_weft_un_m, fabric.bend_bias_un_m) = (20.0, 12.0, bias);
     fabric
 }

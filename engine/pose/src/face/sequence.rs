@@ -10,7 +10,7 @@ use toile_base::body::Sex;
 
 use super::adapt::{AdaptedHead, adapt};
 use super::head_mesh::HeadMesh;
-use super::prior::{OffsetField, Observation};
+use super::prior::{Observation, OffsetField};
 use super::sighting::observations;
 use super::track::{FEWEST, HeadTracker, TrackedFrame, TrackedState};
 use super::unfit::UnfitFace;
