@@ -7,7 +7,7 @@
 pub mod base;
 mod calibrate;
 mod fields;
-mod fitted;
+pub(crate) mod fitted;
 mod gauge;
 pub mod landmarks;
 mod morph;
@@ -26,7 +26,6 @@ pub mod tape;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use fitted::proportions;
 pub use fitted::{TOLERANCE, build, drawn, fitted, wanted};
 pub use outcome::{BodyError, Fitted};
 pub use reading::{Ansur, En, Readings, Vocabulary, Wanted};

@@ -205,7 +205,7 @@ fn a_full_disk_is_a_sentence_and_what_was_done_is_kept() {
     let scratch = folder("study-full", STUDY);
     // Files may not grow beyond some kilobytes, which is refused where a full disk would be.
     let line =
-        format!("trap '' XFSZ; ulimit -f 64; exec {} study study.toml --out out --no-pictures --quiet", crate::PROGRAM);
+        format!("trap '' XFSZ; ulimit -f 64; exec {} study.toml --out out --no-pictures --quiet", crate::PROGRAM);
     let output = Command::new("sh").args(["-c", &line]).current_dir(scratch.path()).output().unwrap();
     let said = refusal(&output, 4);
     assert!(

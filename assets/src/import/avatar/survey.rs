@@ -29,7 +29,7 @@ pub(super) struct BodySurvey {
 
 /// Reads levels, regions and measures.
 pub(super) fn survey(mesh: &Mesh, weights: &[SkinWeights], skeleton: &Skeleton, sex: Sex) -> Result<BodySurvey, Flaw> {
-    let ours = crate::body::proportions(sex);
+    let ours = crate::body::fitted::proportions(sex);
     let limbs = bone_regions();
     let regions: Vec<Region> = weights.iter().map(|w| region(w, &limbs)).collect();
     let crotch = crotch(mesh, &regions, skeleton)?;
