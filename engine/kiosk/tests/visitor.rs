@@ -445,7 +445,7 @@ fn serve_with(config: &str, own: bool, visit: impl FnOnce(&mut Finger) + Send) -
             flight_recorder: None,
         };
         let (changer, controller) = (SceneChanger::new(handover, true, None), visit_of(setup, window, played, switch));
-        let service = Service::new(live, changer, Box::new(controller), options, environment);
+        let service = Service::new(live, changer, Box::new(controller), &options, environment);
         let (_, _, record) = service.run().unwrap();
         hand.join().expect("the visit goes through all pages");
         record.states
