@@ -6,6 +6,8 @@ use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::sync::atomic::AtomicU32;
+use std::sync::atomic::Ordering::Relaxed;
 use std::time::{Duration, Instant};
 
 /// What the tests need beside the program, by Debian's packages.
@@ -92,7 +94,10 @@ pub struct Display {
 impl Display {
     /// One of this size, on a number that is free.
     pub fn start(size: [u32; 2]) -> Self {
-        let folder = std::env::temp_dir().join(format!("toile-x-{}-{}x{}", std::process::id(), size[0], size[1]));
+        // Tests of one process run beside each other: each display has a folder of its own.
+        static DISPLAYS: AtomicU32 = AtomicU32::new(0);
+        let number = DISPLAYS.fetch_add(1, Relaxed);
+        let folder = std::env::temp_dir().join(format!("toile-x-{}-{number}", std::process::id()));
         fs::create_dir_all(&folder).unwrap();
         let mut server = Command::new("Xvfb")
             .args(["-displayfd", "1", "-nolisten", "tcp", "-screen", "0", &format!("{}x{}x24", size[0], size[1])])
