@@ -1,10 +1,6 @@
 //! What is baked and shared: limits, skeleton, body, rig, fabrics, sizes, patterns, garments.
-//!
-//! Reads: TOML, OBJ and the data embedded under `data/`. Writes: immutable assets that every other room borrows.
-//! Budget: at load only; nothing here runs inside the frame.
-//! Thread: the loading thread.
 
-// Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
+// Modules in the order of the data: each imports only from the groups above its own (tests/tests/layers.rs).
 #[macro_use]
 mod put_line;
 

@@ -1,9 +1,5 @@
 //! The collision body: 51 spheres and the 32 tapered capsules between them, fitted to one body's surface.
 //!
-//! Reads: a body in its rest pose. Writes: one immutable [`Rig`].
-//! Budget: at load only, under 100 ms a body.
-//! Thread: the loading thread.
-//!
 //! A tapered capsule (round cone) is the convex hull of two spheres. The fit minimises the squared distance between the
 //! body's surface and the union of the capsules by Levenberg-Marquardt, left and right mirrored. Large distances cost
 //! more than their square, and skin outside the union more than union outside the skin: cloth rests on the union while

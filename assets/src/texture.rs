@@ -1,7 +1,4 @@
 //! Pictures that lie on a surface: read from PNG and JPEG, drawn as prints, laid side by side as an atlas.
-//!
-//! Reads: a file's bytes, of bounded size. Writes: texels in sRGB. Budget: at load; a picture takes 4 MiB at most.
-//! Thread: the loading thread.
 
 use std::io::Cursor;
 use std::sync::Arc;

@@ -53,12 +53,12 @@ fn shared() -> Vec<(PathBuf, Option<PathBuf>)> {
     found
 }
 
-fn each(law: impl Fn(&str, &Pattern, f64, &SewnMesh)) {
+fn each(link_curve: impl Fn(&str, &Pattern, f64, &SewnMesh)) {
     for (path, seams) in shared() {
         let pattern = read(&path, seams.as_deref()).unwrap();
         for spacing in SPACINGS {
             let sewn = sew(&pattern, spacing).unwrap();
-            law(&format!("{} at {spacing} m", path.file_name().unwrap().display()), &pattern, spacing, &sewn);
+            link_curve(&format!("{} at {spacing} m", path.file_name().unwrap().display()), &pattern, spacing, &sewn);
         }
     }
 }

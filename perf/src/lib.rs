@@ -1,10 +1,6 @@
 //! The evidence: what a part of the engine costs, and how exact it is at that cost.
-//!
-//! Reads: the engine's kernels, the scene's shopper. Writes: times (median of many runs) and errors against f64.
-//! Budget: some seconds a benchmark; never inside the frame.
-//! Thread: one, with nothing else running.
 
-// Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
+// Modules in the order of the data: each imports only from the groups above its own (tests/tests/layers.rs).
 pub mod agreement;
 pub mod backend;
 pub mod depth;

@@ -7,7 +7,7 @@
 //! made of.
 
 use glam::{DVec3, Vec3A};
-use toile_assets::scene::skirt::{Motion, Stretch};
+use toile_assets::scene::skirt::{SkirtMotion, Stretch};
 use toile_engine::cloth::Quality;
 use toile_fitting::heap::HeapProbe;
 use toile_gpu::backend::{Backend, Backends};
@@ -107,7 +107,7 @@ fn hold(one: &Ran, other: &Ran) {
 }
 
 fn walking() -> SkirtOptions {
-    SkirtOptions { verts: WALKING, motion: Motion::Walk, ..SkirtOptions::default() }
+    SkirtOptions { verts: WALKING, motion: SkirtMotion::Walk, ..SkirtOptions::default() }
 }
 
 #[test]
@@ -156,7 +156,7 @@ fn the_settled_skirt_is_as_near_to_the_oracle_as_the_processors() {
     let Some(backends) = device() else { return };
     let options = SkirtOptions {
         verts: 16 * 16,
-        motion: Motion::Settled,
+        motion: SkirtMotion::Settled,
         stretch: Stretch::Inextensible,
         quality: Some(Quality::Fine),
         ..SkirtOptions::default()

@@ -56,8 +56,8 @@ fn a_run_is_told_by_stage_and_replayed_bit_for_bit_with_two_workers_and_with_one
 
 /// One joint in one frame, half a millimetre: the replay says so with exit 6 and the step.
 fn diverges(scratch: &Scratch) {
-    use toile_engine::frame_loop::recording::{self, Entry, Recording};
-    let Recording { text, mut entries, .. } =
+    use toile_engine::frame_loop::recording::{self, Entry, LoopRecording};
+    let LoopRecording { text, mut entries, .. } =
         recording::read(&fs::read(scratch.path().join("run.tape")).unwrap()).unwrap();
     let frame = entries.iter().position(|e| matches!(e, Entry::SensorFrame(seen) if seen.number == 20)).unwrap();
     let Entry::SensorFrame(seen) = &mut entries[frame] else { unreachable!() };

@@ -1,10 +1,10 @@
 //! The engine beside the oracle: the skirt at rest, and in the first tenth of a second of a swing.
 
 use glam::DVec3;
-use toile_assets::scene::skirt::{Motion, Stretch};
+use toile_assets::scene::skirt::{SkirtMotion, Stretch};
 use toile_engine::cloth::Quality;
 use toile_fitting::heap::HeapProbe;
-use toile_perf::oracle::{Oracle, Problem, Solved, State, Step, adapter, measure};
+use toile_perf::oracle::{Oracle, OracleStep, Problem, Solved, State, adapter, measure};
 use toile_perf::skirt::SkirtScene;
 use toile_perf::skirt::options::SkirtOptions;
 
@@ -12,7 +12,7 @@ use toile_perf::skirt::options::SkirtOptions;
 fn skirt(side: usize, substeps: Option<u32>) -> SkirtScene {
     let options = SkirtOptions {
         verts: side * side,
-        motion: Motion::Settled,
+        motion: SkirtMotion::Settled,
         stretch: Stretch::Inextensible,
         quality: Some(Quality::Fine),
         substeps,
@@ -93,7 +93,7 @@ fn the_engine_swings_as_the_oracle_does() {
     let dt = 1.0 / 120.0 / f64::from(substeps);
     let kept = (-f64::from(scene.garment.fabric.damping_per_s) * dt).exp();
     let [_, solids] = adapter::solids(scene.colliders());
-    let step = Step { kept, solids: [solids.clone(), solids], ..Step::of(dt) };
+    let step = OracleStep { kept, solids: [solids.clone(), solids], ..OracleStep::of(dt) };
     // Pushed aside, and not evenly: a cone of threads that do not stretch stands by itself.
     let mut start = State::at_rest(&oracle.problem().start);
     for i in (0..start.x.len()).filter(|i| !oracle.problem().pinned(*i)) {

@@ -52,7 +52,7 @@ fn room() -> Result<DepthFrame, Box<dyn Error>> {
     let moved: Vec<Vec3> = other.mesh.positions.iter().map(|p| *p + Vec3::new(0.35, 0.0, -0.55)).collect();
     let eye = Vec3::new(0.0, 1.2, 2.5);
     let camera = SyntheticCamera::looking_at(Intrinsics::KINECT_V1, eye, Vec3::new(0.0, 0.9, 0.0));
-    let people: [room::Surface<'_>; 2] =
+    let people: [room::RoomSurface<'_>; 2] =
         [(&shopper.mesh.positions, &shopper.mesh.triangles), (&moved, &other.mesh.triangles)];
     let view = room::view(&camera, -0.9, &people);
     Ok(camera.frame(0, KinectNoise::new(11).apply(&camera.intrinsics, &view.z)))

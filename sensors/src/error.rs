@@ -6,7 +6,7 @@ use toile_assets::file::FileError;
 
 /// Where in a file something is wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
+pub enum FilePlace {
     /// A line of a text file, from 1.
     Line(usize),
     /// A frame, from 0.
@@ -17,7 +17,7 @@ pub enum Place {
     Whole,
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for FilePlace {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Line(n) => write!(f, ", line {n}"),
@@ -61,7 +61,7 @@ pub enum SourceError {
         /// The file's path as the user gave it.
         path: String,
         /// The line, frame or byte.
-        place: Place,
+        place: FilePlace,
         /// What is wrong there.
         problem: String,
         /// What the user can do about it.
@@ -71,14 +71,14 @@ pub enum SourceError {
 
 /// A fault found by a reader, which knows bytes but no path.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Fault {
-    pub place: Place,
+pub(crate) struct ReaderFault {
+    pub place: FilePlace,
     pub problem: String,
     pub cure: &'static str,
 }
 
-impl Fault {
-    pub fn new(place: Place, problem: impl Into<String>, cure: &'static str) -> Self {
+impl ReaderFault {
+    pub fn new(place: FilePlace, problem: impl Into<String>, cure: &'static str) -> Self {
         Self { place, problem: problem.into(), cure }
     }
 

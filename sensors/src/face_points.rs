@@ -16,7 +16,7 @@ use glam::DVec2;
 use serde::Deserialize;
 use toile_assets::file::{self, FileKind};
 
-use crate::error::{Fault, Place, SourceError};
+use crate::error::{FilePlace, ReaderFault, SourceError};
 use crate::limits::MAX_CAMERAS;
 
 /// Points of a face.
@@ -121,8 +121,8 @@ pub fn read_marked(path: &Path) -> Result<MarkedPhotographs, SourceError> {
     parse(&text, folder).map_err(|fault| fault.at(&shown))
 }
 
-fn parse(text: &str, folder: &Path) -> Result<MarkedPhotographs, Fault> {
-    let whole = |problem: String| Fault::new(Place::Whole, problem, CURE);
+fn parse(text: &str, folder: &Path) -> Result<MarkedPhotographs, ReaderFault> {
+    let whole = |problem: String| ReaderFault::new(FilePlace::Whole, problem, CURE);
     let raw: RawFile =
         serde_json::from_str(text).map_err(|e| whole(format!("it holds no marked photographs ({e})")))?;
     let (count, sequence) = (raw.photographs.len(), raw.sequence);
@@ -136,8 +136,8 @@ fn parse(text: &str, folder: &Path) -> Result<MarkedPhotographs, Fault> {
 }
 
 /// One photograph; a frame of a sequence may have no points at all.
-fn photograph(r: RawPhotograph, sequence: bool, folder: &Path) -> Result<MarkedPhotograph, Fault> {
-    let whole = |problem: String| Fault::new(Place::Whole, format!("{}: {problem}", r.picture), CURE);
+fn photograph(r: RawPhotograph, sequence: bool, folder: &Path) -> Result<MarkedPhotograph, ReaderFault> {
+    let whole = |problem: String| ReaderFault::new(FilePlace::Whole, format!("{}: {problem}", r.picture), CURE);
     let points = points(r.points, sequence).map_err(whole)?;
     let seen = points.iter().flatten().count();
     if seen < FEWEST && !sequence {
@@ -149,11 +149,11 @@ fn photograph(r: RawPhotograph, sequence: bool, folder: &Path) -> Result<MarkedP
     if sequence && r.outline.is_some() {
         let problem = format!("{}: an outline in a sequence, which is followed by its points", r.picture);
         let cure = "leave it out, or give the photograph without \"sequence\"";
-        return Err(Fault::new(Place::Whole, problem, cure));
+        return Err(ReaderFault::new(FilePlace::Whole, problem, cure));
     }
     let outlines = r.outline.map(outlines).transpose().map_err(|problem| {
         let cure = "give a curve as [[x, y], [x, y], ...] in the picture's pixels, or several of them";
-        Fault::new(Place::Whole, format!("{}: {problem}", r.picture), cure)
+        ReaderFault::new(FilePlace::Whole, format!("{}: {problem}", r.picture), cure)
     })?;
     let picture = folder.join(&r.picture);
     let outlines = outlines.unwrap_or_default();

@@ -1,10 +1,9 @@
 //! What is seen: depth frames and joints, recordings of them, and the filters that make them believable.
 //!
-//! Reads: session files, recordings of real sensors, a posed mesh (synthetic). Writes: `Joints` and `DepthFrame`.
 //! Budget: 33 ms a frame at 30 Hz; joints are filtered in under 50 us.
 //! Thread: the sensor thread.
 
-// Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
+// Modules in the order of the data: each imports only from the groups above its own (tests/tests/layers.rs).
 pub mod error;
 
 pub mod limits;

@@ -3,10 +3,6 @@
 //! A folder holds one picture a camera, PNG or JPEG, in the order of the cameras' names. A picture with transparent pixels is a mask by
 //! its alpha, any other by its brightness: white is the person. With backgrounds (the same pictures without the person), a pixel is
 //! the person as far as it differs.
-//!
-//! Reads: pictures of calibrated cameras, and backgrounds. Writes: the coverage of each pixel; a folder of frames for each camera is a
-//! [`MaskSequence`]. Budget: offline, one frame of pictures at a time.
-//! Thread: the caller's.
 
 mod sequence;
 
@@ -16,7 +12,7 @@ use image::DynamicImage;
 use toile_assets::file;
 
 use crate::calibration::CalibratedCamera;
-use crate::error::{Fault, Place, SourceError};
+use crate::error::{FilePlace, ReaderFault, SourceError};
 use crate::pictures::{PICTURE, decode_any};
 
 /// Differences from the background (of 255, the largest of three channels) that are nobody, and wholly the person.
@@ -85,9 +81,12 @@ fn pictures(folder: &Path, cameras: usize) -> Result<Vec<PathBuf>, SourceError> 
     }
     files.sort();
     if files.len() != cameras {
-        return Err(
-            Fault::new(Place::Whole, format!("{} pictures for {cameras} cameras", files.len()), CURE).at(&shown)
-        );
+        return Err(ReaderFault::new(
+            FilePlace::Whole,
+            format!("{} pictures for {cameras} cameras", files.len()),
+            CURE,
+        )
+        .at(&shown));
     }
     Ok(files)
 }
@@ -99,7 +98,9 @@ fn read(path: &Path, camera: &CalibratedCamera) -> Result<DynamicImage, SourceEr
     if (picture.width(), picture.height()) != (w, h) {
         let (width, height) = (picture.width(), picture.height());
         let problem = format!("it has {width} x {height} pixels and its camera {w} x {h}");
-        return Err(Fault::new(Place::Whole, problem, "calibrate the camera at the size of its pictures").at(&shown));
+        return Err(
+            ReaderFault::new(FilePlace::Whole, problem, "calibrate the camera at the size of its pictures").at(&shown)
+        );
     }
     Ok(picture)
 }
@@ -153,8 +154,8 @@ impl Covered {
     }
 }
 
-fn check(mask: &Mask) -> Result<(), Fault> {
-    let fault = |problem: String, cure| Err(Fault::new(Place::Whole, problem, cure));
+fn check(mask: &Mask) -> Result<(), ReaderFault> {
+    let fault = |problem: String, cure| Err(ReaderFault::new(FilePlace::Whole, problem, cure));
     match covered(mask).0 {
         c if c < COVERED[0] => fault(
             format!("{:.2} % of it is a person's", 100.0 * c),

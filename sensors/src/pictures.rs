@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use image::{DynamicImage, ImageReader, Limits, RgbImage};
 use toile_assets::file::{self, FileKind};
 
-use crate::error::{Fault, Place, SourceError};
+use crate::error::{FilePlace, ReaderFault, SourceError};
 use crate::limits::MAX_CAMERAS;
 use toile_base::limits::MAX_SIDE;
 
@@ -28,7 +28,7 @@ const CURE: &str = "give a folder of numbered PNG or JPEG files for each camera,
 
 /// The files of one camera.
 #[derive(Debug, Clone, PartialEq)]
-struct View {
+struct CameraFolder {
     /// The folder's name.
     name: String,
     /// One file a frame, in order.
@@ -39,7 +39,7 @@ struct View {
 #[derive(Debug, Clone, PartialEq)]
 pub struct PictureSequence {
     path: String,
-    views: Vec<View>,
+    views: Vec<CameraFolder>,
     first: u64,
 }
 
@@ -57,7 +57,7 @@ impl PictureSequence {
                 views.insert(name_of(&inner), files);
             }
         }
-        let whole = |problem: String, cure| Fault::new(Place::Whole, problem, cure).at(&path);
+        let whole = |problem: String, cure| ReaderFault::new(FilePlace::Whole, problem, cure).at(&path);
         if views.len() != cameras {
             return Err(whole(format!("{} folders of pictures for {cameras} cameras", views.len()), CURE));
         }
@@ -81,7 +81,7 @@ impl PictureSequence {
         if frames > MAX_FRAMES {
             return Err(whole(format!("{frames} frames where {MAX_FRAMES} are read"), "give a part of them"));
         }
-        let views = views.into_iter().map(|(name, files)| View { name, files: files.into_values().collect() });
+        let views = views.into_iter().map(|(name, files)| CameraFolder { name, files: files.into_values().collect() });
         Ok(Self { path, views: views.collect(), first: first.0 })
     }
 
@@ -117,7 +117,7 @@ impl PictureSequence {
             let (w, h) = picture.dimensions();
             let problem = format!("it has {w} x {h} pixels and its camera {} x {}", size[0], size[1]);
             let cure = "calibrate the camera at the size of its pictures";
-            return Err(Fault::new(Place::Whole, problem, cure).at(&path.display().to_string()));
+            return Err(ReaderFault::new(FilePlace::Whole, problem, cure).at(&path.display().to_string()));
         }
         Ok(picture)
     }
@@ -137,14 +137,14 @@ pub fn read_picture(path: &Path) -> Result<RgbImage, SourceError> {
     decode(&bytes).map_err(|fault| fault.at(&path.display().to_string()))
 }
 
-fn decode(bytes: &[u8]) -> Result<RgbImage, Fault> {
+fn decode(bytes: &[u8]) -> Result<RgbImage, ReaderFault> {
     Ok(decode_any(bytes)?.into_rgb8())
 }
 
 /// Decodes a PNG or JPEG of any kind of pixels.
-pub(crate) fn decode_any(bytes: &[u8]) -> Result<DynamicImage, Fault> {
+pub(crate) fn decode_any(bytes: &[u8]) -> Result<DynamicImage, ReaderFault> {
     let fault = |e: &dyn std::fmt::Display| {
-        Fault::new(Place::Whole, format!("it is no picture in PNG or JPEG ({e})"), "save it again")
+        ReaderFault::new(FilePlace::Whole, format!("it is no picture in PNG or JPEG ({e})"), "save it again")
     };
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| fault(&e))?;
     let mut limits = Limits::default();

@@ -1,4 +1,4 @@
-//! Laws of the joint filter.
+//! Tests of the joint filter.
 
 use std::time::Instant;
 

@@ -33,7 +33,7 @@ impl Two {
                 body.mesh.positions.iter().map(|p| Quat::from_rotation_y(*turn) * *p + *to).collect()
             })
             .collect();
-        let surfaces: Vec<room::Surface<'_>> =
+        let surfaces: Vec<room::RoomSurface<'_>> =
             placed.iter().zip(&self.0).map(|(p, body)| (&p[..], &body.mesh.triangles[..])).collect();
         room::view(&camera(), -0.9, &surfaces)
     }

@@ -10,8 +10,8 @@ use toile_base::frame::Joints;
 use toile_base::garment::Garment;
 use toile_engine::body::JointFrames;
 use toile_engine::cloth::Settings;
-use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::triple_buffer::Reader;
+use toile_engine::world::{Snapshot, World};
 use toile_sensors::filter::JointFilter;
 
 /// Frames a second of the sensor.
@@ -77,7 +77,7 @@ fn nearest_size(style: &Style, body: &Body) -> String {
 ///
 /// # Panics
 /// Where the body has no colliders.
-pub fn frame(body: Body, garments: Vec<Garment>) -> Frame {
+pub fn frame(body: Body, garments: Vec<Garment>) -> World {
     frame_and_reader(body, garments).0
 }
 
@@ -85,13 +85,13 @@ pub fn frame(body: Body, garments: Vec<Garment>) -> Frame {
 ///
 /// # Panics
 /// As [`frame`].
-pub fn frame_and_reader(body: Body, garments: Vec<Garment>) -> (Frame, Reader<Snapshot>) {
+pub fn frame_and_reader(body: Body, garments: Vec<Garment>) -> (World, Reader<Snapshot>) {
     let rig = toile_assets::rig::fit(&body);
-    Frame::new(body, &rig, garments, Settings::default()).expect("a frame of the wardrobe")
+    World::new(body, &rig, garments, Settings::default()).expect("a frame of the wardrobe")
 }
 
 /// The scene's shopper dressed in garments of the wardrobe, as she stands at the begin of a track.
-pub fn dressed(names: &[&str], track: &[Joints]) -> Frame {
+pub fn dressed(names: &[&str], track: &[Joints]) -> World {
     let body = shopper();
     let garments = names.iter().map(|name| dress(name, &body)).collect();
     let mut frame = frame(body, garments);
@@ -100,7 +100,7 @@ pub fn dressed(names: &[&str], track: &[Joints]) -> Frame {
 }
 
 /// Whether every number that the frame shows or keeps is finite.
-pub fn is_finite(frame: &Frame) -> bool {
+pub fn is_finite(frame: &World) -> bool {
     let pose = frame.pose();
     let posed = pose.root.is_finite() && pose.local.iter().all(|q| q.is_finite());
     posed

@@ -1,52 +1,52 @@
-//! Exceptions from the laws, by name: `tests/exceptions.toml`, which only may shrink.
+//! Exceptions from the structure tests, by name: `tests/exceptions.toml`, which only may shrink.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::tree;
 
-/// The exceptions of one law: each with its reason.
+/// The exceptions of one rule: each with its reason.
 pub type Exceptions = BTreeMap<String, String>;
 
-/// The exceptions of a law, as the file has them.
+/// The exceptions of a rule, as the file has them.
 ///
 /// # Panics
 /// Where the file is not a table of tables of reasons.
-pub fn of(law: &str) -> Exceptions {
-    read(&tree::read(&tree::root().join("tests/exceptions.toml")), law)
+pub fn of(rule: &str) -> Exceptions {
+    read(&tree::read(&tree::root().join("tests/exceptions.toml")), rule)
 }
 
-fn read(text: &str, law: &str) -> Exceptions {
+fn read(text: &str, rule: &str) -> Exceptions {
     let table: toml::Table = text.parse().unwrap_or_else(|e| panic!("tests/exceptions.toml: {e}"));
-    let Some(rows) = table.get(law) else { return Exceptions::new() };
-    let rows = rows.as_table().unwrap_or_else(|| panic!("tests/exceptions.toml: {law} is a table"));
+    let Some(rows) = table.get(rule) else { return Exceptions::new() };
+    let rows = rows.as_table().unwrap_or_else(|| panic!("tests/exceptions.toml: {rule} is a table"));
     let reason = |value: &toml::Value| value.as_str().expect("a reason is a text").trim().to_owned();
     rows.iter().map(|(name, value)| (name.clone(), reason(value))).collect()
 }
 
-/// What a law has to say: violations that are not excepted, and exceptions that nothing needs any more or that give no
+/// What a rule has to say: violations that are not excepted, and exceptions that nothing needs any more or that give no
 /// reason; empty where all is well.
-pub fn judge(law: &str, found: &BTreeSet<String>, excepted: &Exceptions) -> String {
+pub fn judge(rule: &str, found: &BTreeSet<String>, excepted: &Exceptions) -> String {
     let mut violations = String::new();
     for name in found.iter().filter(|name| !excepted.contains_key(*name)) {
-        violations.push_str(&format!("{law}: {name:?} breaks the law\n"));
+        violations.push_str(&format!("{rule}: {name:?} breaks the rule\n"));
     }
     for (name, reason) in excepted {
         if !found.contains(name) {
             violations
-                .push_str(&format!("{law}: {name:?} is not needed any more: take it out of tests/exceptions.toml\n"));
+                .push_str(&format!("{rule}: {name:?} is not needed any more: take it out of tests/exceptions.toml\n"));
         } else if reason.is_empty() {
-            violations.push_str(&format!("{law}: {name:?} is excepted without a reason\n"));
+            violations.push_str(&format!("{rule}: {name:?} is excepted without a reason\n"));
         }
     }
     violations
 }
 
-/// Holds a law over what was found.
+/// Holds a rule over what was found.
 ///
 /// # Panics
 /// Where a violation is not excepted, or an exception is not needed.
-pub fn hold(law: &str, found: &BTreeSet<String>) {
-    let violations = judge(law, found, &of(law));
+pub fn hold(rule: &str, found: &BTreeSet<String>) {
+    let violations = judge(rule, found, &of(rule));
     assert!(violations.is_empty(), "\n{violations}");
 }
 

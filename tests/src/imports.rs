@@ -1,7 +1,7 @@
 //! Which file of a crate imports which: the arrows between files, by the items that they name.
 //!
 //! An arrow runs from a file that names an item to the file that defines it, past every re-export on the way. Handing on
-//! (`pub use child::Item;`) and declaring (`mod child;`) are a door's work and no arrows, unless the door's own code uses
+//! (`pub use child::Item;`) and declaring (`mod child;`) are a parent's work and no arrows, unless the parent's own code uses
 //! the name. So a parent may show its children, and a child may use its siblings by way of the parent; but a child that
 //! uses what its parent defines, while the parent uses the child, is a circle of two files. Tests are passed over.
 //! Methods are not seen: who calls `x.f()` names no file.
@@ -197,10 +197,10 @@ pub fn circles<N: Ord + Clone>(arrows: &[(N, N)]) -> Vec<BTreeSet<N>> {
     found
 }
 
-/// The groups of modules that a crate's door declares, in the order of the file: groups are parted by blank lines.
-pub fn groups(door: &str) -> Vec<Vec<String>> {
+/// The groups of modules that a crate's root declares, in the order of the file: groups are parted by blank lines.
+pub fn groups(root: &str) -> Vec<Vec<String>> {
     let mut found = vec![Vec::new()];
-    for line in door.lines().map(str::trim) {
+    for line in root.lines().map(str::trim) {
         let name = line
             .strip_suffix(';')
             .and_then(|l| l.rsplit_once("mod "))

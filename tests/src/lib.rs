@@ -1,10 +1,6 @@
-//! What the tests of the house share; the tests themselves live in `tests/`.
-//!
-//! Reads: the sources and manifests of the workspace, the scene's shopper, recordings. Writes: nothing.
-//! Budget: under a second for the whole tree; half a second to dress the shopper's body.
-//! Thread: any test's.
+//! What the structure tests and the tests of the whole share; the tests themselves live in `tests/`.
 
-// Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
+// Modules in the order of the data: each imports only from the groups above its own (tests/tests/layers.rs).
 pub mod cloth;
 pub mod dressed;
 pub mod meshes;

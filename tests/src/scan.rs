@@ -187,10 +187,10 @@ fn item_length(tokens: &[Token]) -> usize {
     tokens.len()
 }
 
-/// Every path that starts with `crate`, `super`, `self` or a crate of the house, and every path of a `use`.
+/// Every path that starts with `crate`, `super`, `self` or one of the project's crates, and every path of a `use`.
 pub fn paths(tokens: &[Token]) -> Vec<NamedPath> {
-    let of_the_house = |word: &str| ["crate", "super", "self", "toile"].contains(&word) || word.starts_with("toile_");
-    all_paths(tokens).into_iter().filter(|p| p.role != Role::Code || of_the_house(&p.segments[0])).collect()
+    let of_the_project = |word: &str| ["crate", "super", "self", "toile"].contains(&word) || word.starts_with("toile_");
+    all_paths(tokens).into_iter().filter(|p| p.role != Role::Code || of_the_project(&p.segments[0])).collect()
 }
 
 /// Every path of a `use`, and every path of two or more segments in the code.
@@ -302,7 +302,7 @@ mod tests {
 
     #[test]
     fn visibility_and_plain_use_are_no_arrows_of_their_own() {
-        assert_eq!(named("pub(crate) fn f() {} pub(super) struct S; use room::{Item};"), ["room::Item"]);
+        assert_eq!(named("pub(crate) fn f() {} pub(super) struct S; use part::{Item};"), ["part::Item"]);
     }
 
     #[test]

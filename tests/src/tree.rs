@@ -3,9 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The crates, lowest floor first: a crate imports only those before it. Folder and name. A new crate gets a line here;
-/// the order of its rooms stands in its own `lib.rs`, as groups of `mod` parted by blank lines.
-pub const FLOORS: &[(&str, &str)] = &[
+/// The crates, in order: a crate imports only those before it. Folder and name. A new crate gets a line here;
+/// the order of its modules stands in its own `lib.rs`, as groups of `mod` parted by blank lines.
+pub const CRATES: &[(&str, &str)] = &[
     ("assets/base", "toile-base"),
     ("assets/bake", "toile-bake"),
     ("assets", "toile-assets"),
@@ -117,8 +117,8 @@ mod tests {
     }
 
     #[test]
-    fn every_floor_is_there() {
-        for (folder, name) in FLOORS {
+    fn every_crate_is_there() {
+        for (folder, name) in CRATES {
             let manifest = read(&root().join(folder).join("Cargo.toml"));
             assert!(manifest.contains(&format!("name = \"{name}\"")), "{folder}");
         }

@@ -12,15 +12,15 @@ use toile_base::filter::Filter;
 use toile_engine::body::Poser;
 use toile_engine::body::filters::{LimitFilter, PoseFilter};
 use toile_engine::clock::{Clock, SimClock};
-use toile_engine::frame::Snapshot;
 use toile_engine::frame_loop::ThreadLoop;
 use toile_engine::frame_loop::event::{EVENTS, EVENTS_NAME, EventKind, NoCounters};
-use toile_engine::frame_loop::physics_thread::{FrameScene, PhysicsOutputs, PhysicsThread};
+use toile_engine::frame_loop::physics_thread::{PhysicsOutputs, PhysicsThread, WorldScene};
 use toile_engine::frame_loop::queue::bounded;
 use toile_engine::frame_loop::recording::{ENTRIES, ENTRIES_NAME};
 use toile_engine::frame_loop::render_thread::{RenderThread, Renderer};
 use toile_engine::frame_loop::sensor_thread::{Playback, SensorFrame, SensorThread};
 use toile_engine::triple_buffer::TripleBuffer;
+use toile_engine::world::Snapshot;
 use toile_sensors::filter::angles::AngleFilter;
 use toile_sensors::filter::one_euro::OneEuroSettings;
 use toile_sensors::filter::predict::Predictor;
@@ -146,7 +146,7 @@ fn no_turn_of_the_loop_costs_an_allocation_whatever_happens() {
     let (recording, entries) = bounded(ENTRIES_NAME, ENTRIES / 8);
     let outlets = PhysicsOutputs { events: sender, recording: Some(recording) };
     let mut physics =
-        PhysicsThread::new(FrameScene::new(frame), clock.clone(), 0, news, outlets, NoCounters).warming_up(60);
+        PhysicsThread::new(WorldScene::new(frame), clock.clone(), 0, news, outlets, NoCounters).warming_up(60);
     let mut sense = SensorThread::new(Playback::new(&seen, 0, 1), JointFilter::default(), clock.clone(), writer);
     let mut render = RenderThread::new(Glance(0.0), clock.clone(), 0, reader);
     let found = allocations(|| {

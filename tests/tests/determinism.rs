@@ -5,20 +5,20 @@ use std::thread;
 use toile_base::clock::ticks_to_ns;
 use toile_base::frame::Joints;
 use toile_engine::cloth::ContactRates;
-use toile_engine::frame::Frame;
+use toile_engine::world::World;
 use toile_sensors::sample::sample;
 use toile_tests::dressed;
 
 /// Two seconds of the scene, in which the arms rise and the walk begins.
 const STEPS: u64 = 240;
 
-fn play(track: &[Joints]) -> Frame {
-    let mut frame = dressed::dressed(&["sun-dress"], track);
+fn play(track: &[Joints]) -> World {
+    let mut world = dressed::dressed(&["sun-dress"], track);
     let start = track[0].time_ns;
     for tick in 0..STEPS {
-        frame.step(&sample(track, start + ticks_to_ns(tick)).expect("a track with frames"));
+        world.step(&sample(track, start + ticks_to_ns(tick)).expect("a track with frames"));
     }
-    frame
+    world
 }
 
 #[test]
@@ -40,22 +40,22 @@ fn two_runs_end_in_the_same_bits_and_another_input_in_others() {
     assert_ne!(first.state_hash(), third.state_hash(), "a joint that moved by a millimetre leaves no trace");
 }
 
-/// Two seconds in which contact is given up and taken back, as the governor does, measured every so many steps.
-fn measured_every(steps: u64, track: &[Joints]) -> Frame {
-    let mut frame = dressed::dressed(&["sun-dress"], track);
-    frame.measure_every(steps);
+/// Two seconds in which contact is given up and taken back, as quality control does, measured every so many steps.
+fn measured_every(steps: u64, track: &[Joints]) -> World {
+    let mut world = dressed::dressed(&["sun-dress"], track);
+    world.measure_every(steps);
     let start = track[0].time_ns;
     for tick in 0..STEPS {
         let part = (tick / 20 % 6) as usize;
         let rates = |kind: [u8; 6]| kind[part];
-        frame.set_contact(ContactRates {
+        world.set_contact(ContactRates {
             folds: rates([1, 2, 4, 0, 2, 0]),
             layers: rates([1, 1, 2, 0, 2, 0]),
             skin: rates([1, 2, 1, 0, 4, 1]),
         });
-        frame.step(&sample(track, start + ticks_to_ns(tick)).expect("a track with frames"));
+        world.step(&sample(track, start + ticks_to_ns(tick)).expect("a track with frames"));
     }
-    frame
+    world
 }
 
 /// A loop that is late measures at other steps than its replay.

@@ -1,4 +1,4 @@
-//! Documents that are true: what they name of the house is there.
+//! Documents that are true: the paths that they name exist.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -6,18 +6,19 @@ use std::path::Path;
 use toile_tests::exceptions;
 use toile_tests::tree;
 
-/// Folders of the house; a path in a document that begins with one of them leads to something.
+/// Folders of the project; a path in a document that begins with one of them leads to something.
 const FOLDERS: [&str; 6] = ["assets/", "sensors/", "engine/", "perf/", "tests/", "docs/"];
 
-/// The paths of the house between backticks, whole or as the beginning of a command's argument.
+/// The paths of the project between backticks, whole or as the beginning of a command's argument.
 fn named_paths(text: &str) -> Vec<&str> {
     let quoted = text.split('`').skip(1).step_by(2);
-    let of_the_house = |word: &&str| FOLDERS.iter().any(|folder| word.starts_with(folder) && word.len() > folder.len());
+    let of_the_project =
+        |word: &&str| FOLDERS.iter().any(|folder| word.starts_with(folder) && word.len() > folder.len());
     // What stands for several (`docs/*.md`) or names a part (`skin.rs:12`) is cut there.
     quoted
         .filter(|quote| !quote.contains('\n'))
         .flat_map(str::split_whitespace)
-        .filter(of_the_house)
+        .filter(of_the_project)
         .map(|word| word.split(['*', ':', '{', '<', '?']).next().unwrap_or(word).trim_end_matches(['/', ',', ')', ';']))
         .collect()
 }

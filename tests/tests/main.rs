@@ -1,18 +1,18 @@
 //! All integration tests of the crate, linked once.
 
+mod baking;
+mod colliders;
+mod contact;
 mod determinism;
 mod docs;
-mod house;
-mod laws;
-mod laws_baking;
-mod laws_colliders;
-mod laws_contact;
-mod laws_links;
-mod laws_motion;
-mod laws_tucked;
 mod layers;
+mod link_curves;
+mod motion;
 mod names;
 mod recordings;
 mod scenes;
 mod skirt;
+mod structure;
 mod test_binaries;
+mod tucking;
+mod world_step;

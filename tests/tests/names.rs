@@ -6,9 +6,9 @@ use toile_tests::exceptions;
 use toile_tests::imports::CrateFiles;
 use toile_tests::items::{self, ItemKind};
 use toile_tests::scan;
-use toile_tests::tree::{self, FLOORS};
+use toile_tests::tree::{self, CRATES};
 
-/// Names that each room of a crate may have: whoever reads `contact::Settings` knows what it is.
+/// Names that each module of a crate may have: a reader of `contact::Settings` knows what it is.
 const CONVENTIONAL: [&str; 2] = ["Error", "Settings"];
 
 /// Words of the theatre and the workshop, of which none says what a part of a program does.
@@ -37,8 +37,8 @@ const FORBIDDEN: [&str; 22] = [
     "wings",
 ];
 
-/// Words that are good ones of a type (a stage of a pipeline), but name no room.
-const NO_ROOM: [&str; 1] = ["stage"];
+/// Words that are good ones of a type (a stage of a pipeline), but name no module.
+const NO_MODULE: [&str; 1] = ["stage"];
 
 /// The words of a name in either case, in small letters: `TapeError` and `tape_error` are `tape`, `error`.
 fn words(name: &str) -> Vec<String> {
@@ -57,7 +57,7 @@ fn words(name: &str) -> Vec<String> {
     found
 }
 
-fn is_forbidden(name: &str, room: bool) -> bool {
+fn is_forbidden(name: &str, module: bool) -> bool {
     let words = words(name);
     // What starts and watches a service is called so: systemd, launchd.
     if words == ["service", "manager"] {
@@ -66,7 +66,7 @@ fn is_forbidden(name: &str, room: bool) -> bool {
     // A body has eyes, and rays are cast: in company such a word may say what it means.
     let alone = ["eye", "cast", "glass", "tape"];
     words.iter().any(|w| FORBIDDEN.contains(&w.as_str()) && (words.len() == 1 || !alone.contains(&w.as_str())))
-        || (room && words.len() == 1 && NO_ROOM.contains(&words[0].as_str()))
+        || (module && words.len() == 1 && NO_MODULE.contains(&words[0].as_str()))
 }
 
 /// The types of a crate outside tests, each with the files that define one of its name.
@@ -89,7 +89,7 @@ fn type_names(source: &str) -> Vec<String> {
 #[test]
 fn a_type_has_its_name_alone_in_its_crate() {
     let mut found = BTreeSet::new();
-    for (folder, name) in FLOORS {
+    for (folder, name) in CRATES {
         for (of, places) in types(folder) {
             if places.len() > 1 && !CONVENTIONAL.contains(&of.as_str()) {
                 println!("{name} {of}: {places:?}");
@@ -103,7 +103,7 @@ fn a_type_has_its_name_alone_in_its_crate() {
 #[test]
 fn names_are_the_fields_own() {
     let mut found = BTreeSet::new();
-    for (folder, name) in FLOORS {
+    for (folder, name) in CRATES {
         for (of, _) in types(folder).into_iter().filter(|(of, _)| is_forbidden(of, false)) {
             found.insert(format!("{name} {of}"));
         }

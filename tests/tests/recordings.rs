@@ -13,7 +13,7 @@ use toile_base::limits::STEP_SECONDS;
 use toile_base::skeleton::Pose;
 use toile_engine::body::ROOT_SPEED;
 use toile_engine::body::smooth::LIMB_SPEED;
-use toile_engine::frame::Frame;
+use toile_engine::world::World;
 use toile_sensors::filter::JointFilter;
 use toile_sensors::sample::sample;
 use toile_sensors::source::{OpenOptions, open};
@@ -67,29 +67,29 @@ fn filtered(file: &Path) -> Vec<Joints> {
 }
 
 /// An average woman in these garments, through a recording.
-fn play(track: &[Joints], worn: &[&str]) -> (Frame, Figures) {
+fn play(track: &[Joints], worn: &[&str]) -> (World, Figures) {
     let body = toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).expect("the average woman");
     let garments = worn.iter().map(|name| dressed::dress(name, &body)).collect();
-    let mut frame = dressed::frame(body, garments);
-    frame.dress(&track[0]);
+    let mut world = dressed::frame(body, garments);
+    world.dress(&track[0]);
     let mut figures = Figures::default();
     let start = track[0].time_ns;
     for tick in 0..ns_to_ticks(track[track.len() - 1].time_ns - start).max(1) {
-        let before = *frame.pose();
-        frame.step(&sample(track, start + ticks_to_ns(tick)).expect("a track with frames"));
-        figures.look(&before, frame.pose());
-        assert!(dressed::is_finite(&frame), "tick {tick}");
+        let before = *world.pose();
+        world.step(&sample(track, start + ticks_to_ns(tick)).expect("a track with frames"));
+        figures.look(&before, world.pose());
+        assert!(dressed::is_finite(&world), "tick {tick}");
     }
-    (frame, figures)
+    (world, figures)
 }
 
-fn judge((file, worn, most): (&str, &[&str], f32), frame: &Frame, figures: &Figures) {
-    let (strain, depth) = (frame.meters().strain(), frame.meters().penetration_max);
+fn judge((file, worn, most): (&str, &[&str], f32), world: &World, figures: &Figures) {
+    let (strain, depth) = (world.meters().strain(), world.meters().penetration_max);
     eprintln!(
         "{file}, {}: {} steps, turn {:.1} rad/s, pelvis {:.2} m/s level and {:.2} upright, strain mean {:.2} % p99 \
          {:.1} % max {:.0} %, {:.1} mm deep",
         worn.join(" and "),
-        frame.tick(),
+        world.tick(),
         figures.turn,
         figures.level,
         figures.upright,
@@ -98,10 +98,10 @@ fn judge((file, worn, most): (&str, &[&str], f32), frame: &Frame, figures: &Figu
         strain.max * 1e2,
         depth * 1e3,
     );
-    for (cloth, garment) in frame.cloths().iter().zip(frame.garments()) {
+    for (cloth, garment) in world.cloths().iter().zip(world.garments()) {
         assert_eq!(cloth.events.rolled_back, 0, "{file}, {}: steps were rolled back", garment.name);
     }
-    assert!(frame.tick() > 100, "{file} is too short to tell anything");
+    assert!(world.tick() > 100, "{file} is too short to tell anything");
     assert!(figures.turn <= LIMB_SPEED * 1.01, "{file}: a joint jumps at {} rad/s", figures.turn);
     assert!(figures.level <= ROOT_SPEED * 1.01, "{file}: the pelvis jumps at {} m/s", figures.level);
     // Who lands from a jump of 1.2 m falls at 4.9 m/s.
@@ -118,8 +118,8 @@ fn real_recordings_neither_jump_nor_harm_the_cloth() {
         for _ in 0..2 {
             scope.spawn(|| {
                 while let Some(run) = next() {
-                    let (frame, figures) = play(&filtered(&data.join(run.0)), run.1);
-                    judge(run, &frame, &figures);
+                    let (world, figures) = play(&filtered(&data.join(run.0)), run.1);
+                    judge(run, &world, &figures);
                 }
             });
         }

@@ -2,7 +2,7 @@
 
 use std::thread;
 
-use toile_assets::scene::skirt::{Motion, Stretch};
+use toile_assets::scene::skirt::{SkirtMotion, Stretch};
 use toile_engine::lanes::Width;
 use toile_fitting::heap::HeapProbe;
 use toile_perf::skirt::hard::{SkirtFault, SkirtRecovery, heavy_hem, patches, recover};
@@ -75,13 +75,13 @@ fn a_walk_in_an_irregular_mesh_does_twice_that() {
 
 #[test]
 fn in_fast_motion_no_leg_comes_out_of_the_skirt() {
-    holds("fast", &SkirtOptions { motion: Motion::Fast, ..small() }, [1.0, 10.0]);
+    holds("fast", &SkirtOptions { motion: SkirtMotion::Fast, ..small() }, [1.0, 10.0]);
 }
 
 #[test]
 fn a_skirt_left_alone_hangs_at_its_elastic_strain_and_comes_to_rest() {
     for stretch in [Stretch::Inextensible, Stretch::Physical] {
-        let options = SkirtOptions { motion: Motion::Settled, stretch, ..small() };
+        let options = SkirtOptions { motion: SkirtMotion::Settled, stretch, ..small() };
         let mut scene = scene(&options);
         // Ten seconds: the air takes two thirds of the speed in each.
         for _ in 0..1_200 {
@@ -102,7 +102,7 @@ fn a_skirt_left_alone_hangs_at_its_elastic_strain_and_comes_to_rest() {
 #[test]
 fn no_substep_count_pumps_energy_into_a_skirt_at_rest() {
     for substeps in [2, 8, 32] {
-        let mut scene = scene(&SkirtOptions { motion: Motion::Settled, substeps: Some(substeps), ..small() });
+        let mut scene = scene(&SkirtOptions { motion: SkirtMotion::Settled, substeps: Some(substeps), ..small() });
         for _ in 0..1_200 {
             scene.prepare();
             scene.step();
@@ -161,7 +161,7 @@ fn long_steps_and_unequal_masses_are_stable() {
 #[test]
 fn every_width_and_every_run_gives_the_same_bits() {
     let play = |width: Width| {
-        let mut scene = scene(&SkirtOptions { motion: Motion::Fast, lanes: Some(width), ..small() });
+        let mut scene = scene(&SkirtOptions { motion: SkirtMotion::Fast, lanes: Some(width), ..small() });
         for _ in 0..STEPS {
             scene.prepare();
             scene.step();
@@ -228,7 +228,7 @@ const CREEP_M: f32 = 1e-3;
 
 #[test]
 fn a_settled_skirt_that_rubs_creeps_less_than_a_millimetre_a_minute() {
-    let mut scene = scene(&SkirtOptions { motion: Motion::Settled, hysteresis: true, ..small() });
+    let mut scene = scene(&SkirtOptions { motion: SkirtMotion::Settled, hysteresis: true, ..small() });
     let mut run = |seconds: usize| {
         for _ in 0..120 * seconds {
             scene.prepare();

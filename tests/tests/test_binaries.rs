@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use toile_tests::tree::{self, FLOORS};
+use toile_tests::tree::{self, CRATES};
 
 /// Names of the test binaries of a manifest, and whether a comment above each says why it is one.
 fn binaries(manifest: &str) -> Vec<(String, bool)> {
@@ -44,7 +44,7 @@ fn files(folder: &Path) -> Vec<String> {
 #[test]
 fn each_crate_links_its_tests_once() {
     let mut found = Vec::new();
-    for (folder, name) in FLOORS {
+    for (folder, name) in CRATES {
         let folder = tree::root().join(folder);
         let tests = folder.join("tests");
         let (manifest, files) = (tree::read(&folder.join("Cargo.toml")), files(&tests));
@@ -91,7 +91,7 @@ fn has_unit_test(source: &str) -> bool {
 
 #[test]
 fn tests_that_are_there_are_not_switched_off() {
-    for (folder, name) in FLOORS {
+    for (folder, name) in CRATES {
         let folder = tree::root().join(folder);
         let manifest: toml::Table = tree::read(&folder.join("Cargo.toml")).parse().expect("a manifest is TOML");
         let off = |key: &str| manifest.get("lib").and_then(|lib| lib.get(key)?.as_bool()) == Some(false);

@@ -7,9 +7,6 @@
 //! the weft, and of the twist between them. Where these would push otherwise than the whole ring of the vertex under the same moment,
 //! as in an uneven mesh, up to three stencils over the whole ring take their place (`bending/whole.rs` says why).
 //!
-//! Reads: a mesh at rest, its warp. Writes: stencils with weights and stiffness. Budget: at load, some milliseconds a garment.
-//! Thread: the loading thread.
-//!
 //! **Points.** The ring of neighbours is laid flat around the vertex. Four points in a plane have one affine dependence c
 //! (the areas of the triangles that three of them form), and to second order its sum over a surface of curvature tensor S
 //! is M : S with M = 1/2 sum c_i x_i x_i^T. Of all triples in the ring that is chosen whose M comes nearest to d d^T, d

@@ -2,9 +2,6 @@
 //!
 //! Three steps: [`warp`] says for each face where its threads run, [`edges`] gives each edge its angle to them, and
 //! [`trace`] follows the edges as long paths, so that through each vertex runs at most one warp and one weft fiber.
-//!
-//! Reads: a mesh at rest. Writes: fibers, and how much of the mesh they cover. Budget: at load, some milliseconds a garment.
-//! Thread: the loading thread.
 
 pub mod coverage;
 mod fiber;

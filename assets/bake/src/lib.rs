@@ -19,7 +19,7 @@ pub mod tethers;
 pub mod fibers;
 
 pub mod bending;
-mod link_laws;
+mod link_curves;
 pub mod order;
 pub mod solver;
 pub mod stiffness;
@@ -74,7 +74,7 @@ pub fn bake(name: &str, size: &str, shape: &Shape, fabric: &Fabric) -> Result<Ga
     let hanging = hung as f32 / (n - fixed.len()).max(1) as f32;
     let area = (0..shape.faces.len()).map(|i| f64::from(shape.face_area(i))).sum();
     let threads = stiffness::threads(&edges, &chains, area, &fabric.with_slopes(0));
-    let laws = fabric.has_link_laws().then(|| link_laws::LawMaker {
+    let link_curves = fabric.has_link_curves().then(|| link_curves::CurveMaker {
         fabric: fabric.clone(),
         threads: threads.clone(),
         beyond: stiffness::threads(&edges, &chains, area, &fabric.with_slopes(1)),
@@ -87,7 +87,7 @@ pub fn bake(name: &str, size: &str, shape: &Shape, fabric: &Fabric) -> Result<Ga
         pieces: &pieces,
         order: &order,
         weights: &masses,
-        laws: laws.as_ref(),
+        link_curves: link_curves.as_ref(),
     });
     let data = GarmentData {
         name: name.into(),

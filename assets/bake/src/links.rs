@@ -6,7 +6,7 @@ use super::bend_friction;
 use super::bending::{self, Stencil};
 use super::diagonals::{self, BiasFiber};
 use super::fibers::{Direction, Edge, Fiber};
-use super::link_laws::LawMaker;
+use super::link_curves::CurveMaker;
 use super::order::ParticleOrder;
 use super::solver::SolverChoice;
 use super::{hubs, runs, stiffness, tethers};
@@ -17,7 +17,7 @@ use toile_base::garment::layout::{
     Bends, BundleRow, Diagonals, ENDED, FiberBundle, FiberList, FiberLists, Fibers, Layout, Links, MAX_LISTED, OWNERS,
     Tethers,
 };
-use toile_base::garment::link_laws::{LawTable, LinkLaws, ONE_SLOPE};
+use toile_base::garment::link_curves::{CurveTable, LinkCurves, ONE_SLOPE};
 use toile_base::numeric::portable;
 
 /// What baking has found out about a shape so far.
@@ -33,7 +33,7 @@ pub struct BakeInput<'a> {
     /// Inverse mass of each vertex (1/kg).
     pub weights: &'a [f32],
     /// What links do beyond one slope, where the fabric says so.
-    pub laws: Option<&'a LawMaker>,
+    pub link_curves: Option<&'a CurveMaker>,
 }
 
 impl BakeInput<'_> {
@@ -43,14 +43,18 @@ impl BakeInput<'_> {
     }
 
     /// Whether links along the bias, or along threads, have laws: then none is like another, because each has a state.
-    fn lawful(&self, bias: bool) -> bool {
-        self.laws.is_some_and(|maker| maker.acts(bias))
+    fn curved(&self, bias: bool) -> bool {
+        self.link_curves.is_some_and(|maker| maker.acts(bias))
     }
 
-    /// Laws of some edges, each as part of a fiber of a direction; nothing where one slope is all.
-    fn laws<'e>(&self, bias: bool, edges: impl Iterator<Item = (Option<&'e Edge>, Direction)> + Clone) -> LawTable {
-        let Some(maker) = self.laws.filter(|maker| maker.acts(bias)) else { return LawTable::default() };
-        LawTable::new(&edges.map(|(edge, role)| edge.map_or(ONE_SLOPE, |e| maker.law(e, role))))
+    /// Stretch curves of some edges, each as part of a fiber of a direction; nothing where one slope is all.
+    fn link_curves<'e>(
+        &self,
+        bias: bool,
+        edges: impl Iterator<Item = (Option<&'e Edge>, Direction)> + Clone,
+    ) -> CurveTable {
+        let Some(maker) = self.link_curves.filter(|maker| maker.acts(bias)) else { return CurveTable::default() };
+        CurveTable::new(&edges.map(|(edge, role)| edge.map_or(ONE_SLOPE, |e| maker.link_curve(e, role))))
     }
 }
 
@@ -85,19 +89,19 @@ pub fn lay_out(baking: &BakeInput<'_>) -> Layout {
     let chosen = across().filter(|f| chooser.choose(f) != Solver::GaussSeidel && !leans(f));
     let lists_of: Vec<(&Fiber, Solver)> = crossing.chain(chosen).map(|f| (f, chooser.choose(f))).collect();
     let shear = of(true);
-    let (diagonals, leaning_laws, whole) = diagonals(baking, &shear, baking.chains.iter().filter(|f| leans(f)));
+    let (diagonals, diagonal_curves, whole) = diagonals(baking, &shear, baking.chains.iter().filter(|f| leans(f)));
     let shear: Vec<_> = shear.into_iter().filter(|(i, _)| !whole[*i]).collect();
     let stencils = bending::stencils(baking.shape, baking.edges, baking.fabric);
-    let (shear, shear_laws) = links(baking, true, &shear);
-    let (weft, weft_laws) = links(baking, false, &of(false));
-    let (fibers, fiber_laws) = fibers(baking, &chooser);
-    let (crossing, crossing_laws) = lists(baking, lists_of);
-    let laws = LinkLaws {
-        diagonals: leaning_laws,
-        shear: shear_laws,
-        weft: weft_laws,
-        fibers: fiber_laws,
-        crossing: crossing_laws,
+    let (shear, shear_curves) = links(baking, true, &shear);
+    let (weft, weft_curves) = links(baking, false, &of(false));
+    let (fibers, fiber_curves) = fibers(baking, &chooser);
+    let (crossing, crossing_curves) = lists(baking, lists_of);
+    let link_curves = LinkCurves {
+        diagonals: diagonal_curves,
+        shear: shear_curves,
+        weft: weft_curves,
+        fibers: fiber_curves,
+        crossing: crossing_curves,
     };
     Layout {
         diagonals,
@@ -105,7 +109,7 @@ pub fn lay_out(baking: &BakeInput<'_>) -> Layout {
         weft,
         fibers,
         crossing,
-        laws,
+        link_curves,
         bends: bends(baking, &stencils),
         skewed: bends(baking, &stencils),
         hubs: hubs::hubs(baking.order, &stencils),
@@ -130,7 +134,7 @@ fn same(a: f32, b: f32) -> bool {
 }
 
 /// Links of single edges, each with the direction of the fiber that it belongs to.
-fn links(baking: &BakeInput<'_>, bias: bool, edges: &[(usize, Direction)]) -> (Links, LawTable) {
+fn links(baking: &BakeInput<'_>, bias: bool, edges: &[(usize, Direction)]) -> (Links, CurveTable) {
     let edge = |i: usize| &baking.edges[edges[i].0];
     let soft = |i: usize| compliance(baking.fabric, edge(i), edges[i].1);
     let particle = |v: u32| baking.order.particle[v as usize];
@@ -142,19 +146,19 @@ fn links(baking: &BakeInput<'_>, bias: bool, edges: &[(usize, Direction)]) -> (L
         .collect();
     let weight = |i: usize, k: usize| baking.weight(constraints[i].1[k]);
     let alike = |i: usize, j: usize| {
-        !baking.lawful(bias)
+        !baking.curved(bias)
             && same(edge(i).rest, edge(j).rest)
             && same(soft(i), soft(j))
             && (0..2).all(|k| same(weight(i, k), weight(j, k)))
     };
     let (tuples, laid) = runs::lay_out(&constraints, &baking.order.owner, true, &alike);
-    let laws = baking.laws(bias, laid.places.iter().map(|&i| (Some(edge(i)), edges[i].1)));
+    let link_curves = baking.link_curves(bias, laid.places.iter().map(|&i| (Some(edge(i)), edges[i].1)));
     let links = Links {
         tuples,
         rest: laid.places.iter().map(|&i| edge(i).rest).collect(),
         compliance: laid.places.iter().map(|&i| soft(i)).collect(),
     };
-    (links, laws)
+    (links, link_curves)
 }
 
 /// The fibers along the bias, of the edges given, that can be solved directly; and which edges those are.
@@ -162,7 +166,7 @@ fn diagonals<'a>(
     baking: &BakeInput<'_>,
     shear: &[(usize, Direction)],
     leaning: impl Iterator<Item = &'a Fiber>,
-) -> (Diagonals, LawTable, Vec<bool>) {
+) -> (Diagonals, CurveTable, Vec<bool>) {
     let mut open = vec![false; baking.edges.len()];
     shear.iter().for_each(|&(i, _)| open[i] = true);
     let particle = |v: u32| baking.order.particle[v as usize];
@@ -182,18 +186,18 @@ fn diagonals<'a>(
     let alike = |i: usize, j: usize| {
         let ([a, b], [c, d]) = (weights(i), weights(j));
         let same_masses = same(a, b) && same(a, c) && same(a, d);
-        !baking.lawful(true) && same(edge(i).rest, edge(j).rest) && same(soft(i), soft(j)) && same_masses
+        !baking.curved(true) && same(edge(i).rest, edge(j).rest) && same(soft(i), soft(j)) && same_masses
     };
     let (mut laid, places, numbers) = diagonals::lay_out(&fibers, &baking.order.owner, &alike);
     laid.rest = places.iter().map(|&i| edge(i).rest).collect();
     laid.compliance = places.iter().map(|&i| soft(i)).collect();
     let mut taken = vec![false; baking.edges.len()];
     numbers.iter().for_each(|&i| taken[i] = true);
-    let laws = baking.laws(true, places.iter().map(|&i| (Some(edge(i)), Direction::Bias)));
-    (laid, laws, taken)
+    let link_curves = baking.link_curves(true, places.iter().map(|&i| (Some(edge(i)), Direction::Bias)));
+    (laid, link_curves, taken)
 }
 
-fn fibers(baking: &BakeInput<'_>, chooser: &SolverChoice) -> (Fibers, LawTable) {
+fn fibers(baking: &BakeInput<'_>, chooser: &SolverChoice) -> (Fibers, CurveTable) {
     let mut laid: Vec<Option<&Edge>> = Vec::new();
     let (mut bundles, mut rows, mut rest, mut soft) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let mut links = 0;
@@ -206,7 +210,7 @@ fn fibers(baking: &BakeInput<'_>, chooser: &SolverChoice) -> (Fibers, LawTable) 
             let first = baking.order.particle[pieces[0].vertices[row] as usize];
             rows.push(BundleRow { first, lanes: reach(row) });
         }
-        let alike = !baking.lawful(false) && pieces.iter().all(|p| fibers_alike(baking, pieces[0], p));
+        let alike = !baking.curved(false) && pieces.iter().all(|p| fibers_alike(baking, pieces[0], p));
         let solver = chooser.choose(pieces[0]);
         for link in 0..pieces[0].edges.len() {
             for piece in if alike { &pieces[..1] } else { &pieces[..] } {
@@ -226,8 +230,11 @@ fn fibers(baking: &BakeInput<'_>, chooser: &SolverChoice) -> (Fibers, LawTable) 
             alike,
         });
     }
-    let laws = baking.laws(false, laid.into_iter().map(|edge| (edge, Direction::Warp)));
-    (Fibers { bundles: bundles.into(), rows: rows.into(), links, rest: rest.into(), compliance: soft.into() }, laws)
+    let link_curves = baking.link_curves(false, laid.into_iter().map(|edge| (edge, Direction::Warp)));
+    (
+        Fibers { bundles: bundles.into(), rows: rows.into(), links, rest: rest.into(), compliance: soft.into() },
+        link_curves,
+    )
 }
 
 /// Whether two fibers are the same, link by link and mass by mass.
@@ -247,7 +254,7 @@ fn fibers_alike(baking: &BakeInput<'_>, a: &Fiber, b: &Fiber) -> bool {
 }
 
 /// Fibers as index lists: sets without a common particle, in each of them lists of equal length and like solver.
-fn lists(baking: &BakeInput<'_>, mut left: Vec<(&Fiber, Solver)>) -> (FiberLists, LawTable) {
+fn lists(baking: &BakeInput<'_>, mut left: Vec<(&Fiber, Solver)>) -> (FiberLists, CurveTable) {
     let mut out = FiberListsBuilder::default();
     left.sort_by_key(|(f, solver)| (std::cmp::Reverse(f.edges.len()), f.direction, *solver, !f.is_hoop()));
     while !left.is_empty() {
@@ -264,7 +271,8 @@ fn lists(baking: &BakeInput<'_>, mut left: Vec<(&Fiber, Solver)>) -> (FiberLists
         out.set(baking, &set);
     }
     let bias = out.laid.iter().all(|(_, role)| *role == Direction::Bias);
-    let laws = baking.laws(bias, out.laid.iter().map(|(i, role)| (i.map(|i| &baking.edges[i as usize]), *role)));
+    let link_curves =
+        baking.link_curves(bias, out.laid.iter().map(|(i, role)| (i.map(|i| &baking.edges[i as usize]), *role)));
     let lists = FiberLists {
         lists: out.lists.into(),
         sets: out.sets.into(),
@@ -272,7 +280,7 @@ fn lists(baking: &BakeInput<'_>, mut left: Vec<(&Fiber, Solver)>) -> (FiberLists
         rest: out.rest.into(),
         compliance: out.compliance.into(),
     };
-    (lists, laws)
+    (lists, link_curves)
 }
 
 #[derive(Default)]

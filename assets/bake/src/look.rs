@@ -3,13 +3,13 @@
 use std::collections::HashMap;
 
 use glam::Vec2;
-use toile_base::garment::look::{EDGE_REACH_M, Look, TRIM_SHADOW_M};
+use toile_base::garment::look::{EDGE_REACH_M, GarmentAppearance, TRIM_SHADOW_M};
 use toile_base::garment::trim::{ClothTrim, MAX_TRIMS};
 
 use crate::shape::Shape;
 
 /// How a shape shows its cloth, as drafted or imported.
-pub fn look_of(shape: &Shape) -> Look {
+pub fn look_of(shape: &Shape) -> GarmentAppearance {
     let (cloth, edges) = if shape.flat.len() == shape.faces.len() && !shape.panels.is_empty() {
         let cloth = shape.corners(&shape.flat);
         let edges = edges(shape, &cloth);
@@ -20,7 +20,7 @@ pub fn look_of(shape: &Shape) -> Look {
     let trims: Box<[ClothTrim]> =
         if cloth.is_empty() { Box::default() } else { shape.trims.iter().copied().take(MAX_TRIMS).collect() };
     let near = if trims.is_empty() { Box::default() } else { near(shape, &cloth, &trims) };
-    Look { cloth: cloth.into(), edges: edges.into(), trims, near, picture: shape.picture.clone() }
+    GarmentAppearance { cloth: cloth.into(), edges: edges.into(), trims, near, picture: shape.picture.clone() }
 }
 
 /// The hems and the seams of a panel, as pieces of line in its plane (m).

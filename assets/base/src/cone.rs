@@ -1,8 +1,4 @@
 //! The round cone: the solid that bodies are drawn with, and that cloth meets.
-//!
-//! Reads: two spheres and a point. Writes: a signed distance.
-//! Budget: some nanoseconds; used at load only, the frame has its own in lanes.
-//! Thread: any.
 
 use glam::Vec3;
 

@@ -2,9 +2,6 @@
 //!
 //! Right-handed, y up, metres. The person faces +z, so their left side is +x. In the rest pose every bone's frame is
 //! aligned with the world's axes: a bone's rest transform is a translation.
-//!
-//! Reads: nothing. Writes: joints, bones and poses that every room shares. Budget: a pose is copied, nothing is allocated.
-//! Thread: any.
 
 mod bones;
 mod joint;

@@ -1,11 +1,6 @@
 //! The base bodies as they are drawn: a form in sections, a grid laid on it, and the grid's texture atlas.
-//!
-//! Reads: a drawing in `assets/sculpt/data`. Writes: [`Drawn`] bodies, and the file `assets/data/body/base.bin` that
-//! `toile-assets` reads.
-//! Budget: some seconds a body; nothing that runs in a shop depends on this crate.
-//! Thread: one.
 
-// Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
+// Modules in the order of the data: each imports only from the groups above its own (tests/tests/layers.rs).
 mod form;
 mod subdivide;
 

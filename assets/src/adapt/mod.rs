@@ -1,10 +1,5 @@
 //! Adapting: meshes that others made become garments that hold.
 //!
-//! Reads: an OBJ, glTF or GLB file, a MakeHuman clothes file and a file of measures beside it, a shopper's body. Writes: a
-//! [`Shape`](toile_bake::Shape) laid on the shopper, and a report of what was repaired and what became of each piece.
-//! Budget: 1 s for 8,000 vertices; at load only.
-//! Thread: the loading thread.
-//!
 //! In this order: the unit is recognised by whether a body stands in the mesh ([`mod@unit`]); the mesh becomes surfaces of one layer
 //! ([`repair`], [`surface`], [`shells`], [`hems`]); the body that it is made for is found ([`made_for`]); and for each shopper it
 //! is laid on them ([`place`], [`lay`]), held where it lies on the skin ([`hold`]), and each piece judged ([`judge`]).

@@ -11,7 +11,7 @@ use super::base::BaseBody;
 use super::gauge::{Gauge, Gradient};
 use super::morph::{Morphs, Setting};
 use super::people::{People, allowance};
-use super::reading::{READINGS, Reading};
+use super::reading::{MeshMeasure, READINGS};
 use super::slider::{PARAMETERS, SLIDERS, Slider};
 use toile_base::numeric::linear;
 use toile_base::numeric::linear::Pivot;
@@ -114,7 +114,7 @@ impl BodyModel {
         let morphs = Morphs::new(base);
         let gauge = Gauge::new(&morphs.base, allowance(sex));
         let drawn = gauge.read(&morphs.base.positions, None);
-        let drawn_stature = f64::from(drawn[Reading::Stature.index()]);
+        let drawn_stature = f64::from(drawn[MeshMeasure::Stature.index()]);
         Self { morphs, gauge, people: People::new(sex, &drawn), drawn_stature }
     }
 
@@ -125,7 +125,7 @@ impl BodyModel {
     }
 
     /// The same of one who has a reading (m): drawn as anybody, then moved by what the others follow from the one.
-    pub(super) fn person_with(&self, normal: &[f64; READINGS], known: (Reading, f32)) -> [f32; READINGS] {
+    pub(super) fn person_with(&self, normal: &[f64; READINGS], known: (MeshMeasure, f32)) -> [f32; READINGS] {
         let People { factor, .. } = &self.people;
         let drawn = self.person(normal);
         let k = known.0.index();
@@ -147,10 +147,10 @@ impl BodyModel {
     }
 
     /// Finds the body that has the readings given and is like people in all others.
-    pub(super) fn calibrate(&self, given: &[(Reading, f32)]) -> Calibrated {
+    pub(super) fn calibrate(&self, given: &[(MeshMeasure, f32)]) -> Calibrated {
         let mut work = CalibrationBuffers::new(self);
         let mut at: ParameterVector = [0.0; PARAMETERS];
-        if let Some((_, stature)) = given.iter().find(|g| g.0 == Reading::Stature) {
+        if let Some((_, stature)) = given.iter().find(|g| g.0 == MeshMeasure::Stature) {
             at[SLIDERS] = (f64::from(*stature) / self.drawn_stature).ln().clamp(-SCALE, SCALE);
         }
         let mut squares = work.squares(&at, given);
@@ -210,11 +210,11 @@ impl<'a> CalibrationBuffers<'a> {
     }
 
     /// The greatest error of what is given, at the last reading (m).
-    fn furthest(&self, given: &[(Reading, f32)]) -> f64 {
+    fn furthest(&self, given: &[(MeshMeasure, f32)]) -> f64 {
         given.iter().map(|(r, wanted)| f64::from((self.readings[r.index()] - wanted).abs())).fold(0.0, f64::max)
     }
 
-    pub(super) fn squares(&mut self, at: &ParameterVector, given: &[(Reading, f32)]) -> SumOfSquares {
+    pub(super) fn squares(&mut self, at: &ParameterVector, given: &[(MeshMeasure, f32)]) -> SumOfSquares {
         let setting = setting(at);
         let jacobian = self.read(&setting);
         let mut squares = SumOfSquares::none();
@@ -224,7 +224,7 @@ impl<'a> CalibrationBuffers<'a> {
             squares.add(f64::from(self.readings[r] - wanted) / TIGHT, &row);
         }
         self.like_people(&jacobian, &mut squares);
-        self.head(at, &jacobian[Reading::Stature.index()], &mut squares);
+        self.head(at, &jacobian[MeshMeasure::Stature.index()], &mut squares);
         kept_together(at, &mut squares);
         squares
     }
@@ -239,7 +239,7 @@ impl<'a> CalibrationBuffers<'a> {
     /// Adds the departure of the whole's scale from what the stature lets expect.
     fn head(&self, at: &ParameterVector, stature: &ParameterVector, squares: &mut SumOfSquares) {
         let [share, spread] = HEADS;
-        let (read, drawn) = (f64::from(self.readings[Reading::Stature.index()]), self.model.drawn_stature);
+        let (read, drawn) = (f64::from(self.readings[MeshMeasure::Stature.index()]), self.model.drawn_stature);
         let mut row = stature.map(|change| -share * change / (read * spread));
         row[SLIDERS] += 1.0 / spread;
         squares.add((at[SLIDERS] - share * (read / drawn).ln()) / spread, &row);

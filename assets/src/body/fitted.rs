@@ -11,7 +11,7 @@ use super::base::BaseBody;
 use super::calibrate::{BodyModel, Calibrated};
 use super::landmarks::Landmark;
 use super::proportions::Proportions;
-use super::reading::{En, Reading, Readings, Vocabulary, Wanted};
+use super::reading::{En, MeshMeasure, Readings, Vocabulary, Wanted};
 use super::{BodyError, Fitted};
 use toile_base::body::{Body, Levels, Measures, Sex};
 use toile_base::mesh::{Mesh, vertex_normals};
@@ -67,7 +67,7 @@ pub fn build(sex: Sex, wanted: &Measures) -> Result<Body, BodyError> {
 /// the nearest body, for measures that none has together.
 pub fn fitted<V: Vocabulary>(sex: Sex, wanted: &Wanted<V>) -> Result<Fitted, BodyError> {
     wanted.check()?;
-    let given: Vec<(Reading, f32)> = wanted.given().iter().map(|(m, value)| (m.reading(), *value)).collect();
+    let given: Vec<(MeshMeasure, f32)> = wanted.given().iter().map(|(m, value)| (m.reading(), *value)).collect();
     let model = model(sex);
     let fitted = model.fitted(&model.calibrate(&given));
     let off = |(m, value): &(V, f32)| (fitted.readings.of(*m) - value).abs();
@@ -101,7 +101,7 @@ impl BodyModel {
         let given = wanted.given();
         let without = |left_out: usize| {
             let others = given.iter().enumerate().filter(|&(k, _)| k != left_out).map(|(_, g)| g);
-            let others: Vec<(Reading, f32)> = others.map(|(m, value)| (m.reading(), *value)).collect();
+            let others: Vec<(MeshMeasure, f32)> = others.map(|(m, value)| (m.reading(), *value)).collect();
             let found = self.calibrate(&others);
             others.iter().all(|(r, value)| (found.readings[r.index()] - value).abs() <= TOLERANCE)
         };

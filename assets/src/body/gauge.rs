@@ -9,7 +9,7 @@ use glam::{Vec2, Vec3};
 use super::base::BaseBody;
 use super::landmarks::{Landmark, Mark};
 use super::people::Allowance;
-use super::reading::{READINGS, Reading};
+use super::reading::{MeshMeasure, READINGS};
 use super::tape::{hull_corners, perimeter_f64};
 use toile_base::body::Region;
 use toile_base::skeleton::Joint;
@@ -48,18 +48,18 @@ pub(super) struct Gauge {
 }
 
 /// The slices, in the order of [`Gauge::cuts`].
-const CUTS: [(Landmark, Reading); 11] = [
-    (Landmark::Infrathyroid, Reading::NeckGirth),
-    (Landmark::NeckFront, Reading::NeckBaseGirth),
-    (Landmark::BustPoint, Reading::ChestGirth),
-    (Landmark::Underbust, Reading::UnderbustGirth),
-    (Landmark::NaturalWaist, Reading::WaistGirth),
-    (Landmark::Omphalion, Reading::OmphalionGirth),
-    (Landmark::Buttock, Reading::HipGirth),
-    (Landmark::Thigh, Reading::ThighGirth),
-    (Landmark::Calf, Reading::CalfGirth),
-    (Landmark::Biceps, Reading::UpperArmGirth),
-    (Landmark::Stylion, Reading::WristGirth),
+const CUTS: [(Landmark, MeshMeasure); 11] = [
+    (Landmark::Infrathyroid, MeshMeasure::NeckGirth),
+    (Landmark::NeckFront, MeshMeasure::NeckBaseGirth),
+    (Landmark::BustPoint, MeshMeasure::ChestGirth),
+    (Landmark::Underbust, MeshMeasure::UnderbustGirth),
+    (Landmark::NaturalWaist, MeshMeasure::WaistGirth),
+    (Landmark::Omphalion, MeshMeasure::OmphalionGirth),
+    (Landmark::Buttock, MeshMeasure::HipGirth),
+    (Landmark::Thigh, MeshMeasure::ThighGirth),
+    (Landmark::Calf, MeshMeasure::CalfGirth),
+    (Landmark::Biceps, MeshMeasure::UpperArmGirth),
+    (Landmark::Stylion, MeshMeasure::WristGirth),
 ];
 
 impl Gauge {
@@ -81,7 +81,7 @@ impl Gauge {
     /// All readings of a surface (m), and their gradients when they are asked for.
     pub(super) fn read(&self, positions: &[Vec3], mut gradients: Option<&mut [Gradient; READINGS]>) -> [f32; READINGS] {
         let mut read = [0.0; READINGS];
-        let mut set = |reading: Reading, value: f32, gradient: Gradient| {
+        let mut set = |reading: MeshMeasure, value: f32, gradient: Gradient| {
             read[reading.index()] = value;
             if let Some(all) = &mut gradients {
                 all[reading.index()] = gradient;
@@ -109,10 +109,10 @@ impl Gauge {
     }
 
     /// Breadth of the shoulders, and the lengths of arm and back.
-    fn lengths(&self, positions: &[Vec3], set: &mut impl FnMut(Reading, f32, Gradient)) {
+    fn lengths(&self, positions: &[Vec3], set: &mut impl FnMut(MeshMeasure, f32, Gradient)) {
         let tip = self.mark(Landmark::Acromion);
         let half = tip.on(positions).x;
-        set(Reading::ShoulderBreadth, 2.0 * half, spread(tip, 2.0 * Vec3::X));
+        set(MeshMeasure::ShoulderBreadth, 2.0 * half, spread(tip, 2.0 * Vec3::X));
         let chain = [Landmark::Acromion, Landmark::Olecranon, Landmark::Stylion].map(|l| self.mark(l));
         let [shoulder, elbow, wrist] = chain.map(|m| m.on(positions));
         let (upper, fore) = (elbow - shoulder, wrist - elbow);
@@ -120,11 +120,11 @@ impl Gauge {
         let (u, f) = (upper.normalize_or_zero(), fore.normalize_or_zero());
         let pull = [-u, u - f, f];
         let along: Gradient = chain.iter().zip(pull).flat_map(|(&m, g)| spread(m, g)).collect();
-        set(Reading::ArmLength, arm + self.allowance.arm, along.clone());
+        set(MeshMeasure::ArmLength, arm + self.allowance.arm, along.clone());
         let sleeve = [along, spread(tip, Vec3::X)].concat();
-        set(Reading::SleeveLength, half + arm + self.allowance.sleeve, sleeve);
+        set(MeshMeasure::SleeveLength, half + arm + self.allowance.sleeve, sleeve);
         for (reading, landmark) in
-            [(Reading::BackLength, Landmark::NaturalWaist), (Reading::WaistBackLength, Landmark::Omphalion)]
+            [(MeshMeasure::BackLength, Landmark::NaturalWaist), (MeshMeasure::WaistBackLength, Landmark::Omphalion)]
         {
             let (value, gradient) = self.back_to(positions, landmark);
             set(reading, value, gradient);
@@ -186,19 +186,19 @@ impl Gauge {
 }
 
 /// Heights above the floor.
-const HEIGHTS: [(Reading, Landmark); 5] = [
-    (Reading::Stature, Landmark::Crown),
-    (Reading::CervicaleHeight, Landmark::Cervicale),
-    (Reading::OmphalionHeight, Landmark::Omphalion),
-    (Reading::CrotchHeight, Landmark::Crotch),
-    (Reading::KneeHeight, Landmark::Midpatella),
+const HEIGHTS: [(MeshMeasure, Landmark); 5] = [
+    (MeshMeasure::Stature, Landmark::Crown),
+    (MeshMeasure::CervicaleHeight, Landmark::Cervicale),
+    (MeshMeasure::OmphalionHeight, Landmark::Omphalion),
+    (MeshMeasure::CrotchHeight, Landmark::Crotch),
+    (MeshMeasure::KneeHeight, Landmark::Midpatella),
 ];
 
 /// Breadth and depth that are read in a girth's slice.
-const EXTENTS: [(Reading, Reading, Reading); 3] = [
-    (Reading::ChestGirth, Reading::ChestBreadth, Reading::ChestDepth),
-    (Reading::OmphalionGirth, Reading::OmphalionBreadth, Reading::OmphalionDepth),
-    (Reading::HipGirth, Reading::HipBreadth, Reading::HipDepth),
+const EXTENTS: [(MeshMeasure, MeshMeasure, MeshMeasure); 3] = [
+    (MeshMeasure::ChestGirth, MeshMeasure::ChestBreadth, MeshMeasure::ChestDepth),
+    (MeshMeasure::OmphalionGirth, MeshMeasure::OmphalionBreadth, MeshMeasure::OmphalionDepth),
+    (MeshMeasure::HipGirth, MeshMeasure::HipBreadth, MeshMeasure::HipDepth),
 ];
 
 /// A gradient at a mark, shared between the ends of its edge.

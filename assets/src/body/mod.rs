@@ -1,8 +1,4 @@
 //! The parametric body: two drawn bodies, and morphs that fit them to whatever measures are given.
-//!
-//! Reads: the drawings in `data/body/`, the measures wanted. Writes: one immutable [`Body`](toile_base::body::Body).
-//! Budget: at load only, under 20 ms a body; the mesh has the same vertices and triangles whatever the size.
-//! Thread: the loading thread.
 
 pub mod base;
 mod calibrate;

@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 
 use serde::Deserialize;
 
-use super::reading::{READINGS, Reading};
+use super::reading::{MeshMeasure, READINGS};
 use toile_base::body::Sex;
 use toile_base::numeric::linear;
 use toile_base::numeric::linear::Pivot;
@@ -65,39 +65,39 @@ fn table(sex: Sex) -> &'static SexStatistics {
 }
 
 /// Readings that the survey took, by its name.
-const TAKEN: [(Reading, &str); 15] = [
-    (Reading::Stature, "stature"),
-    (Reading::CervicaleHeight, "cervicaleheight"),
-    (Reading::OmphalionHeight, "waistheightomphalion"),
-    (Reading::CrotchHeight, "crotchheight"),
-    (Reading::KneeHeight, "kneeheightmidpatella"),
-    (Reading::NeckGirth, "neckcircumference"),
-    (Reading::ChestGirth, "chestcircumference"),
-    (Reading::OmphalionGirth, "waistcircumference"),
-    (Reading::HipGirth, "buttockcircumference"),
-    (Reading::ThighGirth, "thighcircumference"),
-    (Reading::CalfGirth, "calfcircumference"),
-    (Reading::WristGirth, "wristcircumference"),
-    (Reading::ShoulderBreadth, "biacromialbreadth"),
-    (Reading::SleeveLength, "sleevelengthspinewrist"),
-    (Reading::WaistBackLength, "waistbacklength"),
+const TAKEN: [(MeshMeasure, &str); 15] = [
+    (MeshMeasure::Stature, "stature"),
+    (MeshMeasure::CervicaleHeight, "cervicaleheight"),
+    (MeshMeasure::OmphalionHeight, "waistheightomphalion"),
+    (MeshMeasure::CrotchHeight, "crotchheight"),
+    (MeshMeasure::KneeHeight, "kneeheightmidpatella"),
+    (MeshMeasure::NeckGirth, "neckcircumference"),
+    (MeshMeasure::ChestGirth, "chestcircumference"),
+    (MeshMeasure::OmphalionGirth, "waistcircumference"),
+    (MeshMeasure::HipGirth, "buttockcircumference"),
+    (MeshMeasure::ThighGirth, "thighcircumference"),
+    (MeshMeasure::CalfGirth, "calfcircumference"),
+    (MeshMeasure::WristGirth, "wristcircumference"),
+    (MeshMeasure::ShoulderBreadth, "biacromialbreadth"),
+    (MeshMeasure::SleeveLength, "sleevelengthspinewrist"),
+    (MeshMeasure::WaistBackLength, "waistbacklength"),
 ];
 
 /// Readings whose mean is the drawn body's, in proportion to the one they follow: those that the survey did not take,
 /// and breadths and depths, which its calliper takes from compressed flesh. With the column that they vary as, and how
 /// far they stray from it (m); for underbust and waist that is about the width of a size in the tables of EN 13402-3.
-const FOLLOWING: [(Reading, Reading, &str, f64); 11] = [
-    (Reading::ChestBreadth, Reading::ChestGirth, "chestbreadth", OWN_ERROR),
-    (Reading::ChestDepth, Reading::ChestGirth, "chestdepth", OWN_ERROR),
-    (Reading::OmphalionBreadth, Reading::OmphalionGirth, "waistbreadth", OWN_ERROR),
-    (Reading::OmphalionDepth, Reading::OmphalionGirth, "waistdepth", OWN_ERROR),
-    (Reading::HipBreadth, Reading::HipGirth, "hipbreadth", OWN_ERROR),
-    (Reading::HipDepth, Reading::HipGirth, "buttockdepth", OWN_ERROR),
-    (Reading::NeckBaseGirth, Reading::NeckGirth, "neckcircumferencebase", 5e-3),
-    (Reading::UnderbustGirth, Reading::ChestGirth, "chestcircumference", 20e-3),
-    (Reading::WaistGirth, Reading::OmphalionGirth, "waistcircumference", 20e-3),
-    (Reading::UpperArmGirth, Reading::UpperArmGirth, "bicepscircumferenceflexed", 6e-3),
-    (Reading::BackLength, Reading::WaistBackLength, "waistbacklength", 8e-3),
+const FOLLOWING: [(MeshMeasure, MeshMeasure, &str, f64); 11] = [
+    (MeshMeasure::ChestBreadth, MeshMeasure::ChestGirth, "chestbreadth", OWN_ERROR),
+    (MeshMeasure::ChestDepth, MeshMeasure::ChestGirth, "chestdepth", OWN_ERROR),
+    (MeshMeasure::OmphalionBreadth, MeshMeasure::OmphalionGirth, "waistbreadth", OWN_ERROR),
+    (MeshMeasure::OmphalionDepth, MeshMeasure::OmphalionGirth, "waistdepth", OWN_ERROR),
+    (MeshMeasure::HipBreadth, MeshMeasure::HipGirth, "hipbreadth", OWN_ERROR),
+    (MeshMeasure::HipDepth, MeshMeasure::HipGirth, "buttockdepth", OWN_ERROR),
+    (MeshMeasure::NeckBaseGirth, MeshMeasure::NeckGirth, "neckcircumferencebase", 5e-3),
+    (MeshMeasure::UnderbustGirth, MeshMeasure::ChestGirth, "chestcircumference", 20e-3),
+    (MeshMeasure::WaistGirth, MeshMeasure::OmphalionGirth, "waistcircumference", 20e-3),
+    (MeshMeasure::UpperArmGirth, MeshMeasure::UpperArmGirth, "bicepscircumferenceflexed", 6e-3),
+    (MeshMeasure::BackLength, MeshMeasure::WaistBackLength, "waistbacklength", 8e-3),
 ];
 
 /// How far a reading of the mesh may differ from the survey's for the same person (m): the definitions are not quite
@@ -146,9 +146,9 @@ impl People {
             stray[reading.index()] = deviation;
         }
         let arm = [(column("sleevelengthspinewrist"), 1.0), (column("biacromialbreadth"), -0.5)];
-        made_of[Reading::ArmLength.index()] = arm.to_vec();
+        made_of[MeshMeasure::ArmLength.index()] = arm.to_vec();
         let mut mean = made_of.each_ref().map(|m| m.iter().map(|&(c, w)| w * table.column[c].mean * 1e-3).sum());
-        mean[Reading::ArmLength.index()] += (table.arm_bend - table.sleeve_pose) * 1e-3;
+        mean[MeshMeasure::ArmLength.index()] += (table.arm_bend - table.sleeve_pose) * 1e-3;
         let mut spread = [[0.0; READINGS]; READINGS];
         for i in 0..READINGS {
             for j in 0..READINGS {
@@ -162,7 +162,7 @@ impl People {
 }
 
 /// The survey's mean of the reading that another follows (m).
-fn mean_of(table: &SexStatistics, reading: Reading, place: &BTreeMap<&str, usize>) -> f64 {
+fn mean_of(table: &SexStatistics, reading: MeshMeasure, place: &BTreeMap<&str, usize>) -> f64 {
     let name = TAKEN.iter().find(|t| t.0 == reading).expect("a reading that the survey took").1;
     table.column[place[name]].mean * 1e-3
 }

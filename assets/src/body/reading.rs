@@ -6,7 +6,7 @@
 /// Something that is read off the mesh; the two vocabularies below map onto these.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
-pub(super) enum Reading {
+pub(super) enum MeshMeasure {
     Stature,
     CervicaleHeight,
     OmphalionHeight,
@@ -39,14 +39,14 @@ pub(super) enum Reading {
 /// Number of readings.
 pub(super) const READINGS: usize = 27;
 
-impl Reading {
+impl MeshMeasure {
     pub(super) const fn index(self) -> usize {
         self as usize
     }
 
     /// The least and the most that a body is built for (m).
     pub(super) const fn range(self) -> [f32; 2] {
-        use super::reading::Reading::*;
+        use super::reading::MeshMeasure::*;
         match self {
             Stature => [1.2, 2.2],
             CervicaleHeight => [1.0, 1.95],
@@ -80,8 +80,8 @@ macro_rules! vocabulary {
 
         impl Read for $kind {
             #[expect(private_interfaces, reason = "the trait is sealed: nobody outside calls it")]
-            fn reading(self) -> Reading {
-                match self { $(Self::$measure => Reading::$reading),* }
+            fn reading(self) -> MeshMeasure {
+                match self { $(Self::$measure => MeshMeasure::$reading),* }
             }
         }
 
@@ -199,7 +199,7 @@ mod sealed {
     /// Which reading of the mesh a measure is.
     pub trait Read {
         #[expect(private_interfaces, reason = "the trait is sealed: nobody outside calls it")]
-        fn reading(self) -> super::Reading;
+        fn reading(self) -> super::MeshMeasure;
     }
 }
 

@@ -1,4 +1,4 @@
-//! Laws that every mannequin keeps.
+//! Tests that every mannequin keeps.
 
 use std::collections::BTreeMap;
 use std::f32::consts::TAU;

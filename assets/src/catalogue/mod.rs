@@ -1,9 +1,4 @@
 //! A shop's catalogue: garment packages, one file each, in a folder, and the theme of its screens.
-//!
-//! Reads: `catalogue.toml`, the logo and the font that it names, and zip archives that hold `garment.toml` and what it names;
-//! everything in them may have been made by anybody. Writes: manifests, and the packages' files on demand.
-//! Budget: 1 ms a package at load; [`limits`] bound what each may hold.
-//! Thread: the loading thread.
 
 mod collage;
 mod error;

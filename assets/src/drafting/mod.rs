@@ -1,9 +1,4 @@
 //! Drafting: our own sewn patterns, drawn for a size's body after the usual block drafts.
-//!
-//! Reads: size tables, the constants of `styles.rs`. Writes: a [`PatternPackage`] of GarmentCode texts for three sizes; sizes
-//! between are graded.
-//! Budget: 5 ms a garment; at load only.
-//! Thread: the loading thread.
 
 mod block;
 mod bodice;

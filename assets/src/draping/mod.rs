@@ -3,10 +3,6 @@
 //! Panels are wrapped around trunk, legs and arms with almost no deformation first; then the energy of the cloth goes down,
 //! without gravity until the seams are closed and with it afterwards, on meshes of 50, 25 mm and the final spacing
 //! (multi-resolution prepositioning: INRIA MIRAGES 2006).
-//!
-//! Reads: a checked [`Pattern`](crate::pattern::Pattern), a [`Body`](toile_base::body::Body) at rest, a fabric. Writes: a
-//! [`DrapedPattern`], and the [`Shape`](toile_bake::Shape) that it is worn as.
-//! Budget: at load, 5 s a garment of 5,000 particles. Thread: the loading thread.
 
 mod arrange;
 mod carry;

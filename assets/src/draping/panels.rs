@@ -123,7 +123,7 @@ pub fn panels(pattern: &Pattern, sewn: &SewnMesh) -> Result<Vec<ArrangedPanel>, 
 }
 
 /// The straight coordinates of a placed panel, or a sector's.
-fn unrolled(points: &[DVec2], angle: f64, place: &crate::pattern::Placement) -> Unrolled {
+fn unrolled(points: &[DVec2], angle: f64, place: &crate::pattern::PanelPlacement) -> Unrolled {
     let tangent = DVec3::new(angle.cos(), 0.0, -angle.sin());
     let back = place.rotation.inverse();
     let up = (back * DVec3::Y).truncate().normalize_or(DVec2::Y);

@@ -1,12 +1,6 @@
 //! Exports of bodies, garments and meshes that move, for other tools.
-//!
-//! Reads: a body, the pose it is in, and what it wears; what moves, frame by frame. Writes: GLB, USD, MDD, PC2, OBJ and PLY, what
-//! moves straight to its files.
-//! Budget: at the end of a run or beside its steps, never in the frame: a dressed body under 50 ms, a frame of a session under
-//! 30 ms. The same input gives the same bytes.
-//! Thread: the caller's.
 
-// Rooms in the order of the data.
+// Modules in the order of the data.
 mod frame_rate;
 mod surface;
 

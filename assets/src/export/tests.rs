@@ -1,4 +1,4 @@
-//! Laws of exports, read back by a reader that is not ours.
+//! Tests of exports, read back by a reader that is not ours.
 
 use std::io::Cursor;
 

@@ -2,9 +2,6 @@
 //!
 //! Read are positions, indices, the first texture coordinates, node transforms, names, colours and pictures of materials; buffers inside the file, in a data address, or
 //! beside it. Compressed data are refused with the cure. (Khronos glTF 2.0 specification, sections 3.5 to 3.8 and 4.4.)
-//!
-//! Reads: a file of bounded size and the buffers beside it. Writes: a triangle mesh. Budget: at load.
-//! Thread: the loading thread.
 
 pub(crate) mod file;
 

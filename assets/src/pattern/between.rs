@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use super::curve::Curve;
-use super::panel::{Panel, PanelEdge, Placement};
+use super::panel::{Panel, PanelEdge, PanelPlacement};
 use super::{Pattern, PatternFlaw};
 
 /// Why there is nothing between two drafts; each message says what differs.
@@ -52,7 +52,7 @@ fn panel(a: &Panel, b: &Panel, t: f64) -> Result<Panel, GradingError> {
     Ok(Panel {
         edges: a.edges.iter().zip(&b.edges).map(edge).collect::<Result<_, GradingError>>()?,
         grain: a.grain.lerp(b.grain, t).try_normalize().unwrap_or(a.grain),
-        placement: a.placement.zip(b.placement).map(|(a, b)| Placement {
+        placement: a.placement.zip(b.placement).map(|(a, b)| PanelPlacement {
             translation: a.translation.lerp(b.translation, t),
             rotation: a.rotation.slerp(b.rotation, t),
         }),

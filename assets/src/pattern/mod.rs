@@ -1,8 +1,4 @@
 //! Sewn patterns: flat panels with exact outlines, and the seams between their edges.
-//!
-//! Reads: nothing; these are types, and the check of a pattern. Writes: [`Pattern`], in metres, y up along the drawing.
-//! Budget: at load only; [`limits`] bound what a pattern may hold.
-//! Thread: the loading thread.
 
 mod between;
 mod check;
@@ -18,7 +14,7 @@ pub use between::GradingError;
 pub use crossing::crossing;
 pub use curve::Curve;
 pub use flaw::PatternFlaw;
-pub use panel::{Panel, PanelEdge, Placement};
+pub use panel::{Panel, PanelEdge, PanelPlacement};
 pub use seam::{Seam, SeamSide};
 pub use trim::Trim;
 

@@ -19,7 +19,7 @@ pub struct PanelEdge {
 /// Where a panel is placed around the body before it is sewn: a point (x, y) of the drawing goes to
 /// `rotation (x, y, 0) + translation`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Placement {
+pub struct PanelPlacement {
     /// Shift (m), y up and z towards the front.
     pub translation: DVec3,
     /// Rotation, applied first.
@@ -40,7 +40,7 @@ pub struct Panel {
     /// True where the source says that the outside is what the drawing shows from behind.
     pub behind: bool,
     /// Where the source places it, if it does.
-    pub placement: Option<Placement>,
+    pub placement: Option<PanelPlacement>,
     /// What is put on it.
     pub trims: Vec<Trim>,
 }

@@ -1,8 +1,4 @@
 //! Scenes, written once and shared by recordings, tests, benchmarks and pictures.
-//!
-//! Reads: the types of skeleton, body, fabric and garment. Writes: the shopper's performance, the skirt of the benchmark.
-//! Budget: at load; a pose or the skirt's spheres at one time cost about a microsecond.
-//! Thread: any.
 
 mod shopper;
 pub mod skirt;

@@ -6,7 +6,7 @@ use super::error::SceneError;
 use super::source::SceneSource;
 use super::table::SceneTable;
 use super::track::Track;
-use crate::scene::skirt::{self, Motion};
+use crate::scene::skirt::{self, SkirtMotion};
 use toile_base::limits::{MAX_CAPSULES, MAX_PLANES, MAX_SPHERES};
 
 /// A plane: cloth stays on the side that the normal shows.
@@ -23,7 +23,7 @@ pub struct ScenePlane {
 enum SphereMotion {
     Track(Track),
     /// The benchmark's body.
-    Body(Motion),
+    Body(SkirtMotion),
 }
 
 /// The colliders of a scene and how they move.
@@ -133,8 +133,8 @@ impl SceneColliders {
 }
 
 /// The motion of the schema's name.
-pub(super) fn motion(choice: usize) -> Motion {
-    Motion::ALL[choice.min(2)]
+pub(super) fn motion(choice: usize) -> SkirtMotion {
+    SkirtMotion::ALL[choice.min(2)]
 }
 
 fn sphere_track(

@@ -1,9 +1,5 @@
 //! Scene files: any mesh, fabric, pins, colliders and settings of a user's own, described in TOML.
 //!
-//! Reads: a scene file and the meshes, fabrics and tracks that it names. Writes: a checked [`SceneFile`].
-//! Budget: at load only; 0.2 s for 16,000 vertices. Refusals name file, line, key and cure.
-//! Thread: the loading thread.
-//!
 //! `docs/scene.md` is the reference of the format; [`schema`] is what it is made from.
 
 mod colliders;

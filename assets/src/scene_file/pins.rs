@@ -7,7 +7,7 @@ use super::source::SceneSource;
 use super::table::SceneTable;
 use super::track::Track;
 use super::{colliders, schema};
-use crate::scene::skirt::{self, Motion};
+use crate::scene::skirt::{self, SkirtMotion};
 use toile_base::skeleton::BONES;
 
 /// Most different pin tracks of a scene: one bone each, and one for what stands.
@@ -19,7 +19,7 @@ pub enum PinMotion {
     /// By a track of positions and quaternions.
     Track(Track),
     /// As the root of the benchmark's body.
-    Body(Motion),
+    Body(SkirtMotion),
 }
 
 impl PinMotion {

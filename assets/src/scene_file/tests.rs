@@ -1,9 +1,9 @@
-//! Laws of scene files: what they mean, and the message of every mistake.
+//! Tests of scene files: what they mean, and the message of every mistake.
 
 use glam::{Quat, Vec3};
 
 use super::*;
-use crate::scene::skirt::{self, Motion};
+use crate::scene::skirt::{self, SkirtMotion};
 use toile_base::garment::Solver;
 use toile_base::limits::MAX_SPHERES;
 
@@ -249,8 +249,8 @@ fn the_benchmarks_body_and_skirt_are_built_in() {
     assert_eq!((&own.cut, &own.faces, &own.split), (&theirs.cut, &theirs.faces, &theirs.split));
     assert_eq!(own.fixed, theirs.fixed);
     assert_eq!((scene.colliders.spheres(), scene.colliders.capsules.len()), (16, 28));
-    assert_eq!(scene.colliders.sphere(9, 1.7), skirt::spheres(Motion::Walk, 1.7)[9]);
-    assert_eq!(scene.pins[0].at(1.7), skirt::root(Motion::Walk, 1.7));
+    assert_eq!(scene.colliders.sphere(9, 1.7), skirt::spheres(SkirtMotion::Walk, 1.7)[9]);
+    assert_eq!(scene.pins[0].at(1.7), skirt::root(SkirtMotion::Walk, 1.7));
     assert!(refusal(&text.replace("walk\"\n", "walk\"\ncapsules = [[0, 1]]\n")).1.contains("of its own"));
     assert!(
         refusal(&text.replace("motion = \"walk\" }", "motion = \"walk\", track = \"pin.csv\" }"))

@@ -55,7 +55,7 @@ impl Lattice {
         let ring: Vec<DVec2> = boundary.points.iter().map(|p| DVec2::new(p.dot(axes[0]), p.dot(axes[1]))).collect();
         let mut points = vec![None; counts[0] * counts[1]];
         for j in 0..counts[1] {
-            let row = Row::new(&ring, at(1, j), distance);
+            let row = LatticeRow::new(&ring, at(1, j), distance);
             for i in 0..counts[0] {
                 let p = DVec2::new(at(0, i), at(1, j));
                 if row.holds(p, distance) {
@@ -128,11 +128,11 @@ fn lines(panel: &Panel, boundary: &Boundary, axis: DVec2, spacing: f64) -> Lines
 }
 
 /// The sides of an outline near one row of the lattice.
-struct Row {
+struct LatticeRow {
     near: Vec<[DVec2; 2]>,
 }
 
-impl Row {
+impl LatticeRow {
     fn new(ring: &[DVec2], y: f64, distance: f64) -> Self {
         let sides = (0..ring.len()).map(|i| [ring[i], ring[(i + 1) % ring.len()]]);
         let near = |[a, b]: &[DVec2; 2]| a.y.min(b.y) <= y + distance && a.y.max(b.y) >= y - distance;

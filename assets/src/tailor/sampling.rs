@@ -42,7 +42,7 @@ impl Boundary {
 }
 
 /// The edges of a panel, measured.
-struct Measured<'p> {
+struct MeasuredEdges<'p> {
     panel: &'p Panel,
     lengths: Vec<ArcLength>,
     turns: Vec<f64>,
@@ -52,7 +52,7 @@ struct Measured<'p> {
     left_out: Vec<bool>,
 }
 
-impl Measured<'_> {
+impl MeasuredEdges<'_> {
     /// Chords that a part of an edge needs at a spacing (m): by its length, and by how far it turns.
     fn chords(&self, edge: usize, share: f64, spacing: f64) -> usize {
         let by_length = self.lengths[edge].whole() * share / spacing;
@@ -84,7 +84,7 @@ impl Measured<'_> {
 pub fn sample<'p>(pattern: &'p Pattern, spacing: f64) -> Vec<Boundary> {
     let measure = |panel: &'p Panel| {
         let edges: Vec<&Curve> = panel.edges.iter().map(|e| &e.curve).collect();
-        Measured {
+        MeasuredEdges {
             panel,
             lengths: edges.iter().map(|c| ArcLength::of(c)).collect(),
             turns: edges.iter().map(|c| c.turn()).collect(),
@@ -92,7 +92,7 @@ pub fn sample<'p>(pattern: &'p Pattern, spacing: f64) -> Vec<Boundary> {
             left_out: vec![false; edges.len()],
         }
     };
-    let mut all: Vec<Measured<'_>> = pattern.panels().iter().map(measure).collect();
+    let mut all: Vec<MeasuredEdges<'_>> = pattern.panels().iter().map(measure).collect();
     let mut sewn: Vec<Vec<bool>> = all.iter().map(|m| vec![false; m.lengths.len()]).collect();
     for seam in pattern.seams() {
         place_on_seam(&mut all, seam, spacing);
@@ -111,7 +111,7 @@ pub fn sample<'p>(pattern: &'p Pattern, spacing: f64) -> Vec<Boundary> {
 }
 
 /// Points along both sides of a seam, at the corners of either and evenly between them.
-fn place_on_seam(all: &mut [Measured<'_>], seam: &Seam, spacing: f64) {
+fn place_on_seam(all: &mut [MeasuredEdges<'_>], seam: &Seam, spacing: f64) {
     let sides = seam.sides;
     let corners = sides.map(|side| all[side.panel].corners(&side));
     let length =
@@ -195,7 +195,7 @@ fn stops(a: &[f64], b: &[f64], length: f64, spacing: f64) -> Vec<[f64; 2]> {
 
 /// The points of an outline. Those of a curve are moved out so far that their chords enclose what the curve does; where
 /// edges were left out, the next one starts in the middle of them.
-fn boundary(measured: &Measured<'_>) -> Boundary {
+fn boundary(measured: &MeasuredEdges<'_>) -> Boundary {
     let mut found = Boundary { points: Vec::new(), starts: Vec::new() };
     let edges = &measured.panel.edges;
     let n = edges.len();

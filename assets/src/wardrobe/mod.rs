@@ -1,8 +1,4 @@
 //! The wardrobe: the garments that are built in, and meshes that a user brings, dressed onto a shopper's body.
-//!
-//! Reads: garment files, size tables, the body's sections, OBJ meshes. Writes: baked garments.
-//! Budget: 0.3 s a garment; at load only.
-//! Thread: the loading thread.
 
 pub mod drape;
 pub mod jacket;

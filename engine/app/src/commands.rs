@@ -1,8 +1,4 @@
 //! The commands, one file each: its arguments and what it does with them.
-//!
-//! Reads: parsed arguments. Writes: a report on stdout, words on stderr, files in the output folder.
-//! Budget: that of the rooms it calls.
-//! Thread: the main thread.
 
 pub mod bake;
 pub mod body;

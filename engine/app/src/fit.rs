@@ -2,9 +2,9 @@
 
 use toile_track::recommend;
 
-use crate::report::{Recommendation, SizeChance, TapeMeasure, ZoneFitReport};
+use crate::report::{RecommendationReport, SizeChance, TapeMeasure, ZoneFitReport};
 
-impl From<recommend::Recommendation> for Recommendation {
+impl From<recommend::Recommendation> for RecommendationReport {
     fn from(judged: recommend::Recommendation) -> Self {
         let mm = |m: f32| (f64::from(m) * 1e4).round() / 10.0;
         let zones = judged.zones.iter().map(|fit| ZoneFitReport {

@@ -11,14 +11,14 @@ use toile_cli::exit::AppError;
 use toile_cli::output::OutputFolder;
 use toile_cli::picture::write_png;
 use toile_cli::terminal::Progress;
-use toile_engine::frame::Snapshot;
 use toile_engine::lines::Line;
 use toile_engine::skin::Posed;
+use toile_engine::world::Snapshot;
 use toile_view::contact_sheet;
 use toile_view::drawn_frame::DrawnFrame;
 use toile_view::fit_map;
 use toile_view::image::{Animation, Image, Size};
-use toile_view::scene::{Bounds, Camera};
+use toile_view::scene::{Bounds, OrbitCamera};
 use toile_view::trace::TraceQuality;
 
 use crate::renderer::PictureRenderer;
@@ -136,7 +136,7 @@ impl Pictures {
         let legend = fit_map::legend(3 * still.width / 4, contact_sheet::PAPER);
         let aspect = still.width as f32 / still.height as f32;
         let look = |bounds: &Bounds| {
-            [0.0, FRAC_PI_2, PI].map(|turn| Camera::framing(bounds, end.facing + turn, aspect)).to_vec()
+            [0.0, FRAC_PI_2, PI].map(|turn| OrbitCamera::framing(bounds, end.facing + turn, aspect)).to_vec()
         };
         if let Some(worst) = end.worst {
             draw_worst(out, renderer, (&mut self.frame, still), worst)?;
@@ -195,7 +195,8 @@ fn draw_worst(
 ) -> Result<(), AppError> {
     frame.place(&worst.garments, &worst.skin);
     let aspect = still.width as f32 / still.height as f32;
-    let look = |bounds: &Bounds| [0.0, PI].map(|turn| Camera::framing(bounds, worst.facing + turn, aspect)).to_vec();
+    let look =
+        |bounds: &Bounds| [0.0, PI].map(|turn| OrbitCamera::framing(bounds, worst.facing + turn, aspect)).to_vec();
     let drawn = renderer.draw(&frame.surfaces(None), &[], (still, TraceQuality::Still), look, || {})?;
     let views: Vec<&Image> = drawn.iter().collect();
     let title = format!("{:.1} s: most edges through faces, {}", worst.seconds, worst.crossings);

@@ -1,15 +1,11 @@
 //! What draws the pictures of a try-on: the processor by rays, or a GPU by triangles.
-//!
-//! Reads: surfaces and lines of one frame. Writes: images.
-//! Budget: a second for a still by rays, milliseconds on a GPU.
-//! Thread: the main thread; rays use every core.
 
 use toile_base::garment::Garment;
 use toile_cli::exit::AppError;
 use toile_engine::lines::Line;
 use toile_view::figure::Figure;
 use toile_view::image::{Image, Size};
-use toile_view::scene::{Bounds, Camera, Scene, Surface};
+use toile_view::scene::{Bounds, OrbitCamera, PictureScene, PictureSurface};
 use toile_view::trace::{TraceQuality, TracedScene};
 
 #[cfg(feature = "view")]
@@ -83,17 +79,17 @@ impl PictureRenderer {
     /// [`AppError::Device`] where a GPU fails.
     pub fn draw(
         &mut self,
-        surfaces: &[Surface<'_>],
+        surfaces: &[PictureSurface<'_>],
         lines: &[Line],
         (size, quality): (Size, TraceQuality),
-        look: impl Fn(&Bounds) -> Vec<Camera>,
+        look: impl Fn(&Bounds) -> Vec<OrbitCamera>,
         mut done: impl FnMut(),
     ) -> Result<Vec<Image>, AppError> {
         match self {
             // Lines are refused where rays draw.
             Self::RayTracer if lines.is_empty() => {
-                let stage = TracedScene::build(Scene { surfaces, floor: true });
-                let shot = |camera: &Camera| {
+                let stage = TracedScene::build(PictureScene { surfaces, floor: true });
+                let shot = |camera: &OrbitCamera| {
                     let image = stage.render(camera, size, quality);
                     done();
                     image

@@ -1,8 +1,4 @@
 //! The JSON of the commands. Its keys are a contract: keys may be added, none renamed.
-//!
-//! Reads: what the commands found. Writes: documents to be printed as JSON.
-//! Budget: milliseconds.
-//! Thread: the main thread.
 
 use std::path::PathBuf;
 
@@ -89,7 +85,7 @@ pub struct TapeMeasure {
 
 /// The size that fits, and how.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct Recommendation {
+pub struct RecommendationReport {
     /// The garment's name.
     pub garment: String,
     /// Code of its size.
@@ -184,9 +180,9 @@ pub struct TryOn {
     /// The shopper's measures.
     pub measurements: ShopperMeasures,
     /// The size of the first garment, zone by zone.
-    pub recommendation: Recommendation,
+    pub recommendation: RecommendationReport,
     /// The sizes of the others, in the order in which they were asked for.
-    pub others: Vec<Recommendation>,
+    pub others: Vec<RecommendationReport>,
     /// Settings, times and errors of the physics.
     pub physics: PhysicsReport,
     /// Edges of the garments that passed through faces, by a test of its own.
@@ -333,8 +329,12 @@ mod tests {
             feel: Some("right".into()),
             sentence: "The waist is good.".into(),
         };
-        let recommendation =
-            Recommendation { garment: "trousers".into(), size: "40".into(), zones: vec![zone], ..Default::default() };
+        let recommendation = RecommendationReport {
+            garment: "trousers".into(),
+            size: "40".into(),
+            zones: vec![zone],
+            ..Default::default()
+        };
         TryOn {
             renderer: None,
             session: SessionReport::default(),

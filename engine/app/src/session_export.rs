@@ -11,7 +11,7 @@ use toile_base::skeleton::BONES;
 use toile_cli::exit::AppError;
 use toile_cli::output::OutputFolder;
 use toile_engine::body::palette;
-use toile_engine::frame::{Frame, Snapshot};
+use toile_engine::world::{Snapshot, World};
 
 /// Promises all files of a plan and opens them; they get their names when the folder is committed.
 ///
@@ -48,7 +48,7 @@ impl DressedExport {
     /// More than a format holds, and a file that cannot be written.
     pub fn begin(
         out: &mut OutputFolder,
-        frame: &Frame,
+        frame: &World,
         skin: [f32; 3],
         formats: &[ExportFormat],
         (steps, stride, hz): (u64, u64, f64),
@@ -72,7 +72,7 @@ impl DressedExport {
     ///
     /// # Errors
     /// A file that cannot be written.
-    pub fn after(&mut self, tick: u64, frame: &Frame, snapshot: &Snapshot, out: &OutputFolder) -> Result<(), AppError> {
+    pub fn after(&mut self, tick: u64, frame: &World, snapshot: &Snapshot, out: &OutputFolder) -> Result<(), AppError> {
         if !tick.is_multiple_of(self.stride) {
             return Ok(());
         }

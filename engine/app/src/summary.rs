@@ -1,12 +1,12 @@
 //! The reports as people read them: what `--json` says, in words and tables.
 
 use crate::report::{
-    BodyReport, MeasureReport, PhysicsReport, Recommendation, RunReport, SessionReport, ShopperMeasures, TryOn,
+    BodyReport, MeasureReport, PhysicsReport, RecommendationReport, RunReport, SessionReport, ShopperMeasures, TryOn,
 };
 use toile_assets::put_line;
 use toile_cli::document::MeasuredLength;
 use toile_cli::terminal::{Paint, Tone};
-use toile_engine::frame::{DRESS_STEPS, SETTLE_STEPS};
+use toile_engine::world::{DRESS_STEPS, SETTLE_STEPS};
 use toile_fitting::scene::contact::ContactReport;
 use toile_fitting::wearing::{PosePulls, Pull, ZonePull};
 
@@ -184,7 +184,7 @@ fn measurements(text: &mut String, measurements: &ShopperMeasures, paint: Paint)
     }
 }
 
-fn recommendation(text: &mut String, worn: &Recommendation, paint: Paint) {
+fn recommendation(text: &mut String, worn: &RecommendationReport, paint: Paint) {
     heading(text, &format!("{}, size {}", worn.garment, worn.size), paint);
     for zone in &worn.zones {
         let tone = if zone.verdict == "good" { Tone::Good } else { Tone::Warn };
@@ -279,7 +279,7 @@ mod tests {
             renderer: None,
             session: SessionReport { name: "a.csv".into(), frames: 3, seconds: 0.1, notes: vec!["one drop".into()] },
             measurements: ShopperMeasures::default(),
-            recommendation: Recommendation {
+            recommendation: RecommendationReport {
                 garment: "trousers".into(),
                 size: "40".into(),
                 zones: vec![zone],

@@ -3,12 +3,11 @@
 //! Its API is `include/toile.h`, made of these sources; docs/c.md is the guide. Nothing here is for callers in Rust: they take
 //! `toile-sdk`.
 //!
-//! Reads: what C hands over, checked. Writes: what C gives room for, handles, codes with a sentence.
 //! Budget: below 5 us a call beside what `toile-sdk` takes.
 //! Thread: the caller's. Scenes take one call at a time, all other handles any number.
 #![expect(unsafe_code, reason = "functions that C calls by name, and memory that C hands over")]
 
-// Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
+// Modules in the order of the data: each imports only from the groups above its own (tests/tests/layers.rs).
 mod failure;
 
 mod border;

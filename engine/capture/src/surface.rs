@@ -27,7 +27,7 @@ pub struct Fold {
 
 /// A triangle mesh whose vertices move and whose triangles stay.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Surface {
+pub struct CapturedSurface {
     /// Positions in the first frame (m, world) `[vertices]`.
     pub rest: Vec<DVec3>,
     /// Texture points `[vertices]`, or empty.
@@ -40,7 +40,7 @@ pub struct Surface {
     pub folds: Vec<Fold>,
 }
 
-impl Surface {
+impl CapturedSurface {
     /// A surface of a mesh called `name`.
     ///
     /// # Errors
@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn a_flat_fold_has_no_curvature_and_a_bent_one_has() {
         let (rest, triangles) = square();
-        let surface = Surface::new("m", rest.clone(), Vec::new(), triangles).unwrap();
+        let surface = CapturedSurface::new("m", rest.clone(), Vec::new(), triangles).unwrap();
         assert_eq!((surface.edges.len(), surface.folds.len()), (5, 1));
         let curvature = |p: &[DVec3]| {
             let f = surface.folds[0];
@@ -127,7 +127,9 @@ mod tests {
     #[test]
     fn what_cannot_be_followed_is_refused() {
         let (rest, triangles) = square();
-        let said = |rest: Vec<DVec3>, t: Vec<[u32; 3]>| Surface::new("m", rest, Vec::new(), t).unwrap_err().to_string();
+        let said = |rest: Vec<DVec3>, t: Vec<[u32; 3]>| {
+            CapturedSurface::new("m", rest, Vec::new(), t).unwrap_err().to_string()
+        };
         assert!(said(rest.clone(), Vec::new()).contains("coarser"));
         assert!(said(rest.clone(), vec![[0, 1, 9]]).contains("vertex 9 of 4"));
         assert!(said(rest.iter().map(|p| *p * 900.0).collect(), triangles).contains("millimetres"));

@@ -1,8 +1,4 @@
 //! The parts that the command-line programs of Toile share: exit codes, output files, JSON documents, common options.
-//!
-//! Reads: arguments, the machine. Writes: one report on stdout, words on stderr, files in the output folder.
-//! Budget: parsing and printing take under 10 ms.
-//! Thread: the main thread.
 
 // Modules in the order of the data: a module imports only from the groups above its own (tests/tests/layers.rs).
 pub mod heap;

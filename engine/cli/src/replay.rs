@@ -7,11 +7,11 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use toile_assets::file::{self, FileKind};
 use toile_engine::clock::SimClock;
-use toile_engine::frame::Frame;
-use toile_engine::frame_loop::physics_thread::{FrameScene, SceneStepper};
-use toile_engine::frame_loop::recording::{self, Entry, Recording};
+use toile_engine::frame_loop::physics_thread::{SceneStepper, WorldScene};
+use toile_engine::frame_loop::recording::{self, Entry, LoopRecording};
 use toile_engine::frame_loop::replay::{Replayed, replay};
 use toile_engine::workers::WorkerPool;
+use toile_engine::world::World;
 use toile_fitting::dress::try_on::TryOn;
 
 use crate::arguments::WorkersArg;
@@ -66,7 +66,7 @@ impl ReplayArgs {
     ///
     /// # Errors
     /// A file that is no recording.
-    pub fn read(&self) -> Result<Recording, AppError> {
+    pub fn read(&self) -> Result<LoopRecording, AppError> {
         recording::read(&file::read(&self.file, &RUN).map_err(AppError::input)?).map_err(|e| self.bad(e))
     }
 
@@ -74,7 +74,7 @@ impl ReplayArgs {
     ///
     /// # Errors
     /// A recipe that another program wrote.
-    pub fn recipe<R: DeserializeOwned>(&self, recording: &Recording) -> Result<R, AppError> {
+    pub fn recipe<R: DeserializeOwned>(&self, recording: &LoopRecording) -> Result<R, AppError> {
         serde_json::from_str(&recording.text)
             .map_err(|e| self.bad(format!("what it says of its scene is not understood ({e}); record the run again")))
     }
@@ -87,7 +87,7 @@ impl ReplayArgs {
         &self,
         scene: &R,
         version: &str,
-        (frame, out): &(Frame, Replayed),
+        (frame, out): &(World, Replayed),
     ) -> Result<(), AppError> {
         let report = ReplayReport {
             scene,
@@ -121,14 +121,14 @@ impl ReplayArgs {
 ///
 /// # Errors
 /// A recording that does not begin with a dressed shopper, and a scene that cannot be made.
-pub fn session(request: TryOn, entries: &[Entry], workers: usize) -> Result<(Frame, Replayed), AppError> {
+pub fn session(request: TryOn, entries: &[Entry], workers: usize) -> Result<(World, Replayed), AppError> {
     let Some(Entry::Dressed(first)) = entries.first() else {
         let what = "it does not begin with how the shopper was dressed; record the run again";
         return Err(AppError::Input(what.to_owned()));
     };
-    let frame = request.build(first)?.frame;
+    let frame = request.build(first)?.world;
     let crew = WorkerPool::new(workers).map_err(AppError::input)?;
-    let mut stepper = SceneStepper::new(FrameScene::new(frame.with_workers(crew)));
+    let mut stepper = SceneStepper::new(WorldScene::new(frame.with_workers(crew)));
     let out = replay(&mut stepper, entries, &SimClock::default());
-    Ok((stepper.scene.frame, out))
+    Ok((stepper.scene.world, out))
 }

@@ -11,7 +11,7 @@ use toile_base::frame::Joints;
 use toile_base::limits::STEP_HZ;
 use toile_engine::body::JointFrames;
 use toile_engine::cloth::Settings;
-use toile_engine::frame::Frame;
+use toile_engine::world::World;
 
 /// Length of the run (s).
 const SECONDS: u32 = 3;
@@ -39,11 +39,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
 
     // The frame owns the scene; the reader is the end at which pictures are made, on whatever thread.
-    let (mut frame, mut reader) = Frame::new(body.clone(), &rig, vec![dress], Settings::default())?;
-    frame.dress(&joints(&body, 0));
+    let (mut world, mut reader) = World::new(body.clone(), &rig, vec![dress], Settings::default())?;
+    world.dress(&joints(&body, 0));
     let mut shown = 0;
     for tick in 0..u64::from(SECONDS * STEP_HZ) {
-        frame.step(&joints(&body, tick));
+        world.step(&joints(&body, tick));
         // A display of 60 Hz takes every other snapshot; nobody waits for it.
         if tick % 2 == 1 && reader.news().is_some() {
             shown += 1;
@@ -52,8 +52,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let snapshot = reader.latest();
     let hem = snapshot.garments[0].iter().map(|p| p.y).fold(f32::MAX, f32::min);
-    let (meters, strain) = (frame.meters(), frame.meters().strain());
-    println!("{} steps, {shown} snapshots shown, the last of step {}", frame.tick(), snapshot.tick);
+    let (meters, strain) = (world.meters(), world.meters().strain());
+    println!("{} steps, {shown} snapshots shown, the last of step {}", world.tick(), snapshot.tick);
     println!("hem {:.2} m above the floor, {} vertices of skin", hem, snapshot.skin.vertices());
     println!("strain mean {:.2} %, p99 {:.1} %", strain.mean * 100.0, strain.p99 * 100.0);
     println!("deepest inside the body {:.1} mm", meters.penetration_max * 1e3);
@@ -62,7 +62,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Err("the dress is strained or inside the body more than cloth can be".into());
     }
     let finite = snapshot.garments.iter().flatten().all(|p| p.is_finite());
-    if !finite || frame.broken() > 0 || frame.cloths().iter().any(|c| c.events.rolled_back > 0) {
+    if !finite || world.broken() > 0 || world.cloths().iter().any(|c| c.events.rolled_back > 0) {
         return Err("a step went wrong".into());
     }
     Ok(())

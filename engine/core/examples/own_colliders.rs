@@ -9,7 +9,7 @@ use toile_bake::Shape;
 use toile_bake::bake;
 use toile_base::limits::STEP_HZ;
 use toile_base::skeleton::BONES;
-use toile_engine::cloth::{Cloth, Settings, Step, measure};
+use toile_engine::cloth::{Cloth, Settings, Step, step::measure};
 use toile_engine::colliders::{ColliderError, Colliders, RestSphere};
 
 /// Rows and columns of particles, and the distance between neighbours (m).

@@ -13,7 +13,7 @@ use toile_base::frame::Joints;
 use toile_base::skeleton::Joint;
 use toile_engine::body::JointFrames;
 use toile_engine::cloth::Settings;
-use toile_engine::frame::Frame;
+use toile_engine::world::World;
 use toile_sensors::filter::JointFilter;
 use toile_sensors::sample::sample;
 use toile_sensors::source::{self, OpenOptions};
@@ -47,15 +47,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     let body = toile_assets::body::build(sex, &measures)?;
     let rig = toile_assets::rig::fit(&body);
     let dress = wardrobe::style("sun-dress")?.dress("38", &body)?;
-    let (mut frame, _reader) = Frame::new(body, &rig, vec![dress], Settings::default())?;
-    frame.dress(first);
+    let (mut world, _reader) = World::new(body, &rig, vec![dress], Settings::default())?;
+    world.dress(first);
 
     // The sensor has 30 frames a second, the engine 120 steps: joints in between are those of a smooth path.
     let (mut off, mut count) = (0.0f64, 0u32);
     for tick in 0..ns_to_ticks(span) {
         let joints = sample(track, first.time_ns + ticks_to_ns(tick)).unwrap_or(*first);
-        frame.step(&joints);
-        let shown = JointFrames::new(&frame.body().skeleton, frame.pose());
+        world.step(&joints);
+        let shown = JointFrames::new(&world.body().skeleton, world.pose());
         for joint in [Joint::Pelvis, Joint::LeftWrist, Joint::RightWrist, Joint::LeftKnee, Joint::RightKnee] {
             if let Some(seen) = joints.believed(joint) {
                 off += f64::from(shown.at(joint).distance(seen));
@@ -64,13 +64,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
 
-    let (off, strain) = ((off / f64::from(count.max(1))) as f32, frame.meters().strain());
-    println!("{} steps; pelvis, wrists and knees {:.0} mm off the sensor's on average", frame.tick(), off * 1e3);
+    let (off, strain) = ((off / f64::from(count.max(1))) as f32, world.meters().strain());
+    println!("{} steps; pelvis, wrists and knees {:.0} mm off the sensor's on average", world.tick(), off * 1e3);
     println!("strain mean {:.2} %, p99 {:.1} %", strain.mean * 100.0, strain.p99 * 100.0);
     if off > FOLLOWS || strain.mean > 0.01 {
         return Err(format!("the body does not follow ({off:.3} m), or the dress is torn ({:.3})", strain.mean).into());
     }
-    if frame.cloths().iter().any(|c| c.events.rolled_back > 0) {
+    if world.cloths().iter().any(|c| c.events.rolled_back > 0) {
         return Err("a step was not finite and was rolled back".into());
     }
     Ok(())

@@ -11,15 +11,15 @@ use toile_base::skeleton::Joint;
 use toile_engine::body::JointFrames;
 use toile_engine::clock::SimClock;
 use toile_engine::cloth::Settings;
-use toile_engine::frame::Frame;
 use toile_engine::frame_loop::event::{EVENTS, EVENTS_NAME, NoCounters};
-use toile_engine::frame_loop::physics_thread::{FrameScene, PhysicsOutputs, PhysicsThread, SceneStepper};
+use toile_engine::frame_loop::physics_thread::{PhysicsOutputs, PhysicsThread, SceneStepper, WorldScene};
 use toile_engine::frame_loop::queue::bounded;
-use toile_engine::frame_loop::recording::{self, ENTRIES, ENTRIES_NAME, Entry, Recording};
+use toile_engine::frame_loop::recording::{self, ENTRIES, ENTRIES_NAME, Entry, LoopRecording};
 use toile_engine::frame_loop::replay::{Replayed, replay};
 use toile_engine::frame_loop::sensor_thread::{Playback, SensorFrame, SensorThread};
 use toile_engine::frame_loop::simulate::simulate;
 use toile_engine::triple_buffer::TripleBuffer;
+use toile_engine::world::World;
 use toile_sensors::filter::JointFilter;
 
 /// Length of the run (ns).
@@ -28,13 +28,13 @@ const LENGTH_NS: u64 = 2 * SECOND_NS;
 const MOVED: (u64, f32) = (30, 1e-3);
 
 /// The scene as its text in the recording says: whoever replays makes the very same.
-fn staged(size: &str, first: &Joints, workers: usize) -> Result<FrameScene, Box<dyn Error>> {
+fn staged(size: &str, first: &Joints, workers: usize) -> Result<WorldScene, Box<dyn Error>> {
     let body = toile_assets::body::build(scene::SHOPPER.0, &scene::SHOPPER.1)?;
     let rig = toile_assets::rig::fit(&body);
     let dress = wardrobe::style("sun-dress")?.dress(size, &body)?;
-    let (mut frame, _snapshots) = Frame::new(body, &rig, vec![dress], Settings { workers, ..Settings::default() })?;
-    frame.dress(first);
-    Ok(FrameScene::new(frame))
+    let (mut world, _snapshots) = World::new(body, &rig, vec![dress], Settings { workers, ..Settings::default() })?;
+    world.dress(first);
+    Ok(WorldScene::new(world))
 }
 
 /// A run against a simulated clock, as the bytes of a file.
@@ -72,7 +72,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let frames: Vec<Joints> = (0..60).map(seen).collect();
     let bytes = record(&frames)?;
-    let Recording { text: size, mut entries, .. } = recording::read(&bytes)?;
+    let LoopRecording { text: size, mut entries, .. } = recording::read(&bytes)?;
     println!("recorded {} entries in {} kB", entries.len(), bytes.len() / 1_000);
 
     for workers in [1, 2] {

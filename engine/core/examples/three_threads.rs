@@ -15,15 +15,15 @@ use toile_base::skeleton::Skeleton;
 use toile_engine::body::JointFrames;
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::cloth::Settings;
-use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::frame_loop::event::{EVENTS, EVENTS_NAME, NoCounters};
-use toile_engine::frame_loop::physics_thread::{FrameScene, PhysicsOutputs, PhysicsThread};
+use toile_engine::frame_loop::physics_thread::{PhysicsOutputs, PhysicsThread, WorldScene};
 use toile_engine::frame_loop::queue::bounded;
 use toile_engine::frame_loop::render_thread::{RenderThread, Renderer};
 use toile_engine::frame_loop::sensor_thread::{FrameSource, SensorFrame, SensorThread, SourceFrame};
 use toile_engine::frame_loop::thread_roles::ThreadRole;
 use toile_engine::frame_loop::threads::{self, Stop};
 use toile_engine::triple_buffer::TripleBuffer;
+use toile_engine::world::{Snapshot, World};
 use toile_sensors::filter::JointFilter;
 
 /// Length of the run (s).
@@ -78,9 +78,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let rig = toile_assets::rig::fit(&body);
     let dress = wardrobe::style("sun-dress")?.dress("38", &body)?;
     let skeleton = body.skeleton.clone();
-    let (mut frame, snapshots) = Frame::new(body, &rig, vec![dress], Settings { workers: 1, ..Settings::default() })?;
+    let (mut world, snapshots) = World::new(body, &rig, vec![dress], Settings { workers: 1, ..Settings::default() })?;
     let first = Camera { skeleton: skeleton.clone(), origin_ns: 0, frames: 0 }.read();
-    frame.dress(&first.ok_or("the camera gives no frame")?.joints);
+    world.dress(&first.ok_or("the camera gives no frame")?.joints);
     let (pool, _) = threads::worker_pool(2)?;
 
     // Between the threads: the latest joints, the latest snapshot, and a bounded queue of what happened.
@@ -91,7 +91,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let sense = SensorThread::new(Camera { skeleton, origin_ns, frames: 0 }, JointFilter::default(), clock, writer);
     let outlets = PhysicsOutputs { events: sender, recording: None };
     let physics =
-        PhysicsThread::new(FrameScene::new(frame.with_workers(pool)), clock, origin_ns, reader, outlets, NoCounters);
+        PhysicsThread::new(WorldScene::new(world.with_workers(pool)), clock, origin_ns, reader, outlets, NoCounters);
     let render = RenderThread::new(Display::default(), clock, origin_ns + ticks_to_ns(1), snapshots);
 
     let stop = Stop::default();

@@ -1,6 +1,5 @@
 //! The body that is seen: its skinned triangles at the start and the end of a step, for cloth to lie on.
 //!
-//! Reads: a body's triangles and weights at load; in a step what skinning has posed. Writes: [`BodySurface`].
 //! Budget: 20 us a step for 15,000 vertices, all of it copying; nothing allocated after load.
 //! Thread: physics, between skin and cloth.
 //!

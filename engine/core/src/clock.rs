@@ -1,7 +1,7 @@
 //! Time as the loop sees it: nanoseconds of a monotonic clock, real or simulated.
 //!
-//! Reads: the system's monotonic clock, or nothing. Writes: nothing.
-//! Budget: 30 ns a look. Thread: any; what is scheduled against a simulated clock gives the same bits in every run.
+//! Budget: 30 ns a look.
+//! Thread: any; what is scheduled against a simulated clock gives the same bits in every run.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;

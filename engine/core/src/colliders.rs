@@ -1,6 +1,5 @@
 //! Spheres, the tapered capsules between them, and the floor: where they stand at the start and end of a step.
 //!
-//! Reads: the rig's spheres in the rest pose and the palette. Writes: [`Colliders`].
 //! Budget: 51 spheres and 32 capsules, under 1 us a step; a distance to one capsule is 10 ns.
 //! Thread: physics, between skin and cloth.
 

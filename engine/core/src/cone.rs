@@ -1,8 +1,6 @@
 //! The geometry of the collision body: spheres that follow bones, and the tapered capsule between two of them.
 //!
-//! Reads: spheres. Writes: distances and normals.
 //! Budget: 10 ns a distance.
-//! Thread: any; body and colliders share it.
 
 use glam::{Vec3, Vec4, Vec4Swizzles};
 use toile_base::skeleton::Skeleton;

@@ -82,8 +82,8 @@ pub mod colliders;
 
 pub mod cloth;
 
-pub mod frame;
 pub mod lines;
+pub mod world;
 
 #[cfg(feature = "loop")]
 pub mod frame_loop;

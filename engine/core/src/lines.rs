@@ -172,7 +172,7 @@ impl Lines {
         let near = garment.fabric.contact_offset_mm * 1e-3 + TOUCHING_M;
         let free = garment.inverse_mass.iter().map(|w| *w > 0.0);
         for ((p, part), _) in cloth.positions.iter().zip(&garment.parts).zip(free).filter(|(_, free)| *free) {
-            let mut bits = contact::reach(*part, colliders);
+            let mut bits = contact::body::reach(*part, colliders);
             while bits != 0 {
                 let (distance, outwards) = cones[bits.trailing_zeros() as usize].distance((*p).into());
                 bits &= bits - 1;

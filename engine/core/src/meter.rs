@@ -1,7 +1,6 @@
 //! Meters: how long the stages of a step take, always on, against what each of them may take.
 //!
-//! Reads: durations. Writes: histograms of a fixed size, made at load.
-//! Budget: 10 ns a value; 24 KiB a meter. Thread: the one whose stages are metered.
+//! Budget: 10 ns a value; 24 KiB a meter.
 
 #[cfg(feature = "meters")]
 mod distribution;

@@ -1,7 +1,5 @@
 //! What the workers of a step synchronise by: the standard library's atomics and threads, in one place, so that the models of the
 //! hand-offs (tests/models) put others in their place that try every order in which two threads can run.
-//!
-//! Reads: nothing. Writes: nothing. Budget: none of its own. Thread: any.
 
 use std::cell::UnsafeCell;
 use std::hint::spin_loop;

@@ -1,8 +1,4 @@
 //! The latest value from one thread to another: neither side waits, allocates or sees half a value.
-//!
-//! Reads: a snapshot that the writer fills in place. Writes: the newest complete one, for the reader to borrow.
-//! Budget: one atomic exchange a publication; three copies of the value, made at load.
-//! Thread: one writer, one reader; values in between are skipped, which is what a picture or a pose wants.
 
 use ::triple_buffer::{Input, Output};
 

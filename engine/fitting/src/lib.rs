@@ -1,6 +1,5 @@
 //! The one assembly: from what a sensor saw to a dressed body in motion, for the program, the kiosk and an embedder alike.
 //!
-//! Reads: sessions, the wardrobe, scene files. Writes: measures, sizes, dressed frames; the loop's threads and what they report.
 //! Budget: measuring 0.5 s and dressing 1 s, outside of the frame; the loop's own budget inside of it.
 //! Thread: the caller's for `dress`, `scene` and `plan`; sensor, physics and render threads of their own for `live`.
 //!
@@ -18,7 +17,7 @@
 //! let mut dressed = request.sized_for(&session.name, &measured)?.build(&track[0])?;
 //! let mut player = Player::new(&track);
 //! for _ in 0..12 {
-//!     dressed.frame.step(&player.step());
+//!     dressed.world.step(&player.step());
 //! }
 //! let snapshot = dressed.reader.latest();
 //! assert!(snapshot.garments[0].iter().all(|particle| particle.is_finite()));
@@ -44,7 +43,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-// Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
+// Modules in the order of the data: each imports only from the groups above its own (tests/tests/layers.rs).
 pub mod crossings;
 pub mod error;
 pub mod heap;

@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 use toile_base::garment::Garment;
 use toile_base::numeric::statistics::quantile;
-use toile_engine::cloth::layers::Layers;
+use toile_engine::cloth::contact::garments::GarmentContact;
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::Colliders;
 use toile_engine::workers::{SharePanicked, WorkerPool};
@@ -92,7 +92,12 @@ impl Backends {
 
     /// What was asked for, for the garments of a scene: the processor, and no device is opened, where these settings ask for
     /// contact that a device does not have. At load.
-    pub fn for_scene(backend: Backend, layers: Option<&Layers>, colliders: &Colliders, settings: &Settings) -> Self {
+    pub fn for_scene(
+        backend: Backend,
+        layers: Option<&GarmentContact>,
+        colliders: &Colliders,
+        settings: &Settings,
+    ) -> Self {
         let apart = layers.is_some_and(|layers| layers.asked(settings)).then_some(CLOTH_ON_CLOTH);
         match apart.or(on_skin(colliders, settings)) {
             Some(reason) => Self { backend, graphics: Err(reason.to_owned()), known: Arc::default() },
@@ -215,7 +220,7 @@ impl ClothStepper {
             self.fall_back(reason.to_owned());
         }
         if self.graphics.is_some()
-            && batch.garments.iter().any(|g| !g.layout().friction.slots.is_empty() || g.layout().laws.acts())
+            && batch.garments.iter().any(|g| !g.layout().friction.slots.is_empty() || g.layout().link_curves.acts())
         {
             self.fall_back(FRICTION.to_owned());
         }
@@ -241,7 +246,7 @@ impl ClothStepper {
     /// [`SharePanicked`]: a worker of the pool has.
     pub fn step_apart(
         &mut self,
-        layers: &mut Layers,
+        layers: &mut GarmentContact,
         pool: &mut WorkerPool,
         (cloths, garments): (&mut [Cloth], &[Garment]),
         step: &Step<'_>,
@@ -370,11 +375,11 @@ mod tests {
         assert_eq!((asked.stepper().fallback(), asked.fallback()), (None, None), "nobody asked for a device");
     }
     /// A sheet that can meet itself, what keeps it out of itself, and what surrounds it.
-    fn sheet() -> (Garment, Layers, Colliders) {
+    fn sheet() -> (Garment, GarmentContact, Colliders) {
         let place = |row: u32, column: u32| (Vec3::new(column as f32, 1.0, row as f32) * 0.02, row == 0);
         let fabric = toile_assets::fabric::built_in("cotton-lawn").expect("it is built in");
         let garment = bake("sheet", "one", &Shape::sheet(6, 6, place), &fabric).expect("a sheet is cloth");
-        let layers = Layers::new(std::slice::from_ref(&garment)).expect("it has faces");
+        let layers = GarmentContact::new(std::slice::from_ref(&garment)).expect("it has faces");
         (garment, layers, Colliders::new(&[], &[], true).expect("a floor"))
     }
 

@@ -1,6 +1,6 @@
 //! What a step asks of a device, and what the device spent on it.
 
-use toile_engine::cloth::program::METERED_STAGES;
+use toile_engine::cloth::step::program::METERED_STAGES;
 
 /// Work of a step on a device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -1,7 +1,5 @@
 //! The GPUs of this machine, the cloth on them, and the choice between them and the processor.
 //!
-//! Reads: adapter information of the graphics drivers; baked garments and their surroundings. Writes: a list of adapters; cloth.
-//! Budget: drivers and pipelines at load, up to some hundred milliseconds; in the frame what [`backend`] and `cloth` say.
 //! Thread: the one that calls; the physics thread of garments that the processor steps never submits to or waits for a GPU.
 
 /// Whether GPU support is built in (feature `wgpu`).
@@ -17,7 +15,7 @@ pub fn adapters() -> Vec<Adapter> {
     Vec::new()
 }
 
-// Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
+// Modules in the order of the data: each imports only from the groups above its own (tests/tests/layers.rs).
 mod adapter;
 pub mod cloth_batch;
 mod device_work;

@@ -1,11 +1,9 @@
 //! The kiosk: a fitting room that runs unattended, with a window or without, from visitor to visitor.
 //!
-//! Reads: a configuration, frames of a sensor; touch and keys at a window. Writes: pictures on a display, a health line, a report;
-//! nothing about a person.
 //! Budget: ready within 5 s of its start; a round of the service each 20 ms, under 100 us of the first core.
 //! Thread: the loop's own; one for the service, one for jobs of the visitor, one for metrics; main waits for the window system.
 
-// Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
+// Modules in the order of the data: each imports only from the groups above its own (tests/tests/layers.rs).
 pub mod error;
 mod http;
 

@@ -10,10 +10,10 @@ use std::time::{Duration, Instant};
 
 use toile_base::frame::Joints;
 use toile_engine::clock::{Clock, RealClock};
-use toile_engine::frame::{Frame, Snapshot, SnapshotTimes};
-use toile_engine::frame_loop::governor::Rung;
-use toile_engine::frame_loop::physics_thread::{FrameScene, Scene};
+use toile_engine::frame_loop::physics_thread::{LoopScene, WorldScene};
+use toile_engine::frame_loop::quality_control::QualityLevel;
 use toile_engine::frame_loop::render_thread::Renderer;
+use toile_engine::world::{Snapshot, SnapshotTimes, World};
 use toile_fitting::dress::session;
 use toile_fitting::live::assembly::{HeadlessRenderer, LoopOptions, LoopParts};
 use toile_fitting::live::lateness::ThreadAccount;
@@ -42,21 +42,21 @@ fn physics_gate() -> &'static Gate {
     GATE.get_or_init(Gate::default)
 }
 
-struct Gated(FrameScene, Gate);
+struct Gated(WorldScene, Gate);
 
 impl Gated {
-    fn new(frame: Frame) -> Self {
-        Self(FrameScene::new(frame), physics_gate().clone())
+    fn new(world: World) -> Self {
+        Self(WorldScene::new(world), physics_gate().clone())
     }
 }
 
-impl Scene for Gated {
+impl LoopScene for Gated {
     fn step(&mut self, joints: &Joints, times: SnapshotTimes, clock: &impl Clock) {
         pass(&self.1);
         self.0.step(joints, times, clock);
     }
-    fn set_rung(&mut self, rung: &Rung) {
-        self.0.set_rung(rung);
+    fn set_level(&mut self, level: &QualityLevel) {
+        self.0.set_level(level);
     }
     fn measure(&mut self) {
         self.0.measure();
@@ -67,11 +67,11 @@ impl Scene for Gated {
     fn fingerprint(&self) -> u64 {
         self.0.fingerprint()
     }
-    fn succeed(&mut self, before: &mut Self) {
-        self.0.succeed(&mut before.0);
+    fn take_workers_from(&mut self, before: &mut Self) {
+        self.0.take_workers_from(&mut before.0);
     }
-    fn troubles(&self) -> [u64; 2] {
-        self.0.troubles()
+    fn fault_counts(&self) -> [u64; 2] {
+        self.0.fault_counts()
     }
 }
 
@@ -124,7 +124,7 @@ fn serve(diary: &Diary, display: Gate, meanwhile: impl FnOnce() + Send) {
     let dressed = stock.first.on_mannequin(&pose).unwrap();
     // Nobody ever comes: the stall is the only thing that happens.
     let source = Feed::Played(Visits::of(&session, clock.now_ns(), 3_600_000_000_000));
-    let first = DressedScene::new(dressed, |frame| (Gated::new(frame), ()));
+    let first = DressedScene::new(dressed, |world| (Gated::new(world), ()));
     let renderer = Display(HeadlessRenderer::default(), display);
     let parts = LoopParts { first, renderer, source, account: ThreadAccount::new(), recording: None };
     let (live, handover) = LiveLoop::start(parts, clock, LoopOptions::default()).unwrap();
@@ -150,7 +150,7 @@ fn serve(diary: &Diary, display: Gate, meanwhile: impl FnOnce() + Send) {
             print_line: &print_line,
             figures: None,
             first: stock.first.clone(),
-            to_scene: Box::new(|frame| (Gated::new(frame), ())),
+            to_scene: Box::new(|world| (Gated::new(world), ())),
             pose,
             flight_recorder: None,
         };

@@ -14,11 +14,11 @@ use std::time::{Duration, Instant};
 use toile_assets::body::shape::Shapes;
 use toile_base::body::Sex;
 use toile_engine::clock::{Clock, RealClock};
-use toile_engine::frame::Snapshot;
-use toile_engine::frame_loop::physics_thread::FrameScene;
+use toile_engine::frame_loop::physics_thread::WorldScene;
 use toile_engine::frame_loop::queue::{Receiver, Sender, bounded};
 use toile_engine::frame_loop::render_thread::Renderer;
 use toile_engine::triple_buffer::{Reader, TripleBuffer};
+use toile_engine::world::Snapshot;
 use toile_fitting::dress::session;
 use toile_fitting::live::assembly::{HeadlessRenderer, LoopOptions, LoopParts};
 use toile_fitting::live::camera_start::{self, CameraSetup, StartedCamera};
@@ -400,7 +400,7 @@ fn serve_with(config: &str, own: bool, visit: impl FnOnce(&mut Finger) + Send) -
     let dressed = stock.first.on_mannequin(&pose).unwrap();
     let (source, played, pictures) = source(&session, own, clock);
     let (pictures, switch) = pictures.unzip();
-    let first = DressedScene::new(dressed, |frame| (FrameScene::new(frame), Worn::default()));
+    let first = DressedScene::new(dressed, |frame| (WorldScene::new(frame), Worn::default()));
     let renderer = MirrorRenderer { pictures, mirror: OwnPicture::new(), ..MirrorRenderer::default() };
     let parts = LoopParts { first, renderer, source, account: ThreadAccount::new(), recording: None };
     let (live, handover) = LiveLoop::start(parts, clock, LoopOptions::default()).unwrap();
@@ -439,7 +439,7 @@ fn serve_with(config: &str, own: bool, visit: impl FnOnce(&mut Finger) + Send) -
             first: stock.first.clone(),
             to_scene: Box::new(|frame| {
                 let worn = OwnPictureModel::of(frame.body(), frame.garments());
-                (FrameScene::new(frame), Some(worn))
+                (WorldScene::new(frame), Some(worn))
             }),
             pose,
             flight_recorder: None,

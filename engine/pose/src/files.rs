@@ -1,8 +1,4 @@
 //! The networks' files: which they are, where they are sought, and the commands that fetch them.
-//!
-//! Reads: files of the npm packages `@mediapipe/pose` and `@mediapipe/face_mesh` (Apache-2.0). Writes: their bytes, once their SHA-256 is the known one.
-//! Budget: at load; 13 MB are hashed in 40 ms.
-//! Thread: the loading thread.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

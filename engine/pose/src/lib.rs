@@ -1,11 +1,6 @@
 //! A person's joints in a plain colour picture, and the points of a face: networks of MediaPipe (BlazePose, face mesh) on the processor.
-//!
-//! Reads: colour pictures; the network's files, which are fetched and are no part of this program. Writes: landmarks and
-//! directions of the body's segments, never its scale; points of a face.
-//! Budget: 30 ms a picture; nothing is allocated once the first one was seen.
-//! Thread: the camera's thread.
 
-// Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
+// Modules in the order of the data: each imports only from the groups above its own (tests/tests/layers.rs).
 pub mod depth_buffer;
 pub mod files;
 pub mod region;

@@ -64,7 +64,7 @@ impl SideKeeper {
 
 /// Whether any pair has changed its sides, in the picture or in metres.
 fn is_exchanged(last: &Points, now: &Points) -> bool {
-    [pixel as Place, metre].iter().any(|place| {
+    [pixel as LandmarkPlace, metre].iter().any(|place| {
         let apart = APART * trunk(last, *place);
         PAIRS.iter().any(|pair| {
             let (before, after) = (across(last, *pair, *place), across(now, *pair, *place));
@@ -76,7 +76,7 @@ fn is_exchanged(last: &Points, now: &Points) -> bool {
 
 /// Whether the body in metres has a pair on other sides than the picture has it.
 fn is_torn(now: &Points) -> bool {
-    let [size, metres] = [pixel as Place, metre].map(|place| APART * trunk(now, place));
+    let [size, metres] = [pixel as LandmarkPlace, metre].map(|place| APART * trunk(now, place));
     PAIRS.iter().any(|pair| {
         let (seen, body) = (across(now, *pair, pixel), across(now, *pair, metre));
         let apart = seen.length() > size && body.length() > metres;
@@ -85,7 +85,7 @@ fn is_torn(now: &Points) -> bool {
 }
 
 /// Where a landmark is across: in the picture (px), or in the network's body (m).
-type Place = fn(&PoseLandmark) -> Vec2;
+type LandmarkPlace = fn(&PoseLandmark) -> Vec2;
 
 fn pixel(point: &PoseLandmark) -> Vec2 {
     point.pixel
@@ -95,11 +95,11 @@ fn metre(point: &PoseLandmark) -> Vec2 {
     point.world.truncate()
 }
 
-fn across(points: &Points, [left, right]: [usize; 2], place: Place) -> Vec2 {
+fn across(points: &Points, [left, right]: [usize; 2], place: LandmarkPlace) -> Vec2 {
     place(&points[left]) - place(&points[right])
 }
 
-fn trunk(points: &Points, place: Place) -> f32 {
+fn trunk(points: &Points, place: LandmarkPlace) -> f32 {
     let middle = |[left, right]: [usize; 2]| (place(&points[left]) + place(&points[right])) * 0.5;
     middle(SHOULDERS).distance(middle(HIPS))
 }

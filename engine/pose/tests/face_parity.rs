@@ -12,7 +12,7 @@ use toile_pose::face_finder::{DETECTOR, MESH};
 use toile_pose::files::{self, NetworkPackage, PoseFile};
 use toile_pose::network::{Network, logistic};
 
-use crate::common::twins;
+use crate::common::references;
 
 const REFERENCE: &[u8] = include_bytes!("data/face_reference.bin");
 const FACES: [(&[u8], usize); 2] =
@@ -107,7 +107,7 @@ fn the_fast_networks_are_their_plain_twins_to_the_bit() {
     let Some(file) = bytes() else { return };
     for (name, range, wanted) in [("mesh", MESH, POINTS), ("detector", DETECTOR, BOXES)] {
         let mut network = Network::load(&file[range], wanted).unwrap();
-        assert!(twins::agree(&mut network, wanted.len()), "{name}");
+        assert!(references::agree(&mut network, wanted.len()), "{name}");
         network.wipe();
         assert!(
             (0..wanted.len()).flat_map(|i| network.output(i)).all(|x| *x == 0.0)

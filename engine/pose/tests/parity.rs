@@ -10,7 +10,7 @@ use toile_base::numeric::statistics::median_of;
 use toile_pose::files::PoseFile;
 use toile_pose::network::Network;
 
-use crate::common::{network_folder, twins};
+use crate::common::{network_folder, references};
 
 const REFERENCE: &[u8] = include_bytes!("data/reference.bin");
 
@@ -130,7 +130,7 @@ fn the_fast_network_is_its_plain_twin_to_the_bit() {
     let wanted: [(PoseFile, &[&[usize]]); 2] = [(PoseFile::Lite, &LANDMARKS), (PoseFile::Detector, &BOXES)];
     for (file, wanted) in wanted {
         let mut network = Network::load(&file.read(&folder).unwrap(), wanted).unwrap();
-        assert!(twins::agree(&mut network, wanted.len()), "{file}");
+        assert!(references::agree(&mut network, wanted.len()), "{file}");
     }
 }
 

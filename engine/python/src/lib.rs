@@ -3,11 +3,11 @@
 //! This is the compiled part of the package `toile`, whose part in Python stands in `package/`; docs/python.md is the guide. Nothing
 //! here is for callers in Rust: they take `toile-sdk`.
 //!
-//! Reads: what Python hands over, checked. Writes: arrays that show memory without a copy, plain objects, exceptions with a sentence.
 //! Budget: below 5 us a call beside what `toile-sdk` takes.
-//! Thread: any that holds the interpreter's lock, which is released where something is computed. Scenes take one call at a time.
+//! Thread: any that holds the interpreter's lock, which is released where something is computed. Scenes take one call at a
+//! time.
 
-// Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
+// Modules in the order of the data: each imports only from the groups above its own (tests/tests/layers.rs).
 mod failure;
 
 mod numbers;

@@ -48,7 +48,6 @@
 //! # Ok::<(), toile_sdk::Error>(())
 //! ```
 //!
-//! Reads: measures, recordings, garments, scene files. Writes: positions, sizes with verdicts, fit maps, pictures.
 //! Budget: a body 20 ms, dressing a second a garment, a step 8.3 ms, a picture a second.
 //! Thread: the caller's; every type may be sent to another.
 //!
@@ -67,7 +66,7 @@
 //!
 //! [`glam`] is re-exported: use this one, so that the types agree.
 
-// Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
+// Modules in the order of the data: each imports only from the groups above its own (tests/tests/layers.rs).
 mod error;
 
 mod measures;

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use toile_view::fit_map;
 use toile_view::image::{Image, Size};
-use toile_view::scene::{Camera, Scene as DrawnScene, Surface};
+use toile_view::scene::{OrbitCamera, PictureScene as DrawnScene, PictureSurface};
 use toile_view::trace::{TraceQuality, TracedScene};
 
 use crate::error::{Error, Result};
@@ -96,11 +96,17 @@ pub(crate) fn checked_size([width, height]: [u32; 2]) -> Result<Size> {
 }
 
 /// Draws surfaces from each side; `facing` is the direction of the front (rad from +z towards +x).
-pub(crate) fn draw(surfaces: &[Surface<'_>], floor: bool, facing: f32, views: &[View], size: Size) -> Vec<Picture> {
+pub(crate) fn draw(
+    surfaces: &[PictureSurface<'_>],
+    floor: bool,
+    facing: f32,
+    views: &[View],
+    size: Size,
+) -> Vec<Picture> {
     let scene = TracedScene::build(DrawnScene { surfaces, floor });
     let aspect = size.width as f32 / size.height as f32;
     let one = |view: &View| {
-        let camera = Camera::framing(&scene.bounds(), facing + view.turn(), aspect);
+        let camera = OrbitCamera::framing(&scene.bounds(), facing + view.turn(), aspect);
         Picture { image: scene.render(&camera, size, TraceQuality::Still) }
     };
     views.iter().map(one).collect()

@@ -43,7 +43,7 @@ pub struct Shopper {
 /// Somebody who was measured.
 #[derive(Debug, Clone)]
 pub struct Measured {
-    pub(crate) inner: measured::Measured,
+    pub(crate) inner: measured::MeasuredSubject,
     has_tape: bool,
 }
 

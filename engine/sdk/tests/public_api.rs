@@ -19,7 +19,7 @@ const BORROWED: [&str; 5] = [
     "assets/base/src/body.rs",
     "assets/src/scene_file/mod.rs",
     "assets/base/src/skeleton/joint.rs",
-    "engine/core/src/cloth/settings.rs",
+    "engine/core/src/cloth/step/settings.rs",
     "assets/base/src/frame.rs",
 ];
 

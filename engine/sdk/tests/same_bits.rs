@@ -2,7 +2,7 @@
 
 use toile_assets::scene_file::{SceneFile, SceneSource};
 use toile_engine::cloth::Settings;
-use toile_engine::frame::Frame;
+use toile_engine::world::World;
 use toile_fitting::dress::garment_source::GarmentSource;
 use toile_fitting::dress::measured::{self, ShopperFacts};
 use toile_fitting::dress::player::Player;
@@ -22,17 +22,17 @@ fn a_try_on_is_the_programs_own() {
     let worn = source.put_on(None, &measured.best, &body, &[]).unwrap();
     let fit = worn.fit.clone().unwrap();
     let rig = toile_assets::rig::fit(&body);
-    let (mut frame, mut reader) = Frame::new(body, &rig, worn.garments, Settings::default()).unwrap();
+    let (mut world, mut reader) = World::new(body, &rig, worn.garments, Settings::default()).unwrap();
     let track = session::standing(&session).unwrap();
-    frame.dress(&track[0]);
+    world.dress(&track[0]);
     let mut player = Player::new(&track);
     for _ in 0..player.steps() {
-        frame.step(&player.step());
+        world.step(&player.step());
     }
 
     let garments = [Garment::open("t-shirt").unwrap()];
     let mut tried = try_on(&Recording::embedded().unwrap(), &garments, &TryOnOptions::default()).unwrap();
-    assert_eq!((tried.scene.steps(), tried.scene.state_hash()), (frame.tick(), frame.state_hash()));
+    assert_eq!((tried.scene.steps(), tried.scene.state_hash()), (world.tick(), world.state_hash()));
     let own = tried.fits[0].as_ref().unwrap();
     assert_eq!((&own.size, own.probability, &own.verdict), (&fit.size, fit.probability, &fit.verdict));
     let given: Vec<(f64, f64, &str)> = own.zones.iter().map(|z| (z.ease_mm, z.sigma_mm, z.verdict)).collect();
@@ -42,7 +42,7 @@ fn a_try_on_is_the_programs_own() {
     // What is drawn is what was last published, in the order of the draft.
     let shown = reader.latest();
     let positions = tried.scene.positions(0).unwrap();
-    let source = &frame.garments()[0].source;
+    let source = &world.garments()[0].source;
     assert!(source.iter().zip(&shown.garments[0]).all(|(vertex, p)| positions[*vertex as usize] == *p));
     let (skin, normals) = tried.scene.body().unwrap();
     assert!((0..skin.len()).all(|v| skin[v] == shown.skin.position(v) && normals[v] == shown.skin.normal(v)));

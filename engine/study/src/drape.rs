@@ -10,9 +10,9 @@ use toile_base::garment::{Garment, Part};
 use toile_base::numeric::statistics::quantile;
 use toile_base::rig::Rig;
 use toile_base::skeleton::Pose;
-use toile_engine::cloth::{Cloth, Settings, measure};
-use toile_engine::frame::{Frame, Snapshot};
+use toile_engine::cloth::{Cloth, Settings, step::measure};
 use toile_engine::triple_buffer::Reader;
+use toile_engine::world::{Snapshot, World};
 use toile_fitting::dress::player::Player;
 use toile_fitting::dress::session;
 use toile_fitting::dress::try_on::DressedBody;
@@ -78,7 +78,7 @@ impl Draped {
 
 /// A garment on a body, in motion.
 pub struct WornFrame {
-    frame: Frame,
+    world: World,
     reader: Reader<Snapshot>,
     pose: TriedPose,
     joints: Joints,
@@ -97,8 +97,8 @@ impl WornFrame {
     ) -> Result<Self> {
         let worn = garment.dress(size, body, start)?;
         let made = DressedBody::new(rig.clone(), body.clone(), worn.garments).build(settings);
-        let (mut frame, reader) = made.map_err(StudyError::input)?;
-        frame.measure_every(0);
+        let (mut world, reader) = made.map_err(StudyError::input)?;
+        world.measure_every(0);
         let skeleton = &body.skeleton;
         let mut joints = match pose {
             TriedPose::Standing | TriedPose::Walking => poses::joints(skeleton, &poses::arms_down(skeleton)),
@@ -107,28 +107,28 @@ impl WornFrame {
         };
         if pose == TriedPose::Walking {
             let track = session::standing(&session::open(None, None)?)?;
-            frame.dress(&track[0]);
+            world.dress(&track[0]);
             let mut player = Player::new(&track);
             for _ in 0..WALK_STEPS {
                 joints = player.step();
-                frame.step(&joints);
+                world.step(&joints);
             }
         } else {
-            frame.dress(&joints);
+            world.dress(&joints);
         }
-        let mut worn = Self { frame, reader, pose, joints };
+        let mut worn = Self { world, reader, pose, joints };
         worn.settle(settle.max(1));
         Ok(worn)
     }
 
     /// Lets it settle for so many steps more.
     pub fn settle(&mut self, steps: usize) {
-        (0..steps).for_each(|_| self.frame.step(&self.joints));
+        (0..steps).for_each(|_| self.world.step(&self.joints));
     }
 
     /// Where the vertices of the garments' meshes are (m), garment after garment, whatever order they are solved in.
     pub fn positions(&self) -> Vec<Vec3> {
-        let worn = self.frame.cloths().iter().zip(self.frame.garments());
+        let worn = self.world.cloths().iter().zip(self.world.garments());
         let of = |(cloth, garment): (&Cloth, &Garment)| {
             let vertices = garment.source.iter().map(|v| *v as usize + 1).max().unwrap_or(0);
             let mut at = vec![Vec3::ZERO; vertices];
@@ -139,8 +139,8 @@ impl WornFrame {
     }
 
     /// The frame and its newest snapshot.
-    pub fn shown(&mut self) -> (&Frame, &Snapshot) {
-        (&self.frame, self.reader.latest())
+    pub fn shown(&mut self) -> (&World, &Snapshot) {
+        (&self.world, self.reader.latest())
     }
 
     /// What is seen of it now.
@@ -149,13 +149,13 @@ impl WornFrame {
         let mut posed = vec![Vec3::ZERO; skin.vertices()];
         let mut normals = posed.clone();
         skin.read(&mut posed, &mut normals);
-        let frame = &self.frame;
-        let Some((cloth, garment)) = frame.cloths().iter().zip(frame.garments()).max_by_key(|(_, g)| g.particles())
+        let world = &self.world;
+        let Some((cloth, garment)) = world.cloths().iter().zip(world.garments()).max_by_key(|(_, g)| g.particles())
         else {
             return Draped::default();
         };
-        let body = frame.body();
-        let shift = frame.pose().root.y - Pose::rest(&body.skeleton).root.y;
+        let body = world.body();
+        let shift = world.pose().root.y - Pose::rest(&body.skeleton).root.y;
         let stretch = wearing::stretches(cloth, garment, &body.levels).map(|s| s.map(f64::from));
         let mut seen =
             Draped { stretch, comfortable: f64::from(garment.fabric.comfortable_stretch), ..Draped::default() };
@@ -176,11 +176,11 @@ impl WornFrame {
             }
             seen.hem = hem(cloth, garment);
         }
-        for (cloth, garment) in frame.cloths().iter().zip(frame.garments()) {
+        for (cloth, garment) in world.cloths().iter().zip(world.garments()) {
             let mut cloth = cloth.clone();
             let strain = measure::strain(&mut cloth, garment);
             seen.strain = [seen.strain[0].max(f64::from(strain.mean)), seen.strain[1].max(f64::from(strain.p99))];
-            let deep = measure::penetration(&mut cloth, garment, frame.colliders());
+            let deep = measure::penetration(&mut cloth, garment, world.colliders());
             seen.penetration = seen.penetration.max(f64::from(deep));
         }
         seen

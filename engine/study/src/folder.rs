@@ -94,14 +94,14 @@ pub struct Merged {
 
 /// A folder in use by this process.
 #[derive(Debug)]
-pub struct Folder {
+pub struct StudyFolder {
     path: PathBuf,
     manifest: Manifest,
     /// Released by the system when the process ends, however it does.
     _locks: Vec<File>,
 }
 
-impl Folder {
+impl StudyFolder {
     /// Takes a folder for a shard of a study; it is made if missing.
     ///
     /// # Errors

@@ -12,12 +12,8 @@
 //! println!("{} in {}: fits {}", row.garment, row.size, row.fits);
 //! # Ok::<(), toile_study::StudyError>(())
 //! ```
-//!
-//! Reads: a study file, tables of people, garments. Writes: rows of Parquet in a folder, shares with intervals, a page.
-//! Budget: 2 ms a person and garment without physics, some seconds a try-on with it.
-//! Thread: as many workers as are asked for, each with people of its own.
 
-// Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
+// Modules in the order of the data: each imports only from the groups above its own (tests/tests/layers.rs).
 mod digest;
 mod error;
 mod row;
@@ -41,13 +37,13 @@ mod page;
 
 pub use drape::{Draped, TriedPose, WornFrame};
 pub use error::{Result, StudyError};
-pub use folder::{Folder, Merged, RunReport, Shard};
+pub use folder::{Merged, RunReport, Shard, StudyFolder};
 pub use garments::{GarmentNote, TriedGarment, ZoneEase};
 pub use page::{TypicalPicture, page};
 pub use parquet_file::{Notes, bytes_of, notes, read};
 pub use pictures::picture;
 pub use population::{Person, Population};
-pub use row::{Kind, Row, Value};
+pub use row::{Kind, StudyRow, Value};
 pub use sensor::Sensor;
 pub use shares::{
     Convergence, DrapedFigures, GarmentSummary, GradingStep, Share, SizeSummary, Summary, SummaryWearer, ZoneFailure,

@@ -12,7 +12,7 @@ use toile_cli::exit::AppError;
 use toile_cli::output::OutputFolder;
 use toile_cli::program;
 use toile_cli::terminal::{self, Words};
-use toile_study::{Folder, Merged, RunReport, Shard, Study, StudyError, Summary, TypicalPicture};
+use toile_study::{Merged, RunReport, Shard, Study, StudyError, StudyFolder, Summary, TypicalPicture};
 
 /// Most threads: more than any machine has.
 const MOST_WORKERS: u64 = 1024;
@@ -139,7 +139,7 @@ fn compute(args: &StudyArgs) -> Result<(), AppError> {
         .ok_or_else(|| AppError::Usage("no study file is given; see `toile study --help`".to_owned()))?;
     let study = Study::open(file).map_err(refused)?;
     let shard = args.shard.unwrap_or(Shard::WHOLE);
-    let folder = Folder::take(&args.out, &study, shard).map_err(refused)?;
+    let folder = StudyFolder::take(&args.out, &study, shard).map_err(refused)?;
     let bar = words.bar(study.rows() / shard.of, "trying on");
     let rows = AtomicU64::new(0);
     // Relaxed: a count for people to look at.
@@ -156,14 +156,14 @@ fn compute(args: &StudyArgs) -> Result<(), AppError> {
 }
 
 fn merge(args: &MergeArgs) -> Result<(), AppError> {
-    let merged = Folder::open(&args.folder).map_err(refused)?.merge().map_err(refused)?;
+    let merged = StudyFolder::open(&args.folder).map_err(refused)?.merge().map_err(refused)?;
     let found = StudyReport { run: None, merged: Some(merged), summary: None, page: None };
     printed(&found, args.printing, &args.folder)
 }
 
 fn report(args: &ReportArgs) -> Result<(), AppError> {
     let words = args.printing.words();
-    let folder = Folder::open(&args.folder).map_err(refused)?;
+    let folder = StudyFolder::open(&args.folder).map_err(refused)?;
     if !folder.rows_file().exists() {
         let shown = args.folder.display();
         return Err(AppError::Input(format!(
@@ -177,7 +177,7 @@ fn report(args: &ReportArgs) -> Result<(), AppError> {
 }
 
 /// The study whose rows a folder holds, if its file is still there and the same.
-fn same_study(folder: &Folder, words: Words) -> Option<Study> {
+fn same_study(folder: &StudyFolder, words: Words) -> Option<Study> {
     let study = Study::open(folder.study_path()).ok().filter(|study| study.digest() == folder.digest());
     if study.is_none() {
         let place = folder.study_path().display();
@@ -189,7 +189,7 @@ fn same_study(folder: &Folder, words: Words) -> Option<Study> {
 /// Makes the page, with pictures where the study is given.
 fn made(
     found: &mut StudyReport,
-    folder: &Folder,
+    folder: &StudyFolder,
     place: &Path,
     study: Option<&Study>,
     words: Words,

@@ -16,7 +16,7 @@ use parquet::record::Field;
 use parquet::schema::parser::parse_message_type;
 
 use crate::error::{Result, StudyError};
-use crate::row::{Kind, Row, Value};
+use crate::row::{Kind, StudyRow, Value};
 
 /// Rows of a group: what is held in memory at a time.
 pub(crate) const GROUP: usize = 16_384;
@@ -27,13 +27,13 @@ pub type Notes = Vec<(String, String)>;
 /// Writes rows in groups of [`GROUP`].
 pub(crate) struct RowWriter<W: Write + Send> {
     writer: SerializedFileWriter<W>,
-    waiting: Vec<Row>,
+    waiting: Vec<StudyRow>,
 }
 
 impl<W: Write + Send> RowWriter<W> {
     /// A file with these notes.
     pub fn new(to: W, notes: &Notes) -> std::result::Result<Self, ParquetError> {
-        let columns: String = Row::COLUMNS
+        let columns: String = StudyRow::COLUMNS
             .iter()
             .map(|(name, kind)| match kind {
                 Kind::Whole => format!("required int64 {name}; "),
@@ -53,7 +53,7 @@ impl<W: Write + Send> RowWriter<W> {
     }
 
     /// Adds a row.
-    pub fn push(&mut self, row: Row) -> std::result::Result<(), ParquetError> {
+    pub fn push(&mut self, row: StudyRow) -> std::result::Result<(), ParquetError> {
         self.waiting.push(row);
         if self.waiting.len() == GROUP { self.flush() } else { Ok(()) }
     }
@@ -63,12 +63,12 @@ impl<W: Write + Send> RowWriter<W> {
         if rows.is_empty() {
             return Ok(());
         }
-        let mut columns: Vec<Vec<Value>> = Row::COLUMNS.iter().map(|_| Vec::with_capacity(rows.len())).collect();
+        let mut columns: Vec<Vec<Value>> = StudyRow::COLUMNS.iter().map(|_| Vec::with_capacity(rows.len())).collect();
         for row in rows {
             columns.iter_mut().zip(row.values()).for_each(|(column, value)| column.push(value));
         }
         let mut group = self.writer.next_row_group()?;
-        for ((_, kind), column) in Row::COLUMNS.iter().zip(columns) {
+        for ((_, kind), column) in StudyRow::COLUMNS.iter().zip(columns) {
             write_column(&mut group, *kind, column)?;
         }
         group.close()?;
@@ -118,7 +118,7 @@ fn write_column<W: Write + Send>(
 ///
 /// # Errors
 /// None that a sound build has.
-pub fn bytes_of(rows: impl IntoIterator<Item = Row>, notes: &Notes) -> Result<Vec<u8>> {
+pub fn bytes_of(rows: impl IntoIterator<Item = StudyRow>, notes: &Notes) -> Result<Vec<u8>> {
     let mut writer = RowWriter::new(Vec::new(), notes).map_err(StudyError::internal)?;
     rows.into_iter().try_for_each(|row| writer.push(row)).map_err(StudyError::internal)?;
     writer.finish().map_err(StudyError::internal)
@@ -151,13 +151,13 @@ pub fn notes(path: &Path) -> Result<Notes> {
 ///
 /// # Errors
 /// A file that is none of ours; those of `each`.
-pub fn read(path: &Path, mut each: impl FnMut(Row) -> Result<()>) -> Result<()> {
+pub fn read(path: &Path, mut each: impl FnMut(StudyRow) -> Result<()>) -> Result<()> {
     let refused = |why: &dyn std::fmt::Display| no_rows(path, why);
     let reader = opened(path)?;
     for found in reader.get_row_iter(None).map_err(|e| refused(&e))? {
         let found = found.map_err(|e| refused(&e))?;
-        let mut row = Row::default();
-        for ((name, field), (_, kind)) in found.get_column_iter().zip(Row::COLUMNS) {
+        let mut row = StudyRow::default();
+        for ((name, field), (_, kind)) in found.get_column_iter().zip(StudyRow::COLUMNS) {
             let value = match (kind, field) {
                 (Kind::Whole, Field::Long(value)) => Value::Whole(*value),
                 (Kind::Flag, Field::Bool(value)) => Value::Flag(*value),

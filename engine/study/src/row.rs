@@ -60,11 +60,11 @@ macro_rules! row {
     ($($(#[$about:meta])* $name:ident: $type:ty,)*) => {
         /// A try-on: one person, one garment, one size, one pose.
         #[derive(Debug, Clone, PartialEq, Default, Serialize)]
-        pub struct Row {
+        pub struct StudyRow {
             $($(#[$about])* pub $name: $type,)*
         }
 
-        impl Row {
+        impl StudyRow {
             /// The columns, in their order.
             pub const COLUMNS: &[(&str, Kind)] = &[$((stringify!($name), <$type as Cell>::KIND)),*];
 
@@ -198,9 +198,10 @@ mod tests {
 
     #[test]
     fn values_come_back_by_their_names_and_others_are_refused() {
-        let row = Row { person: 7, weight: 0.5, size: "38".into(), chest_ease_mm: Some(-3.25), ..Row::default() };
-        let mut back = Row::default();
-        for ((name, _), value) in Row::COLUMNS.iter().zip(row.values()) {
+        let row =
+            StudyRow { person: 7, weight: 0.5, size: "38".into(), chest_ease_mm: Some(-3.25), ..StudyRow::default() };
+        let mut back = StudyRow::default();
+        for ((name, _), value) in StudyRow::COLUMNS.iter().zip(row.values()) {
             back.set(name, value).expect(name);
         }
         assert_eq!(back, row);

@@ -18,7 +18,7 @@ use crate::error::{Result, StudyError};
 use crate::garments::{DrapeStart, GarmentNote, TriedGarment};
 use crate::parquet_file::{self, Notes};
 use crate::population::{Person, Population};
-use crate::row::Row;
+use crate::row::StudyRow;
 use crate::sensor::{Sensor, exact};
 use crate::study_file::{PhysicsMode, StudyFile, WantedPhysics, one_of};
 
@@ -175,7 +175,7 @@ impl Study {
     ///
     /// # Errors
     /// A number that there is not; measures that no body has.
-    pub fn row(&self, number: u64) -> Result<Row> {
+    pub fn row(&self, number: u64) -> Result<StudyRow> {
         if number >= self.rows() {
             let rows = self.rows();
             return Err(StudyError::Input(format!("there is no row {number}: the study has {rows}, counted from 0")));
@@ -197,16 +197,16 @@ impl Study {
     ///
     /// # Errors
     /// Measures that no body has.
-    pub fn person_rows(&self, person: u64) -> Result<Vec<Row>> {
+    pub fn person_rows(&self, person: u64) -> Result<Vec<StudyRow>> {
         self.rows_of(person, None)
     }
 
     /// The rows of a person, or the one at a place among them.
-    fn rows_of(&self, number: u64, only: Option<usize>) -> Result<Vec<Row>> {
+    fn rows_of(&self, number: u64, only: Option<usize>) -> Result<Vec<StudyRow>> {
         let person = self.population.person(number);
         let exactly = exact(&person.measures);
         let seen = self.sensor.see(number, &person.measures);
-        let first = Row { row: (number * self.rows_a_person()) as i64, ..described(&person, &seen) };
+        let first = StudyRow { row: (number * self.rows_a_person()) as i64, ..described(&person, &seen) };
         let (mut rows, mut body) = (Vec::new(), None);
         let mut place = 0;
         for garment in &self.garments {
@@ -226,7 +226,7 @@ impl Study {
             for size in &garment.tried {
                 for pose in &self.physics.poses {
                     if only.is_none_or(|only| only == place) {
-                        let row = Row { row: first.row + place as i64, ..first.clone() };
+                        let row = StudyRow { row: first.row + place as i64, ..first.clone() };
                         let mut row = sized(row, garment, *size, *pose, &person.measures, judged.as_ref());
                         if judged.is_some() && self.is_draped(number, garment, *size, row.best_size.as_deref()) {
                             self.drape(&mut row, &person, garment, *pose, &mut body)?;
@@ -254,7 +254,7 @@ impl Study {
     /// Adds to a row what physics says.
     fn drape(
         &self,
-        row: &mut Row,
+        row: &mut StudyRow,
         person: &Person,
         garment: &TriedGarment,
         pose: TriedPose,
@@ -352,11 +352,11 @@ fn share(value: f64) -> Option<f64> {
 }
 
 /// Who a row is of, and what is seen of them.
-fn described(person: &Person, seen: &Measurements) -> Row {
+fn described(person: &Person, seen: &Measurements) -> StudyRow {
     let of = |m: f32| mm(Some(f64::from(m))).unwrap_or_default();
     let seen_mm = |e: Option<Estimate>| e.map_or(0.0, |e| of(e.value));
     let m = &person.measures;
-    Row {
+    StudyRow {
         person: person.number as i64,
         weight: person.weight,
         sex: person.sex.name().to_owned(),
@@ -368,20 +368,20 @@ fn described(person: &Person, seen: &Measurements) -> Row {
         seen_chest_mm: seen_mm(seen.measures.chest_girth),
         seen_waist_mm: seen_mm(seen.measures.waist_girth),
         seen_hip_mm: seen_mm(seen.measures.hip_girth),
-        ..Row::default()
+        ..StudyRow::default()
     }
 }
 
 /// A row in its size and pose, with what girths alone say.
 fn sized(
-    row: Row,
+    row: StudyRow,
     garment: &TriedGarment,
     size: usize,
     pose: TriedPose,
     body: &Measures,
     judged: Option<&Judged>,
-) -> Row {
-    let mut row = Row {
+) -> StudyRow {
+    let mut row = StudyRow {
         garment: garment.name.clone(),
         size: garment.offer.sizes[size].code.clone(),
         pose: pose.name().to_owned(),
@@ -408,7 +408,7 @@ fn sized(
 }
 
 /// A row with what physics says.
-fn filled(row: &mut Row, draped: &Draped) {
+fn filled(row: &mut StudyRow, draped: &Draped) {
     row.draped = true;
     [row.chest_worn_ease_mm, row.waist_worn_ease_mm, row.hip_worn_ease_mm] = draped.worn_ease.map(mm);
     [row.chest_gap_mm, row.waist_gap_mm, row.hip_gap_mm] = draped.gap.map(mm);
@@ -442,7 +442,7 @@ mod tests {
     #[test]
     fn a_row_is_a_function_of_study_and_number() {
         let study = opened("rows", SMALL);
-        let all: Vec<Row> = (0..6).flat_map(|person| study.person_rows(person).unwrap()).collect();
+        let all: Vec<StudyRow> = (0..6).flat_map(|person| study.person_rows(person).unwrap()).collect();
         assert_eq!(all.len() as u64, study.rows());
         for number in [all.len() - 1, 3, 17] {
             assert_eq!(study.row(number as u64).unwrap(), all[number]);

@@ -1,10 +1,6 @@
 //! Tracking: the shopper's measures from depth frames and joints, the fitted body, gestures, and the size that fits.
-//!
-//! Reads: `DepthFrame` and `Joints`, size tables, finished girths of garments. Writes: `Measurements`, gestures,
-//! `Recommendation`. Budget: 1 s for 30 depth frames of 640 x 480, once a shopper; nothing here runs inside the frame.
-//! Thread: the sensor thread.
 
-// Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
+// Modules in the order of the data: each imports only from the groups above its own (tests/tests/layers.rs).
 pub mod estimate;
 
 pub mod correlated;

@@ -18,7 +18,7 @@ use toile_base::garment::Garment;
 use toile_base::mesh::vertex_normals;
 use toile_view::cloth_look::GarmentLook;
 use toile_view::image::Size;
-use toile_view::scene::{Camera, Colours, MANNEQUIN, Material, Scene, Surface};
+use toile_view::scene::{Colours, MANNEQUIN, Material, OrbitCamera, PictureScene, PictureSurface};
 use toile_view::trace::{TraceQuality, TracedScene};
 
 /// Size of a photograph, samples along each side of a pixel, distance of the camera (m), height that it shows (m).
@@ -95,10 +95,10 @@ impl Photograph {
         vertex_normals(&garment.start, &garment.triangles, &mut normals);
         let look = GarmentLook::of(garment);
         let target = Vec3::new(0.0, 0.5 * SHOWN, 0.0);
-        let camera = Camera { target, yaw, height: 0.0, distance: AWAY, fov_y: 2.0 * (0.5 * SHOWN / AWAY).atan() };
+        let camera = OrbitCamera { target, yaw, height: 0.0, distance: AWAY, fov_y: 2.0 * (0.5 * SHOWN / AWAY).atan() };
         let colour = Vec3::from_array(garment.fabric.colour.map(toile_view::image::linear));
         let surfaces = [
-            Surface {
+            PictureSurface {
                 positions: &skin,
                 normals: &body.normals,
                 triangles: &body.mesh.triangles,
@@ -106,7 +106,7 @@ impl Photograph {
                 material: Material::Skin,
                 look: None,
             },
-            Surface {
+            PictureSurface {
                 positions: &garment.start,
                 normals: &normals,
                 triangles: &garment.triangles,
@@ -115,8 +115,11 @@ impl Photograph {
                 look: Some(look.shown()),
             },
         ];
-        let image =
-            TracedScene::build(Scene { surfaces: &surfaces, floor: false }).render(&camera, SIZE, TraceQuality::Still);
+        let image = TracedScene::build(PictureScene { surfaces: &surfaces, floor: false }).render(
+            &camera,
+            SIZE,
+            TraceQuality::Still,
+        );
         let seen = Seen::of(body, &skin, garment, yaw);
         let (w, h) = (SIZE.width as usize, SIZE.height as usize);
         let whole = |i: usize| seen.cover[i] > 0.999;

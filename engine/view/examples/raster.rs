@@ -7,7 +7,7 @@ use std::{error::Error, fs::File, io::BufWriter, path::Path, time::Instant};
 
 use toile_view::image::{Image, Size};
 use toile_view::raster::{AdapterChoice, Backdrop, Gpu, Offscreen, RenderQuality, Renderer};
-use toile_view::scene::{Camera, Scene};
+use toile_view::scene::{OrbitCamera, PictureScene};
 use toile_view::{contact_sheet, trace};
 
 #[path = "../tests/raster/dressed.rs"]
@@ -53,17 +53,17 @@ fn views(gpu: &Gpu, scene: &Dressed, map: bool) -> Result<[Image; 3], Box<dyn Er
     let offscreen = Offscreen::new(gpu, STILL)?;
     let mut renderer = Renderer::new(gpu, Offscreen::FORMAT, RenderQuality::STILL);
     scene.put_on(&mut renderer, map);
-    let mut shoot = |preset: fn(&toile_view::scene::Bounds, f32) -> Camera| {
+    let mut shoot = |preset: fn(&toile_view::scene::Bounds, f32) -> OrbitCamera| {
         offscreen.shoot(gpu, &mut renderer, &preset(&scene.bounds(), 0.6), Backdrop::Curved)
     };
-    Ok([shoot(Camera::front)?, shoot(Camera::side)?, shoot(Camera::back)?])
+    Ok([shoot(OrbitCamera::front)?, shoot(OrbitCamera::side)?, shoot(OrbitCamera::back)?])
 }
 
 /// The same three by the ray tracer.
 fn traced(scene: &Dressed, map: bool) -> [Image; 3] {
     let surfaces = scene.surfaces(map);
-    let stage = trace::TracedScene::build(Scene { surfaces: &surfaces, floor: true });
-    [Camera::front, Camera::side, Camera::back]
+    let stage = trace::TracedScene::build(PictureScene { surfaces: &surfaces, floor: true });
+    [OrbitCamera::front, OrbitCamera::side, OrbitCamera::back]
         .map(|preset| stage.render(&preset(&scene.bounds(), 0.6), STILL, trace::TraceQuality::Still))
 }
 
@@ -74,7 +74,7 @@ fn cost(gpu: &Gpu, scene: &Dressed, name: &str, quality: RenderQuality) -> Resul
     scene.put_on(&mut renderer, false);
     let made = begun.elapsed();
     let offscreen = Offscreen::new(gpu, LIVE)?;
-    let camera = Camera::front(&scene.bounds(), LIVE.width as f32 / LIVE.height as f32);
+    let camera = OrbitCamera::front(&scene.bounds(), LIVE.width as f32 / LIVE.height as f32);
     let mut times = Vec::new();
     let begun = Instant::now();
     let image = offscreen.shoot(gpu, &mut renderer, &camera, Backdrop::Curved)?;

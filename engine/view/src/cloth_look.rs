@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3, Vec4};
 use toile_base::fabric::Fabric;
-use toile_base::garment::{Garment, Look};
+use toile_base::garment::{Garment, GarmentAppearance};
 use toile_base::texture::Texture;
 
 use crate::image::linear;
@@ -193,7 +193,7 @@ impl GarmentLook {
     }
 
     /// Of a look in a fabric: a picture that a mesh brings goes before the fabric's print.
-    pub fn new(look: &Look, fabric: &Fabric) -> Self {
+    pub fn new(look: &GarmentAppearance, fabric: &Fabric) -> Self {
         let edges = look.edges.to_vec();
         let (tile, corners) = match (&look.picture, &fabric.tile, &fabric.print) {
             (Some(picture), ..) => (Some(TileLevels::of(&picture.texture)), picture.corners.to_vec()),

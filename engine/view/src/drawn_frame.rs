@@ -4,14 +4,14 @@ use glam::Vec3;
 use toile_base::body::Body;
 use toile_base::garment::{Garment, Tuck};
 use toile_base::mesh::vertex_normals;
-use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::skin::Posed;
+use toile_engine::world::{Snapshot, World};
 
 use crate::cloth_look::{DrawnLook, GarmentLook};
 use crate::figure::{Appearance, Figure, PlacedHead};
 use crate::hidden_skin::{CoveringCloth, DrawnSkin};
 use crate::image::{Image, Size};
-use crate::scene::{Bounds, Camera, Colours, Material, Scene, Surface};
+use crate::scene::{Bounds, Colours, Material, OrbitCamera, PictureScene, PictureSurface};
 use crate::trace::{TraceQuality, TracedScene};
 
 /// Half the width of what an animation shows around the shopper: arms stretched out (m).
@@ -69,8 +69,8 @@ struct DrawnGarment {
 
 impl DrawnFrame {
     /// Room for a frame's body and garments, as they are put on.
-    pub fn new(frame: &Frame, appearance: Appearance) -> Self {
-        Self::of(frame.body(), frame.garments(), appearance)
+    pub fn new(world: &World, appearance: Appearance) -> Self {
+        Self::of(world.body(), world.garments(), appearance)
     }
 
     /// Room for a body and garments, inner first, as they are put on.
@@ -176,8 +176,8 @@ impl DrawnFrame {
     }
 
     /// The surfaces of a picture; `map` gives each garment its colours by vertex instead of the fabric's.
-    pub fn surfaces<'a>(&'a self, map: Option<&'a [Vec<f32>]>) -> Vec<Surface<'a>> {
-        let mut surfaces = vec![Surface {
+    pub fn surfaces<'a>(&'a self, map: Option<&'a [Vec<f32>]>) -> Vec<PictureSurface<'a>> {
+        let mut surfaces = vec![PictureSurface {
             positions: &self.body,
             normals: &self.normals,
             triangles: &self.drawn,
@@ -191,20 +191,20 @@ impl DrawnFrame {
                 Some(map) => (Colours::Tightness(&map[i]), Material::Diffuse, None),
                 None => (Colours::One(cloth.colour), Material::Cloth, Some(look.shown_with(drawn_look))),
             };
-            surfaces.push(Surface { positions: points, normals, triangles, colours, material, look });
+            surfaces.push(PictureSurface { positions: points, normals, triangles, colours, material, look });
         }
         surfaces
     }
 
     /// A camera before the place where the shopper stands, for frames of one size; it never turns and never zooms.
-    pub fn follow(&mut self, size: Size) -> Camera {
+    pub fn follow(&mut self, size: Size) -> OrbitCamera {
         let now = (self.bounds.min + self.bounds.max) * 0.5;
         let middle = self.middle.map_or(now, |m| m.lerp(now, FOLLOW));
         self.middle = Some(middle);
         let reach = Vec3::new(HALF_REACH_M, 0.0, 0.2);
         let at = Vec3::new(middle.x, 0.0, middle.z);
         let shown = Bounds { min: at - reach, max: at + reach + Vec3::Y * self.stature * HEADROOM };
-        Camera::front(&shown, size.width as f32 / size.height as f32)
+        OrbitCamera::front(&shown, size.width as f32 / size.height as f32)
     }
 }
 
@@ -222,7 +222,7 @@ fn cover(triangles: &[[u32; 3]], points: &[Vec3]) -> CoveringCloth {
 pub fn still(mut drawn: DrawnFrame, snapshot: &Snapshot, yaw: f32, size: Size) -> Image {
     drawn.update(snapshot);
     let surfaces = drawn.surfaces(None);
-    let scene = TracedScene::build(Scene { surfaces: &surfaces, floor: true });
-    let camera = Camera::framing(&scene.bounds(), yaw, size.width as f32 / size.height as f32);
+    let scene = TracedScene::build(PictureScene { surfaces: &surfaces, floor: true });
+    let camera = OrbitCamera::framing(&scene.bounds(), yaw, size.width as f32 / size.height as f32);
     scene.render(&camera, size, TraceQuality::Still)
 }

@@ -3,8 +3,8 @@
 use glam::Vec3;
 use toile_assets::sizes::Girth;
 use toile_base::garment::Garment;
-use toile_engine::cloth::{Cloth, measure};
-use toile_engine::frame::Frame;
+use toile_engine::cloth::{Cloth, step::measure};
+use toile_engine::world::World;
 
 use crate::{
     image::{Image, Size},
@@ -74,21 +74,21 @@ pub type JudgedTightness = Vec<(Girth, f32)>;
 
 /// The fit map of each garment of a frame: how tight it sits from place to place, in the mean as tight as it was judged
 /// `[garments][particles]`.
-pub fn of_frame(frame: &Frame, judged: &[JudgedTightness]) -> Vec<Vec<f32>> {
-    let levels = &frame.body().levels;
+pub fn of_frame(world: &World, judged: &[JudgedTightness]) -> Vec<Vec<f32>> {
+    let levels = &world.body().levels;
     let level = |zone: Girth| match zone {
         Girth::Chest => levels.chest,
         Girth::Waist => levels.waist,
         Girth::Hip => levels.hip,
     };
     let map = |((cloth, garment), judged): ((&Cloth, &Garment), &JudgedTightness)| {
-        let local = measure::tightness(cloth, garment, frame.colliders());
+        let local = measure::tightness(cloth, garment, world.colliders());
         let heights: Vec<f32> = garment.start.iter().map(|p| p.y).collect();
         let mut known: Vec<(f32, f32)> = judged.iter().map(|(zone, tight)| (level(*zone), *tight)).collect();
         known.sort_by(|a, b| b.0.total_cmp(&a.0));
         agreed(&local, &heights, &known)
     };
-    frame.cloths().iter().zip(frame.garments()).zip(judged).map(map).collect()
+    world.cloths().iter().zip(world.garments()).zip(judged).map(map).collect()
 }
 
 /// A strip with the eight steps and the words loose, good, tight, on the given paper (sRGB).

@@ -21,16 +21,16 @@ const FILL: Vec2 = Vec2::new(0.86, 0.87);
 
 /// Everything in one picture. World: metres, right-handed, y up, the floor at y = 0.
 #[derive(Debug, Clone, Copy)]
-pub struct Scene<'a> {
+pub struct PictureScene<'a> {
     /// Body and garments. Triangles with a missing or non-finite vertex or without area are skipped.
-    pub surfaces: &'a [Surface<'a>],
+    pub surfaces: &'a [PictureSurface<'a>],
     /// Whether the subject stands on a floor (y = 0) that takes its shadow; otherwise before a plain wall.
     pub floor: bool,
 }
 
 /// One triangle mesh, counter-clockwise seen from outside.
 #[derive(Debug, Clone, Copy)]
-pub struct Surface<'a> {
+pub struct PictureSurface<'a> {
     /// Vertex positions (m) `[vertices]`.
     pub positions: &'a [Vec3],
     /// Unit vertex normals `[vertices]`; where one is missing or zero the triangle is shaded flat.
@@ -131,7 +131,7 @@ impl Bounds {
 /// A camera on an orbit around its target. Yaw 0 stands before the subject (who faces +z), yaw 90 degrees on their
 /// left (+x).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Camera {
+pub struct OrbitCamera {
     /// The point in the middle of the picture (m).
     pub target: Vec3,
     /// Turn around the vertical (rad), from +z towards +x.
@@ -144,18 +144,18 @@ pub struct Camera {
     pub fov_y: f32,
 }
 
-impl Camera {
+impl OrbitCamera {
     /// From the front, the box framed in a picture of `aspect` = width / height.
     pub fn front(bounds: &Bounds, aspect: f32) -> Self {
         Self::framing(bounds, 0.0, aspect)
     }
 
-    /// From the subject's left side, at the same distance as [`Camera::front`].
+    /// From the subject's left side, at the same distance as [`OrbitCamera::front`].
     pub fn side(bounds: &Bounds, aspect: f32) -> Self {
         Self::framing(bounds, FRAC_PI_2, aspect)
     }
 
-    /// From behind, at the same distance as [`Camera::front`].
+    /// From behind, at the same distance as [`OrbitCamera::front`].
     pub fn back(bounds: &Bounds, aspect: f32) -> Self {
         Self::framing(bounds, PI, aspect)
     }

@@ -13,7 +13,7 @@ use crate::{
     image::{Image, Size},
     lighting::Lighting,
     ray_tracer::{PixelLight, PrimaryHit, RayTracer, SampleCounts},
-    scene::{Camera, Scene},
+    scene::{OrbitCamera, PictureScene},
     shadow_filter::filter_and_tone_map,
 };
 
@@ -38,7 +38,7 @@ impl TraceQuality {
 }
 
 /// Renders one picture, hierarchy included. Several views of one scene share a [`TracedScene`].
-pub fn render(scene: &Scene<'_>, camera: &Camera, size: Size, quality: TraceQuality) -> Image {
+pub fn render(scene: &PictureScene<'_>, camera: &OrbitCamera, size: Size, quality: TraceQuality) -> Image {
     TracedScene::build(*scene).render(camera, size, quality)
 }
 
@@ -51,12 +51,18 @@ pub struct TraceCost {
 
 impl TracedScene<'_> {
     /// The picture from one camera, on all cores.
-    pub fn render(&self, camera: &Camera, size: Size, quality: TraceQuality) -> Image {
+    pub fn render(&self, camera: &OrbitCamera, size: Size, quality: TraceQuality) -> Image {
         self.render_on(thread::available_parallelism().map_or(1, NonZero::get), camera, size, quality).0
     }
 
     /// The picture and its cost, on this many threads; the bytes do not depend on how many.
-    pub fn render_on(&self, threads: usize, camera: &Camera, size: Size, quality: TraceQuality) -> (Image, TraceCost) {
+    pub fn render_on(
+        &self,
+        threads: usize,
+        camera: &OrbitCamera,
+        size: Size,
+        quality: TraceQuality,
+    ) -> (Image, TraceCost) {
         let view = camera.view(size.width as f32 / size.height.max(1) as f32);
         let lighting = Lighting::new(&view, self.bounds(), self.scene.floor);
         let tracer = RayTracer::new(self, lighting, view, size, quality.samples());
@@ -100,7 +106,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        scene::{Colours, Material, Surface},
+        scene::{Colours, Material, PictureSurface},
         tone_mapping,
     };
 
@@ -128,7 +134,7 @@ mod tests {
         let (positions, normals, triangles) = ball();
         let level = 0.6;
         for material in [Material::Skin, Material::Cloth, Material::Diffuse] {
-            let surface = Surface {
+            let surface = PictureSurface {
                 positions: &positions,
                 normals: &normals,
                 triangles: &triangles,
@@ -137,9 +143,9 @@ mod tests {
                 look: None,
             };
             let surfaces = [surface];
-            let stage = TracedScene::build(Scene { surfaces: &surfaces, floor: false });
+            let stage = TracedScene::build(PictureScene { surfaces: &surfaces, floor: false });
             let size = Size::new(40, 40);
-            let view = Camera::front(&stage.bounds(), 1.0).view(1.0);
+            let view = OrbitCamera::front(&stage.bounds(), 1.0).view(1.0);
             let lighting = Lighting::furnace(&view, stage.bounds(), level);
             let (image, _) =
                 stage.render_passes(&RayTracer::new(&stage, lighting, view, size, TraceQuality::Still.samples()), 1);

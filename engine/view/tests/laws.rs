@@ -1,4 +1,4 @@
-//! Laws of the picture: the tree agrees with brute force, bytes do not depend on threads, files hold what was put in,
+//! Tests of the picture: the tree agrees with brute force, bytes do not depend on threads, files hold what was put in,
 //! and bad meshes do no harm.
 
 use std::io::Cursor;
@@ -7,7 +7,7 @@ use glam::Vec3;
 use toile_view::{
     bvh::{Bvh, Hit, Ray},
     image::{Animation, Error, Image, Size},
-    scene::{Bounds, Camera, Colours, MANNEQUIN, Material, Scene, Surface},
+    scene::{Bounds, Colours, MANNEQUIN, Material, OrbitCamera, PictureScene, PictureSurface},
     trace::{TraceQuality, TracedScene, render},
 };
 
@@ -118,8 +118,8 @@ impl Still {
         Self { positions, normals, triangles, colours }
     }
 
-    fn surface(&self, material: Material) -> Surface<'_> {
-        Surface {
+    fn surface(&self, material: Material) -> PictureSurface<'_> {
+        PictureSurface {
             positions: &self.positions,
             normals: &self.normals,
             triangles: &self.triangles,
@@ -134,8 +134,8 @@ impl Still {
 fn bytes_do_not_depend_on_the_number_of_threads() {
     let still = Still::new();
     let surfaces = [still.surface(Material::Cloth)];
-    let stage = TracedScene::build(Scene { surfaces: &surfaces, floor: true });
-    let (size, camera) = (Size::new(61, 83), Camera::framing(&stage.bounds(), 0.7, 61.0 / 83.0));
+    let stage = TracedScene::build(PictureScene { surfaces: &surfaces, floor: true });
+    let (size, camera) = (Size::new(61, 83), OrbitCamera::framing(&stage.bounds(), 0.7, 61.0 / 83.0));
     for quality in [TraceQuality::Motion, TraceQuality::Still] {
         let (one, cost) = stage.render_on(1, &camera, size, quality);
         assert!(cost.rays > 5000, "{cost:?}");
@@ -143,7 +143,7 @@ fn bytes_do_not_depend_on_the_number_of_threads() {
             let (more, same) = stage.render_on(threads, &camera, size, quality);
             assert!(one == more && cost == same, "{threads} threads, {quality:?}");
         }
-        assert!(one == render(&Scene { surfaces: &surfaces, floor: true }, &camera, size, quality));
+        assert!(one == render(&PictureScene { surfaces: &surfaces, floor: true }, &camera, size, quality));
     }
 }
 
@@ -159,22 +159,24 @@ fn bad_meshes_are_skipped_and_the_good_remain() {
     let mut triangles = still.triangles.clone();
     triangles.extend([[0, 1, first], [0, 1, first + 1], [first + 2, first + 3, first + 2], [0, 0, 0]]);
     triangles.extend([[0, 1, u32::MAX], [0, first + 4, 1]]);
-    let spoilt = Surface { positions: &positions, normals: &normals, triangles: &triangles, ..good[0] };
-    let empty = Surface { positions: &[], normals: &[], triangles: &[], colours: Colours::PerVertex(&[]), ..good[0] };
+    let spoilt = PictureSurface { positions: &positions, normals: &normals, triangles: &triangles, ..good[0] };
+    let empty =
+        PictureSurface { positions: &[], normals: &[], triangles: &[], colours: Colours::PerVertex(&[]), ..good[0] };
     let surfaces = [empty, spoilt, empty];
-    let (size, camera) = (Size::new(40, 40), Camera::front(&Bounds::of(&still.positions), 1.0));
-    let want = render(&Scene { surfaces: &good, floor: true }, &camera, size, TraceQuality::Motion);
-    let got = render(&Scene { surfaces: &surfaces, floor: true }, &camera, size, TraceQuality::Motion);
+    let (size, camera) = (Size::new(40, 40), OrbitCamera::front(&Bounds::of(&still.positions), 1.0));
+    let want = render(&PictureScene { surfaces: &good, floor: true }, &camera, size, TraceQuality::Motion);
+    let got = render(&PictureScene { surfaces: &surfaces, floor: true }, &camera, size, TraceQuality::Motion);
     assert!(want == got, "the broken triangles left a trace");
 
-    let bare = Surface { normals: &[], colours: Colours::PerVertex(&[]), ..good[0] };
+    let bare = PictureSurface { normals: &[], colours: Colours::PerVertex(&[]), ..good[0] };
     for surfaces in [&[][..], &[empty][..], &[bare][..]] {
         for floor in [true, false] {
-            let image = render(&Scene { surfaces, floor }, &camera, size, TraceQuality::Motion);
+            let image = render(&PictureScene { surfaces, floor }, &camera, size, TraceQuality::Motion);
             assert_eq!(image.bytes().len(), 40 * 40 * 3);
         }
     }
-    let nothing = render(&Scene { surfaces: &good, floor: true }, &camera, Size::new(0, 5), TraceQuality::Motion);
+    let nothing =
+        render(&PictureScene { surfaces: &good, floor: true }, &camera, Size::new(0, 5), TraceQuality::Motion);
     assert!(nothing.bytes().is_empty());
 }
 
@@ -197,7 +199,7 @@ fn presets_look_from_their_side_and_frame_the_box() {
     let left = block(Vec3::new(0.3, 0.0, -0.1), Vec3::new(0.4, 1.0, 0.1));
     let front = block(Vec3::new(-0.1, 0.0, 0.4), Vec3::new(0.1, 0.3, 0.5));
     let bounds = Bounds::of(&left).union(Bounds::of(&front)).grown(Vec3::new(-0.4, 0.0, -0.5));
-    let paint = |positions, colour| Surface {
+    let paint = |positions, colour| PictureSurface {
         positions,
         normals: &[],
         triangles: &triangles,
@@ -206,9 +208,9 @@ fn presets_look_from_their_side_and_frame_the_box() {
         look: None,
     };
     let surfaces = [paint(&left, Vec3::X), paint(&front, Vec3::Y)];
-    let stage = TracedScene::build(Scene { surfaces: &surfaces, floor: true });
+    let stage = TracedScene::build(PictureScene { surfaces: &surfaces, floor: true });
     let size = Size::new(120, 120);
-    let middle = |camera: &Camera, channel: usize| {
+    let middle = |camera: &OrbitCamera, channel: usize| {
         let image = stage.render(camera, size, TraceQuality::Motion);
         let coloured = |x: u32, y: u32| {
             let p = image.pixel(x, y).unwrap().map(u32::from);
@@ -220,7 +222,8 @@ fn presets_look_from_their_side_and_frame_the_box() {
         assert!(seen.iter().all(|&(x, y)| x > 1 && x < 118 && y > 1 && y < 118), "the box is cut");
         seen.iter().map(|p| p.0 as f32).sum::<f32>() / seen.len() as f32 - 59.5
     };
-    let (front, side, back) = (Camera::front(&bounds, 1.0), Camera::side(&bounds, 1.0), Camera::back(&bounds, 1.0));
+    let (front, side, back) =
+        (OrbitCamera::front(&bounds, 1.0), OrbitCamera::side(&bounds, 1.0), OrbitCamera::back(&bounds, 1.0));
     assert!(middle(&front, 0) > 15.0, "seen from the front, their left is on the right");
     assert!(middle(&back, 0) < -15.0, "seen from behind, their left is on the left");
     assert!(middle(&side, 1) < -15.0, "seen from their left, their front is on the left");
@@ -231,9 +234,9 @@ fn presets_look_from_their_side_and_frame_the_box() {
 fn a_shadow_falls_on_the_floor_and_away_from_the_key_light() {
     let still = Still::new();
     let surfaces = [still.surface(Material::Cloth)];
-    let stage = TracedScene::build(Scene { surfaces: &surfaces, floor: true });
-    let bare = TracedScene::build(Scene { surfaces: &[], floor: true });
-    let camera = Camera { target: Vec3::new(0.0, 0.3, 0.0), yaw: 0.0, height: 1.5, distance: 3.0, fov_y: 0.6 };
+    let stage = TracedScene::build(PictureScene { surfaces: &surfaces, floor: true });
+    let bare = TracedScene::build(PictureScene { surfaces: &[], floor: true });
+    let camera = OrbitCamera { target: Vec3::new(0.0, 0.3, 0.0), yaw: 0.0, height: 1.5, distance: 3.0, fov_y: 0.6 };
     let size = Size::new(120, 120);
     let (with, without) =
         (stage.render(&camera, size, TraceQuality::Motion), bare.render(&camera, size, TraceQuality::Motion));
@@ -251,8 +254,9 @@ fn a_shadow_falls_on_the_floor_and_away_from_the_key_light() {
 fn a_png_holds_what_was_put_in() {
     let still = Still::new();
     let surfaces = [still.surface(Material::Cloth)];
-    let camera = Camera::front(&Bounds::of(&still.positions), 1.0);
-    let image = render(&Scene { surfaces: &surfaces, floor: true }, &camera, Size::new(37, 29), TraceQuality::Motion);
+    let camera = OrbitCamera::front(&Bounds::of(&still.positions), 1.0);
+    let image =
+        render(&PictureScene { surfaces: &surfaces, floor: true }, &camera, Size::new(37, 29), TraceQuality::Motion);
     let mut file = Vec::new();
     image.write_png(&mut file).unwrap();
     let mut reader = png::Decoder::new(Cursor::new(&file)).read_info().unwrap();
@@ -320,9 +324,10 @@ fn an_unfinished_or_empty_animation_is_an_error() {
 #[test]
 fn the_mannequin_comes_out_warm_and_light() {
     let still = Still::new();
-    let skin = Surface { colours: Colours::One(MANNEQUIN), ..still.surface(Material::Skin) };
-    let camera = Camera { height: 1.2, ..Camera::front(&Bounds::of(&still.positions), 1.0) };
-    let image = render(&Scene { surfaces: &[skin], floor: true }, &camera, Size::new(60, 60), TraceQuality::Still);
+    let skin = PictureSurface { colours: Colours::One(MANNEQUIN), ..still.surface(Material::Skin) };
+    let camera = OrbitCamera { height: 1.2, ..OrbitCamera::front(&Bounds::of(&still.positions), 1.0) };
+    let image =
+        render(&PictureScene { surfaces: &[skin], floor: true }, &camera, Size::new(60, 60), TraceQuality::Still);
     let [r, g, b] = image.pixel(30, 30).unwrap();
     assert!(r >= g && g >= b && r < 250 && b > 90, "{r} {g} {b}");
 }

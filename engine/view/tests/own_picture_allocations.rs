@@ -12,7 +12,7 @@ use toile_assets::wardrobe;
 use toile_base::frame::{DepthFrame, Intrinsics, Joints};
 use toile_engine::body::JointFrames;
 use toile_engine::cloth::Settings;
-use toile_engine::frame::{Frame, Snapshot};
+use toile_engine::world::{Snapshot, World};
 use toile_sensors::colour_camera::ColourCamera;
 use toile_sensors::lens::BrownConrady;
 use toile_sensors::person_mask::PersonMask;
@@ -63,16 +63,16 @@ struct Moment {
 }
 
 /// Somebody who lifts her arms, dressed.
-fn moments(frame: &mut Frame, latest: &mut dyn FnMut() -> Snapshot) -> Vec<Moment> {
-    let skeleton = frame.body().skeleton.clone();
+fn moments(world: &mut World, latest: &mut dyn FnMut() -> Snapshot) -> Vec<Moment> {
+    let skeleton = world.body().skeleton.clone();
     let joints = |tick: u64| {
         let pose = shopper(&skeleton, 2.0 + tick as f32 / 120.0);
         Joints::seen(tick, JointFrames::new(&skeleton, &pose).position)
     };
-    frame.dress(&joints(0));
+    world.dress(&joints(0));
     let mut all = Vec::new();
     for picture in 0..PICTURES {
-        (0..4).for_each(|step| frame.step(&joints(4 * picture + step)));
+        (0..4).for_each(|step| world.step(&joints(4 * picture + step)));
         all.push(Moment { joints: joints(4 * picture + 3), snapshot: latest() });
     }
     all
@@ -90,10 +90,10 @@ fn camera(lens: Option<BrownConrady>) -> ColourCamera {
 fn a_picture_costs_no_allocation_once_one_was_drawn() {
     let body = toile_assets::body::build(SHOPPER.0, &SHOPPER.1).unwrap();
     let dress = wardrobe::style("sun-dress").unwrap().dress("38", &body).unwrap();
-    let (mut frame, mut reader) =
-        Frame::new(body.clone(), &toile_assets::rig::fit(&body), vec![dress], Settings::default()).unwrap();
-    let seen = moments(&mut frame, &mut || reader.latest().clone());
-    let model = OwnPictureModel::of(frame.body(), frame.garments());
+    let (mut world, mut reader) =
+        World::new(body.clone(), &toile_assets::rig::fit(&body), vec![dress], Settings::default()).unwrap();
+    let seen = moments(&mut world, &mut || reader.latest().clone());
+    let model = OwnPictureModel::of(world.body(), world.garments());
     let picture = ColourImage { width: 320, height: 240, rgb: [150, 140, 130].repeat(320 * 240) };
     let lens =
         BrownConrady { k: [-0.1, 0.02, 0.0, 0.0, 0.0, 0.0], p: [0.0; 2], centre: [0.0; 2], widest: f32::INFINITY };

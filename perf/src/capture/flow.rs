@@ -5,7 +5,7 @@ use image::RgbImage;
 use serde::Serialize;
 use toile_capture::flow::{FlowSettings, FlowTracker, Reference, Springs};
 use toile_capture::recover::{Recovered, VALUES, recover};
-use toile_capture::surface::Surface;
+use toile_capture::surface::CapturedSurface;
 use toile_fitting::scene::RunError;
 use toile_pose::depth_buffer::DepthBuffer;
 
@@ -191,7 +191,7 @@ pub struct FollowedMoment<'a> {
 /// A cloth that cannot be stepped, a capture that was refused.
 pub fn run(case: &FlowCase, frames: usize, mut see: impl FnMut(FollowedMoment<'_>)) -> Result<FlowRow, FlowStudyError> {
     let cloth = FilmedCloth::new(case.filmed, frames, case.cameras)?;
-    let surface = Surface::new("the cloth", cloth.frames[0].clone(), Vec::new(), cloth.triangles.clone())?;
+    let surface = CapturedSurface::new("the cloth", cloth.frames[0].clone(), Vec::new(), cloth.triangles.clone())?;
     let mut tracker = FlowTracker::new(surface, cloth.cameras.clone(), case.settings)?;
     tracker.start(&cloth.pictures(0, case.disturbed))?;
     let (mut all, mut of_seen, mut over_time) = (Vec::new(), Vec::new(), Vec::new());

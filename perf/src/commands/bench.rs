@@ -1,8 +1,4 @@
 //! `toile bench`: what one part of the frame costs, with the error at that speed.
-//!
-//! Reads: arguments, recordings and surveys. Writes: tables or one JSON object on stdout, charts where they are asked for.
-//! Budget: seconds to minutes, as each benchmark's help says.
-//! Thread: the main thread, and those that a benchmark measures.
 
 use clap::Subcommand;
 use toile_cli::exit::AppError;

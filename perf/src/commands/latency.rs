@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use clap::value_parser;
 use serde::Serialize;
 use toile_engine::clock::RealClock;
-use toile_engine::frame_loop::governor::LADDER;
+use toile_engine::frame_loop::quality_control::QUALITY_LEVELS;
 use toile_engine::frame_loop::recording::{self, Entry};
 use toile_engine::frame_loop::threads;
 use toile_fitting::dress::measured;
@@ -71,9 +71,9 @@ pub struct LatencyArgs {
         value_parser = value_parser!(u32).range(0..=MOST_LOAD)
     )]
     pub load: Option<u32>,
-    /// Hold the quality on a rung of the governor's ladder: 0 is all of it (default: governed)
-    #[arg(long, value_name = "R", value_parser = value_parser!(u8).range(0..LADDER.len() as i64))]
-    pub rung: Option<u8>,
+    /// Hold the quality on a level: 0 is all of it (default: governed)
+    #[arg(long, alias = "rung", value_name = "L", value_parser = value_parser!(u8).range(0..QUALITY_LEVELS.len() as i64))]
+    pub level: Option<u8>,
     /// Record the run, without images, for `toile replay`
     #[arg(long, value_name = "F")]
     pub record: Option<PathBuf>,
@@ -97,7 +97,7 @@ impl LatencyArgs {
             Some(0) => cores(),
             Some(threads) => threads as usize,
         };
-        LatencyOptions { seconds: self.seconds, load, rung: self.rung }
+        LatencyOptions { seconds: self.seconds, load, level: self.level }
     }
 }
 
@@ -132,10 +132,10 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
     let request = args.worn.request()?;
     let measured = measured::measure(&session, request.facts())?;
     let request = request.sized_for(&session.name, &measured)?;
-    let DressedWorld { frame, reader, request, .. } = request.build(first)?;
+    let DressedWorld { world, reader, request, .. } = request.build(first)?;
     // Only now: a helper with a real-time priority shares its core with nobody who waits for it.
     let clock = RealClock::default();
-    let sex = frame.body().sex;
+    let sex = world.body().sex;
     let mut own = None;
     let source = match &args.camera {
         Some(name) => {
@@ -148,7 +148,7 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
             )?;
             own = watched.pictures.map(|(pictures, switch)| {
                 switch.set(true);
-                OwnPictureParts { model: OwnPictureModel::of(frame.body(), frame.garments()), pictures }
+                OwnPictureParts { model: OwnPictureModel::of(world.body(), world.garments()), pictures }
             });
             LatencySource::Camera(watched.feed)
         }
@@ -174,7 +174,7 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
         assert!(!crashes, "the crash that --crash-after asked for");
         flight_recorder.capacity()
     };
-    let loop_inputs = LatencyInputs { frame: frame.with_workers(crew), reader, source, clock, worker, own, recording };
+    let loop_inputs = LatencyInputs { frame: world.with_workers(crew), reader, source, clock, worker, own, recording };
     let found = latency::run(loop_inputs, &options, empty).map_err(AppError::internal);
     crash::forget();
     let found = found?;
@@ -230,7 +230,7 @@ fn table(report: &LatencyReport, paint: Paint) -> String {
         "  at strain {mean:.2} % (99 % under {p99:.2} %), penetration {:.2} mm, {} particles, {} substeps",
         q.penetration_mm, q.particles, q.substeps
     ));
-    lines.push(format!("  steps on each rung of quality: {:?}", q.rungs));
+    lines.push(format!("  steps on each level of quality: {:?}", q.rungs));
     if let Some(own) = &found.own_picture {
         let [all, dressed] = own.pictures;
         let plain: String = own.plain.iter().map(|(why, count)| format!("; plain, {why}: {count}")).collect();

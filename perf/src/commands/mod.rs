@@ -1,8 +1,4 @@
 //! The commands of `toile-perf`, one file each: its arguments and what it does with them.
-//!
-//! Reads: parsed arguments. Writes: a report on stdout, words on stderr, files in the output folder.
-//! Budget: seconds to hours, as each command's help says.
-//! Thread: the main thread, and those that a command measures.
 
 use clap::{Parser, Subcommand};
 use toile_cli::exit::AppError;

@@ -14,11 +14,11 @@ use toile_cli::machine::Machine;
 use toile_cli::output::{Inputs, OutputFolder};
 use toile_cli::terminal::{self, Paint, Tone, Words};
 use toile_engine::clock::SimClock;
-use toile_engine::frame::Frame;
-use toile_engine::frame_loop::physics_thread::{FrameScene, SceneStepper};
-use toile_engine::frame_loop::recording::{self, Entry, Recording};
+use toile_engine::frame_loop::physics_thread::{SceneStepper, WorldScene};
+use toile_engine::frame_loop::recording::{self, Entry, LoopRecording};
 use toile_engine::frame_loop::replay::{Replayed, replay_changing};
 use toile_engine::workers::WorkerPool;
+use toile_engine::world::World;
 use toile_fitting::heap::HeapProbe;
 use toile_fitting::live::crash;
 use toile_perf::soak::scenario::Scenario;
@@ -238,7 +238,8 @@ fn second(options: &SoakOptions, hash: u64, kept: Option<&Path>, words: &Words) 
         return Ok(None);
     }
     words.print_line("the recording is taken again, with one worker");
-    let Recording { entries, .. } = recording::read(&fs::read(path).map_err(unread)?).map_err(AppError::internal)?;
+    let LoopRecording { entries, .. } =
+        recording::read(&fs::read(path).map_err(unread)?).map_err(AppError::internal)?;
     let (_, out) = again(options.plan, &entries, 1)?;
     let same = out.diverged_at.is_none() && out.gap_at.is_none();
     Ok(Some(if same { hash } else { !hash }))
@@ -248,18 +249,18 @@ fn second(options: &SoakOptions, hash: u64, kept: Option<&Path>, words: &Words) 
 ///
 /// # Errors
 /// A recording that does not begin where somebody was dressed, and a scene that cannot be made.
-pub fn again(plan: SoakPlan, entries: &[Entry], workers: usize) -> Result<(Frame, Replayed), AppError> {
+pub fn again(plan: SoakPlan, entries: &[Entry], workers: usize) -> Result<(World, Replayed), AppError> {
     let Some((Entry::Changed { number, .. }, entries)) = entries.split_first() else {
         return Err(AppError::Input("the recording does not begin where somebody was dressed; record it again".into()));
     };
     let mut scene_maker = SceneMaker::new(Arc::new(Scenario::write(plan).map_err(refused)?));
-    let (frame, _reader) = scene_maker.make(*number).map_err(refused)?;
+    let (world, _reader) = scene_maker.make(*number).map_err(refused)?;
     let crew = WorkerPool::new(workers).map_err(AppError::input)?;
-    let mut stepper = SceneStepper::new(FrameScene::new(frame.with_workers(crew)));
+    let mut stepper = SceneStepper::new(WorldScene::new(world.with_workers(crew)));
     let out = replay_changing(&mut stepper, entries, &SimClock::default(), |number| {
-        scene_maker.make(number).ok().map(|(frame, _reader)| FrameScene::new(frame))
+        scene_maker.make(number).ok().map(|(world, _reader)| WorldScene::new(world))
     });
-    Ok((stepper.scene.frame, out))
+    Ok((stepper.scene.world, out))
 }
 
 /// What was typed, for the record.

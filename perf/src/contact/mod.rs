@@ -1,9 +1,5 @@
 //! The benchmark of contact: cloth against itself, against other cloth and against the skin, with its targets.
 //!
-//! Reads: scenes of its own, the engine's cloth. Writes: one row a target: what was asked for, what was got.
-//! Budget: some two minutes for the whole table; nothing but the steps is timed.
-//! Thread: one, and the engine's where two are named; with nothing else running.
-//!
 //! Crossings are counted by [`toile_fitting::crossings`], which shares no code with the engine.
 
 mod exact;

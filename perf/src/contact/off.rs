@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use toile_base::numeric::statistics::median_of;
-use toile_engine::cloth::layers::Layers;
+use toile_engine::cloth::contact::garments::GarmentContact;
 use toile_engine::cloth::{Settings, Step};
 use toile_engine::colliders::Colliders;
 use toile_engine::workers::WorkerPool;
@@ -85,7 +85,7 @@ fn step_ns(scene: &mut SkirtScene) -> u64 {
 /// The skirt stepped by layers.
 struct LayeredSkirt {
     scene: SkirtScene,
-    layers: Layers,
+    layers: GarmentContact,
     colliders: Colliders,
     settings: Settings,
     pool: WorkerPool,
@@ -96,7 +96,7 @@ struct LayeredSkirt {
 impl LayeredSkirt {
     fn new(options: &SkirtOptions, asks: bool) -> Result<Self, ContactError> {
         let scene = SkirtScene::new(options, &HeapProbe::none())?;
-        let layers = Layers::new(std::slice::from_ref(&scene.garment)).ok_or(ContactError::NoFaces)?;
+        let layers = GarmentContact::new(std::slice::from_ref(&scene.garment)).ok_or(ContactError::NoFaces)?;
         let mut settings = *scene.settings();
         (settings.contact.layers, settings.contact.folds) = (0, 0);
         let (colliders, pool) = (scene.colliders().clone(), WorkerPool::new(options.threads)?);

@@ -12,7 +12,7 @@ use toile_view::contact_sheet;
 use toile_view::drawn_frame::DrawnFrame;
 use toile_view::figure::Appearance;
 use toile_view::image::{Image, Size};
-use toile_view::scene::{Camera, Scene};
+use toile_view::scene::{OrbitCamera, PictureScene};
 use toile_view::trace::{TraceQuality, TracedScene};
 
 use super::row::ContactError;
@@ -131,10 +131,10 @@ fn picture(outfit: &Outfit, pose: &'static str, way: Way) -> Result<OutfitPictur
 /// The four sides on one page.
 fn sides(drawn: &DrawnFrame, title: &str) -> Image {
     let surfaces = drawn.surfaces(None);
-    let scene = TracedScene::build(Scene { surfaces: &surfaces, floor: true });
+    let scene = TracedScene::build(PictureScene { surfaces: &surfaces, floor: true });
     let bounds = scene.bounds();
     let views = SIDES.map(|(_, yaw)| {
-        let camera = Camera::framing(&bounds, yaw, VIEW.width as f32 / VIEW.height as f32);
+        let camera = OrbitCamera::framing(&bounds, yaw, VIEW.width as f32 / VIEW.height as f32);
         scene.render(&camera, VIEW, TraceQuality::Still)
     });
     contact_sheet::views(&views.each_ref(), &SIDES.map(|(name, _)| name), title)

@@ -1,9 +1,4 @@
 //! The depth benchmark: every stage from a depth frame to the shopper's clean points, with the errors of the same run.
-//!
-//! Reads: two people in a room, rendered as a depth camera with a Kinect's noise sees them. Writes: times of each stage, and
-//! noise before and after, blur of edges, what leaked in and what was missed.
-//! Budget: half a minute.
-//! Thread: the caller's.
 
 mod stages;
 mod truth;

@@ -23,7 +23,7 @@ pub struct StageTimes {
     pub smooth: f64,
     /// The same of the whole image, shopper and room.
     pub smooth_whole: f64,
-    /// The same by the plain twin.
+    /// The same by the scalar reference.
     pub smooth_plain: f64,
     /// The seed's Gaussian in its place.
     pub gaussian: f64,

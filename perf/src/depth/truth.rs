@@ -63,7 +63,7 @@ impl People {
         let [shopper, other] = &self.0;
         let turned = Quat::from_rotation_y(0.3);
         let moved: Vec<Vec3> = other.mesh.positions.iter().map(|p| turned * *p + OTHER).collect();
-        let people: [room::Surface<'_>; 2] =
+        let people: [room::RoomSurface<'_>; 2] =
             [(&shopper.mesh.positions, &shopper.mesh.triangles), (&moved, &other.mesh.triangles)];
         let view = room::view(&camera, -0.9, &people);
         let depth = KinectNoise::new(11).apply(&intrinsics, &view.z);
@@ -81,7 +81,7 @@ pub(super) fn errors(scene: &DepthScene) -> DepthErrors {
     let mut fast = Vec::new();
     let raw = &scene.frame.depth_mm;
     EdgePreserving::default().run(k.width as usize, raw, &noise, &mut fast);
-    let twin = plain(k.width as usize, raw, &noise);
+    let reference = plain(k.width as usize, raw, &noise);
     DepthErrors {
         body_rms_mm: [
             DepthSmoothing::None,
@@ -91,7 +91,7 @@ pub(super) fn errors(scene: &DepthScene) -> DepthErrors {
         .map(|smoothing| body_rms_mm(scene, smoothing)),
         wall_rms_mm: three(&k, &wall).each_ref().map(|z| flat(z)),
         edge_px: three(&k, &edge).each_ref().map(|z| blur(z)),
-        twin_differs_px: fast.iter().zip(&twin).filter(|(a, b)| a.to_bits() != b.to_bits()).count(),
+        twin_differs_px: fast.iter().zip(&reference).filter(|(a, b)| a.to_bits() != b.to_bits()).count(),
         leaked_px,
         missed_percent,
     }

@@ -1,9 +1,5 @@
 //! Signed distance to a closed triangle mesh, by which the contact of cloth with the skin is judged.
 //!
-//! Reads: positions in f64 (m) of a mesh and its triangles. Writes: distances (m), negative inside.
-//! Budget: 20,000 points to 30,000 triangles within 100 ms; never inside the frame.
-//! Thread: the caller's; it shares no code with the engine.
-//!
 //! The nearest triangle is found in a tree of boxes, without any limit to the distance. The sign is that of the offset along the
 //! normal of the nearest face, edge or corner, where the normal of an edge is the sum of its faces' and that of a corner the sum
 //! weighed by their angles: with these the sign is exact for a closed mesh (Baerentzen and Aanaes 2005, "Signed distance

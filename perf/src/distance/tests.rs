@@ -1,4 +1,4 @@
-//! Laws of signed distance: exact on what has a formula, and the same as by looking at every triangle.
+//! Tests of signed distance: exact on what has a formula, and the same as by looking at every triangle.
 
 use glam::DVec3;
 use toile_base::body::{Measures, Sex};

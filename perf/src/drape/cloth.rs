@@ -13,7 +13,7 @@ use toile_base::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Quality, Settings, Step};
 use toile_engine::colliders::{ColliderError, Colliders};
 use toile_view::image::{Image, Size, linear};
-use toile_view::scene::{Camera, Colours, Material, Scene, Surface};
+use toile_view::scene::{Colours, Material, OrbitCamera, PictureScene, PictureSurface};
 use toile_view::trace::{self, TraceQuality};
 
 /// Why a drape cannot be run.
@@ -116,12 +116,12 @@ impl DrapedCloth {
     }
 
     /// A picture of it, from above and before.
-    pub fn picture(&self, camera: &Camera, size: Size) -> Image {
+    pub fn picture(&self, camera: &OrbitCamera, size: Size) -> Image {
         let positions: Vec<Vec3> = self.cloth.positions.iter().map(|p| Vec3::from(*p)).collect();
         let mut normals = vec![Vec3::ZERO; positions.len()];
         vertex_normals(&positions, &self.garment.triangles, &mut normals);
         let [r, g, b] = self.garment.fabric.colour.map(linear);
-        let surfaces = [Surface {
+        let surfaces = [PictureSurface {
             positions: &positions,
             normals: &normals,
             triangles: &self.garment.triangles,
@@ -129,6 +129,6 @@ impl DrapedCloth {
             material: Material::Cloth,
             look: None,
         }];
-        trace::render(&Scene { surfaces: &surfaces, floor: false }, camera, size, TraceQuality::Still)
+        trace::render(&PictureScene { surfaces: &surfaces, floor: false }, camera, size, TraceQuality::Still)
     }
 }

@@ -15,7 +15,7 @@ use toile_base::fabric::Fabric;
 use toile_engine::cloth::Quality;
 use toile_engine::colliders::Colliders;
 use toile_view::image::{Image, Size};
-use toile_view::scene::Camera;
+use toile_view::scene::OrbitCamera;
 
 use super::cloth::{DrapeError, DrapedCloth, SpecimenPiece};
 use super::shadow;
@@ -82,7 +82,8 @@ pub fn cusick(fabric: &Fabric, spacing_mm: f64, quality: Quality, drawn: bool) -
         cloth.run_to(seconds);
         coefficient(&piece, &cloth)
     });
-    let camera = Camera { target: Vec3::new(0.0, -0.03, 0.0), yaw: 0.5, height: 0.42, distance: 0.62, fov_y: 0.42 };
+    let camera =
+        OrbitCamera { target: Vec3::new(0.0, -0.03, 0.0), yaw: 0.5, height: 0.42, distance: 0.62, fov_y: 0.42 };
     Ok(CusickRow {
         fabric: fabric.name.clone(),
         spacing_mm,

@@ -1,8 +1,4 @@
 //! Drape: a round specimen on Cusick's disc in each fabric, and a tablecloth over a rectangular table at several samplings.
-//!
-//! Reads: fabrics. Writes: drape coefficients, distances between samplings, pictures.
-//! Budget: a second a fabric and spacing; minutes for the tablecloth's finest.
-//! Thread: one, with nothing else running.
 
 mod cloth;
 mod cusick;

@@ -11,7 +11,7 @@ use toile_base::fabric::Fabric;
 use toile_engine::cloth::Quality;
 use toile_engine::colliders::{Colliders, RestSphere};
 use toile_view::image::{Image, Size};
-use toile_view::scene::Camera;
+use toile_view::scene::OrbitCamera;
 
 use super::cloth::{DrapeError, DrapedCloth, SpecimenPiece};
 
@@ -130,7 +130,8 @@ fn run(fabric: &Fabric, variant: &'static str, spacing_cm: f64, published_cm: f6
         cloth.places()
     });
     let seconds = begun.elapsed().as_secs_f64();
-    let camera = Camera { target: Vec3::new(0.05, -0.1, 0.05), yaw: 0.6, height: 0.75, distance: 2.6, fov_y: 0.42 };
+    let camera =
+        OrbitCamera { target: Vec3::new(0.05, -0.1, 0.05), yaw: 0.6, height: 0.75, distance: 2.6, fov_y: 0.42 };
     let row = TableclothRow {
         variant,
         spacing_cm,

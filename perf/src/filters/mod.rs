@@ -1,8 +1,4 @@
 //! The filter benchmark: jitter, lag and overshoot of each filter of joints on the same motions, and the slide of feet.
-//!
-//! Reads: motions with a known truth and a sensor's noise, and recordings where a folder of them is given. Writes: figures.
-//! Budget: some seconds a motion.
-//! Thread: the caller's.
 
 mod feet;
 mod measure;

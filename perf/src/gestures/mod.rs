@@ -2,10 +2,6 @@
 //!
 //! Sequences run through the default joint filter as in the mirror. Events of the right kind are counted as hits, a
 //! gesture without one as a miss, every other event as false.
-//!
-//! Reads: nothing; people, motions and noise are made from a seed. Writes: the study's rows.
-//! Budget: none, it is evidence and not part of a frame; 20 s for the whole study.
-//! Thread: the caller's.
 
 mod hands;
 mod motion;

@@ -1,22 +1,22 @@
 //! How full everything was that has a bound: the queues, the schedule, the frame's capacities.
 
 use toile_base::limits::{MAX_CAPSULES, MAX_PLANES, MAX_SPHERES};
-use toile_engine::cloth::layers::MOST_CROSSINGS;
-use toile_engine::cloth::settings::MAX_SUBSTEPS;
-use toile_engine::cloth::{Cloth, stiff_bending};
-use toile_engine::frame::Frame;
+use toile_engine::cloth::contact::garments::MOST_CROSSINGS;
+use toile_engine::cloth::step::settings::MAX_SUBSTEPS;
+use toile_engine::cloth::{Cloth, forces::stiff_bending};
 use toile_engine::frame_loop::physics_thread::LoopMeters;
 use toile_engine::frame_loop::queue::Capacity;
 use toile_engine::frame_loop::schedule::MOST_CATCH_UP;
 use toile_engine::meter::PERIOD_NS;
+use toile_engine::world::World;
 use toile_fitting::scene::contact::{CROSSINGS_NAME, ContactReport, PAIRS_NAME};
 
 /// The bounds of the loop and of the frame.
-pub fn capacities(queues: &[Capacity], gauges: &LoopMeters, frame: &Frame) -> Vec<Capacity> {
+pub fn capacities(queues: &[Capacity], gauges: &LoopMeters, world: &World) -> Vec<Capacity> {
     let late = gauges.late.histogram().max() / PERIOD_NS;
-    let most = |count: fn(&Cloth) -> usize| frame.cloths().iter().map(count).max().unwrap_or(0);
+    let most = |count: fn(&Cloth) -> usize| world.cloths().iter().map(count).max().unwrap_or(0);
     let room = |constant, bound, high_water| Capacity { constant, bound, high_water, lost: 0 };
-    let colliders = frame.colliders();
+    let colliders = world.colliders();
     let mut all = queues.to_vec();
     all.push(Capacity {
         constant: "MOST_CATCH_UP (steps made up for after a late wake-up)",
@@ -35,13 +35,13 @@ pub fn capacities(queues: &[Capacity], gauges: &LoopMeters, frame: &Frame) -> Ve
             most(|c| c.bend_pace().stages as usize),
         ),
     ]);
-    let pairs = frame.cloths().iter().map(|c| c.contact_counts().most_pairs);
+    let pairs = world.cloths().iter().map(|c| c.contact_counts().most_pairs);
     all.extend(
         pairs.map(|[most, room_for]| {
             room("pairs (blocks of particles near a capsule)", room_for as usize, most as usize)
         }),
     );
-    if let Some(ContactReport { pairs_most, pairs_room, crowded, crossings_most, left_out, .. }) = contact(frame) {
+    if let Some(ContactReport { pairs_most, pairs_room, crowded, crossings_most, left_out, .. }) = contact(world) {
         let full = |constant, bound, most: u64, lost| Capacity { constant, bound, high_water: most as usize, lost };
         all.push(full(PAIRS_NAME, pairs_room as usize, pairs_most, crowded));
         all.push(full(CROSSINGS_NAME, MOST_CROSSINGS, crossings_most, left_out));
@@ -49,17 +49,17 @@ pub fn capacities(queues: &[Capacity], gauges: &LoopMeters, frame: &Frame) -> Ve
     all
 }
 
-fn contact(frame: &Frame) -> Option<ContactReport> {
-    frame.layers().map(|layers| ContactReport::from(layers.counts()))
+fn contact(world: &World) -> Option<ContactReport> {
+    world.layers().map(|layers| ContactReport::from(layers.counts()))
 }
 
 /// What was full, with the cure. Spheres, capsules and planes that are too many are refused at load.
-pub fn warnings(capacities: &[Capacity], frame: &Frame) -> Vec<String> {
+pub fn warnings(capacities: &[Capacity], world: &World) -> Vec<String> {
     // Contact has words of its own.
     let queues = capacities.iter().filter(|c| ![PAIRS_NAME, CROSSINGS_NAME].contains(&c.constant));
     let mut all: Vec<String> = queues.filter_map(Capacity::warning).collect();
-    all.extend(contact(frame).iter().flat_map(ContactReport::warnings));
-    for (cloth, garment) in frame.cloths().iter().zip(frame.garments()) {
+    all.extend(contact(world).iter().flat_map(ContactReport::warnings));
+    for (cloth, garment) in world.cloths().iter().zip(world.garments()) {
         let pace = cloth.bend_pace();
         if pace.stages == stiff_bending::MAX_BENDING_STAGES && pace.least < 1.0 {
             all.push(format!(

@@ -1,9 +1,5 @@
 //! Latency: how long it takes from what the sensor saw until a picture of it is taken, by stage, on this machine.
 //!
-//! Reads: a dressed frame, a session's joints. Writes: distributions, causes of what was late, a page.
-//! Budget: the seconds that are asked for, and as long for the machine's own jitter, ten at most.
-//! Thread: the loop's own, each on its place; load threads beside them where asked for.
-//!
 //! Every time counts from when something was due, never from when a late thread came to it, and a step that was dropped
 //! counts as late as the one in its place: the figures are corrected for coordinated omission. The first second is not metered.
 

@@ -6,9 +6,9 @@ use std::sync::Arc;
 
 use serde::Serialize;
 use toile_engine::clock::{Clock, RealClock};
-use toile_engine::frame::Snapshot;
 use toile_engine::frame_loop::render_thread::Renderer;
 use toile_engine::meter::Meter;
+use toile_engine::world::Snapshot;
 use toile_fitting::live::assembly::HeadlessRenderer;
 use toile_fitting::live::own_picture::PictureReceiver;
 use toile_fitting::live::report::Quantiles;

@@ -50,11 +50,11 @@ pub struct QualityFigures {
     pub particles: usize,
     /// Of these, those that move on their own.
     pub free: usize,
-    /// Steps on each rung of the governor's ladder, whole quality first.
+    /// Steps on each quality level, whole quality first.
     pub rungs: Vec<u64>,
     /// What is given up on each.
     pub gives_up: Vec<&'static str>,
-    /// Each change of rung, in order: step, from, to; the first hundred.
+    /// Each change of level, in order: step, from, to; the first hundred.
     pub changes: Vec<[u64; 3]>,
     /// Strain: mean, 99 %, worst (1), of ten steps a second.
     pub strain: [f64; 3],

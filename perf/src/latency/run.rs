@@ -8,17 +8,17 @@ use toile_base::frame::Joints;
 use toile_base::garment::Garment;
 use toile_base::limits::STEP_HZ;
 use toile_engine::clock::{Clock, RealClock};
-use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::frame_loop::event::{Event, EventKind};
-use toile_engine::frame_loop::governor::LADDER;
-use toile_engine::frame_loop::physics_thread::FrameScene;
+use toile_engine::frame_loop::physics_thread::WorldScene;
+use toile_engine::frame_loop::quality_control::QUALITY_LEVELS;
 use toile_engine::frame_loop::queue::{Capacity, Sender};
 use toile_engine::frame_loop::recording::Entry;
 use toile_engine::frame_loop::render_thread::RenderThread;
 use toile_engine::frame_loop::sensor_thread::{FrameSource, Playback, SourceFrame};
-use toile_engine::frame_loop::thread_roles::Placement;
+use toile_engine::frame_loop::thread_roles::RolePlacement;
 use toile_engine::meter::{INTAKE, Meter, PERIOD_NS, STAGES, STEP_BUDGET_US};
 use toile_engine::triple_buffer::Reader;
+use toile_engine::world::{Snapshot, World};
 use toile_fitting::live::assembly::{LoopOptions, LoopParts, LoopQueues, PhysicsLoop, SensorLoop};
 use toile_fitting::live::depth_camera::CameraFeed;
 use toile_fitting::live::lateness::{LatenessAttribution, ThreadAccount};
@@ -68,8 +68,8 @@ pub struct LatencyOptions {
     pub seconds: u32,
     /// Threads of load beside the loop.
     pub load: usize,
-    /// A rung of the governor's ladder that the run is held on; none lets it govern.
-    pub rung: Option<u8>,
+    /// A quality level that the run is held on; none lets it govern.
+    pub level: Option<u8>,
 }
 
 /// Where the joints come from.
@@ -105,7 +105,7 @@ impl FrameSource for RunningSource {
 /// What is run: a shopper, dressed, and how they moved.
 pub struct LatencyInputs<'a> {
     /// The frame, dressed; its worker pool is of the workers that are asked for.
-    pub frame: Frame,
+    pub frame: World,
     /// Where its snapshots come out.
     pub reader: Reader<Snapshot>,
     /// Where the joints come from.
@@ -113,7 +113,7 @@ pub struct LatencyInputs<'a> {
     /// The loop's clock, which a camera stamps its frames by.
     pub clock: RealClock,
     /// Where the pool's helper runs.
-    pub worker: Option<Placement>,
+    pub worker: Option<RolePlacement>,
     /// What the shopper's own picture is drawn from, where it is drawn.
     pub own: Option<OwnPictureParts>,
     /// Where what a replay needs goes.
@@ -153,14 +153,14 @@ impl LoopEvents {
 
 /// The loop while it runs, with a renderer that only takes what it would draw.
 struct MeteredLoop {
-    live: LiveLoop<FrameScene, LatencyRenderer, RunningSource>,
+    live: LiveLoop<WorldScene, LatencyRenderer, RunningSource>,
     metered_ns: u64,
 }
 
 /// The loop when it has ended.
 struct EndedRun {
     sensor: SensorLoop<RunningSource, RealClock>,
-    physics: PhysicsLoop<FrameScene, RealClock, ThreadAccount>,
+    physics: PhysicsLoop<WorldScene, RealClock, ThreadAccount>,
     render: RenderThread<LatencyRenderer, RealClock>,
     queues: [Capacity; 2],
 }
@@ -171,7 +171,7 @@ impl MeteredLoop {
         let begin_ns = clock.now_ns() + 10 * PERIOD_NS;
         let metered_ns = begin_ns + WARM_UP_S * SECOND_NS;
         let renderer = LatencyRenderer::new(reader.latest(), own, clock, metered_ns);
-        let scene = FrameScene::new(frame);
+        let scene = WorldScene::new(frame);
         let first = DressedScene { scene, reader, outfit: (), still: None, note: None, number: None };
         let source = match source {
             LatencySource::Played(joints) => RunningSource::Played(Playback::new(joints, begin_ns, u64::MAX)),
@@ -182,7 +182,7 @@ impl MeteredLoop {
             begin_ns,
             warm_up_steps: WARM_UP_STEPS,
             metered_from_ns: metered_ns,
-            held_rung: options.rung,
+            held_level: options.level,
         };
         let (live, _handover) = LiveLoop::start(parts, clock, options)?;
         Ok(Self { live, metered_ns })
@@ -244,7 +244,7 @@ fn report(
     snapshot_us: f64,
 ) -> Latency {
     let EndedRun { physics, render, queues, .. } = ended;
-    let (gauges, frame) = (&physics.gauges, &physics.stepper.scene.scene().frame);
+    let (gauges, frame) = (&physics.gauges, &physics.stepper.scene.scene().world);
     let stages = stages(ended, jitter, snapshot_us);
     let [step, response] = [&gauges.step, &gauges.response].map(Quantiles::of);
     let [snapshot, total] = [&gauges.reaction, &render.total].map(Quantiles::of);
@@ -272,7 +272,7 @@ fn report(
         frames: snapshot.count + gauges.skipped,
         late_frames: later_than(&gauges.reaction, snapshot_us) + gauges.skipped,
         pictures: render.pictures,
-        quality: quality(frame, &gauges.rungs, events.changes),
+        quality: quality(frame, &gauges.level_steps, events.changes),
         goals: goals(snapshot_us, snapshot, total, step, response, own.as_ref()),
         own_picture: own,
         capacities: capacities.into_iter().map(QueueUse::from).collect(),
@@ -284,7 +284,7 @@ fn report(
 /// From the sensor to the picture, then the whole of it, then the machine.
 fn stages(ended: &EndedRun, jitter: &Meter, snapshot_us: f64) -> Vec<LatencyStage> {
     let EndedRun { sensor, physics, render, .. } = ended;
-    let (gauges, meters) = (&physics.gauges, physics.stepper.scene.scene().frame.meters());
+    let (gauges, meters) = (&physics.gauges, physics.stepper.scene.scene().world.meters());
     let mut stages = vec![
         LatencyStage::of("filter", Some(FILTER_US), &sensor.filtering),
         LatencyStage::of("wait for a step", Some(PERIOD_NS / 1_000), &gauges.wait),
@@ -342,7 +342,7 @@ fn drain(queues: &mut LoopQueues, events: &mut LoopEvents) {
     while queues.frames.pop().is_some() {}
 }
 
-fn quality(frame: &Frame, rungs: &[u64], changes: Vec<[u64; 3]>) -> QualityFigures {
+fn quality(frame: &World, rungs: &[u64], changes: Vec<[u64; 3]>) -> QualityFigures {
     let (meters, settings) = (frame.meters(), frame.settings());
     let strain = meters.strain();
     let whole = frame.garments().iter().map(|g| settings.quality.substeps(g.substeps)).max().unwrap_or(0);
@@ -353,7 +353,7 @@ fn quality(frame: &Frame, rungs: &[u64], changes: Vec<[u64; 3]>) -> QualityFigur
         particles: frame.garments().iter().map(Garment::particles).sum(),
         free: frame.garments().iter().map(free).sum(),
         rungs: rungs.to_vec(),
-        gives_up: LADDER.iter().map(|r| r.gives_up).collect(),
+        gives_up: QUALITY_LEVELS.iter().map(|r| r.gives_up).collect(),
         changes,
         strain: [strain.mean, strain.p99, strain.max].map(f64::from),
         penetration_mm: f64::from(meters.penetration_max) * 1e3,

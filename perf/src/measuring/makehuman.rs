@@ -17,7 +17,7 @@ use toile_base::numeric::statistics::quantile;
 use toile_base::skeleton::{Joint, Pose};
 use toile_track::fit::measuring::MEASURES;
 
-use super::standing::{Breathing, Motion, StudyPerson, TapeMeasures};
+use super::standing::{Breathing, StandingMotion, StudyPerson, TapeMeasures};
 use crate::ansur::{Survey, SurveyError};
 
 /// Landmarks of `hm08`: vertices, which every target moves along. Those that come in pairs are the left side's.
@@ -338,8 +338,8 @@ fn standing(body: &Body, rng: &mut SplitMix64) -> Pose {
     pose
 }
 
-fn breathing(rng: &mut SplitMix64) -> Motion {
-    Motion::Breathing(Breathing {
+fn breathing(rng: &mut SplitMix64) -> StandingMotion {
+    StandingMotion::Breathing(Breathing {
         rate: [0.2 + 0.1 * rng.uniform(), std::f32::consts::TAU * rng.uniform()],
         depth: 0.0006 + 0.0014 * rng.uniform(),
         sway: 0.25 + 0.25 * rng.uniform(),

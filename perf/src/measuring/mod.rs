@@ -1,9 +1,5 @@
 //! Measuring compared with known bodies: people of ANSUR II, each with a shape of their own, seen by a depth camera.
 //!
-//! Reads: the survey's files (a path is given). Writes: the errors of both ways of measuring, measure by measure.
-//! Budget: none; a study, some seconds a person.
-//! Thread: the caller's.
-//!
 //! What the study renders is not what the fit assumes: the bodies have sections that the parametric body cannot have,
 //! stand in poses of their own, are skinned with twist, and are seen by a camera that is not quite as it says.
 

@@ -11,7 +11,7 @@ use toile_base::numeric::random::SplitMix64;
 use toile_base::skeleton::{Joint, Pose};
 use toile_track::fit::measuring::MEASURES;
 
-use super::standing::{Motion, StudyPerson};
+use super::standing::{StandingMotion, StudyPerson};
 
 /// What of the survey a person's body is built to, with the survey's names.
 pub const GIVEN: [(Ansur, &str); 12] = [
@@ -53,7 +53,7 @@ pub fn survey_person(sex: Sex, measures: &[f32; GIVEN.len()], rng: &mut SplitMix
     let readings = shapes.read_surface(&body.mesh.positions);
     let pose = standing(&body, rng);
     let truth = MEASURES.map(|(_, measure, _)| Some(measure.of(&readings)));
-    Ok(StudyPerson { sex, truth, body, pose, motion: Motion::Independent })
+    Ok(StudyPerson { sex, truth, body, pose, motion: StandingMotion::Independent })
 }
 
 /// Gives the trunk sections that the parametric body does not have, and all of the surface some roughness.

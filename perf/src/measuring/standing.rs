@@ -18,7 +18,7 @@ pub type TapeMeasures = [Option<f32>; MEASURES.len()];
 
 /// How a person moves while they stand.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Motion {
+pub(super) enum StandingMotion {
     /// Each frame has a sway of its own, as if frames lay seconds apart; nobody breathes.
     Independent,
     /// Sway that wanders slowly, and a chest that breathes.
@@ -53,7 +53,7 @@ pub struct StudyPerson {
     pub truth: TapeMeasures,
     pub(super) body: Body,
     pub(super) pose: Pose,
-    pub(super) motion: Motion,
+    pub(super) motion: StandingMotion,
 }
 
 /// What sways, and by how much (rad): a standing person's middle wanders by some millimetres in a second, their hands by
@@ -105,8 +105,8 @@ impl StudyPerson {
         let mut pose = self.pose;
         for (k, (joint, by)) in SWAYS.into_iter().enumerate() {
             let turn = match self.motion {
-                Motion::Independent => Vec3::new(rng.gaussian(), rng.gaussian(), rng.gaussian()),
-                Motion::Breathing(b) => {
+                StandingMotion::Independent => Vec3::new(rng.gaussian(), rng.gaussian(), rng.gaussian()),
+                StandingMotion::Breathing(b) => {
                     let phase =
                         |axis: usize| TAU * b.sway * moment.time * (1.0 + 0.3 * axis as f32) + (k * 7 + axis) as f32;
                     1.4 * Vec3::new(phase(0).sin(), phase(1).sin(), phase(2).sin())
@@ -115,8 +115,8 @@ impl StudyPerson {
             pose.local[joint.index()] = Quat::from_scaled_axis(turn * by) * pose.local[joint.index()];
         }
         pose.root += match self.motion {
-            Motion::Independent => Vec3::new(rng.gaussian(), 0.0, rng.gaussian()) * WANDER,
-            Motion::Breathing(b) => {
+            StandingMotion::Independent => Vec3::new(rng.gaussian(), 0.0, rng.gaussian()) * WANDER,
+            StandingMotion::Breathing(b) => {
                 let phase = TAU * b.sway * moment.time;
                 Vec3::new(phase.sin(), 0.0, (0.7 * phase + 2.0).sin()) * WANDER
             }
@@ -160,8 +160,8 @@ impl StudyPerson {
     /// How far the breath moves the chest's skin at a time (m).
     fn breath(&self, time: f32) -> f32 {
         match self.motion {
-            Motion::Independent => 0.0,
-            Motion::Breathing(b) => b.depth * (TAU * b.rate[0] * time + b.rate[1]).sin(),
+            StandingMotion::Independent => 0.0,
+            StandingMotion::Breathing(b) => b.depth * (TAU * b.rate[0] * time + b.rate[1]).sin(),
         }
     }
 

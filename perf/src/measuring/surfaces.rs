@@ -9,10 +9,10 @@ use toile_fitting::dress::depth::posed;
 use toile_track::fit::measuring::FittedMeasures;
 use toile_view::contact_sheet::contact_sheet;
 use toile_view::image::{Image, Size};
-use toile_view::scene::{Bounds, Camera, Colours, Material, Scene, Surface};
+use toile_view::scene::{Bounds, Colours, Material, OrbitCamera, PictureScene, PictureSurface};
 use toile_view::trace::{self, TraceQuality};
 
-use super::standing::{Moment, Motion, StudyPerson};
+use super::standing::{Moment, StandingMotion, StudyPerson};
 
 /// One picture of a body (px).
 const PANEL: Size = Size::new(160, 320);
@@ -54,7 +54,7 @@ impl StandingSurface {
     }
 
     fn draw(&self, colours: Colours<'_>, yaw: f32, bounds: &Bounds) -> Image {
-        let surface = Surface {
+        let surface = PictureSurface {
             positions: &self.positions,
             normals: &self.normals,
             triangles: &self.triangles,
@@ -62,8 +62,8 @@ impl StandingSurface {
             material: Material::Skin,
             look: None,
         };
-        let camera = Camera::framing(bounds, yaw, PANEL.width as f32 / PANEL.height as f32);
-        trace::render(&Scene { surfaces: &[surface], floor: true }, &camera, PANEL, TraceQuality::Motion)
+        let camera = OrbitCamera::framing(bounds, yaw, PANEL.width as f32 / PANEL.height as f32);
+        trace::render(&PictureScene { surfaces: &[surface], floor: true }, &camera, PANEL, TraceQuality::Motion)
     }
 }
 
@@ -84,7 +84,7 @@ impl PersonSurfaces {
         front: (&FittedMeasures, Moment),
         turned: Option<(&FittedMeasures, Moment)>,
     ) -> Option<Self> {
-        matches!(person.motion, Motion::Breathing(_)).then(|| {
+        matches!(person.motion, StandingMotion::Breathing(_)).then(|| {
             let pair = |(fitted, moment): (&FittedMeasures, Moment)| {
                 let mut truth = Vec::new();
                 person.stand(moment, &mut SplitMix64::new(0), &mut truth);

@@ -26,7 +26,7 @@ fn ball(sphere: Vec4) -> Ball {
 
 /// Which cones each particle can touch, for [`Problem::reach`](super::Problem::reach).
 pub fn reach(garment: &Garment, colliders: &Colliders) -> Vec<u32> {
-    garment.parts.iter().map(|part| contact::reach(*part, colliders)).collect()
+    garment.parts.iter().map(|part| contact::body::reach(*part, colliders)).collect()
 }
 
 /// The engine's positions in f64.

@@ -8,8 +8,8 @@ use glam::DVec3;
 use super::energy::friction::Friction;
 use super::energy::load::Load;
 use super::error::OracleError;
-use super::law;
-use super::options::Step;
+use super::link_curve;
+use super::options::OracleStep;
 use super::problem::Problem;
 use super::settle::{Oracle, SolveTask, weight};
 use super::solids::Solids;
@@ -67,7 +67,7 @@ impl Oracle {
             held: [weight / shortest(problem), weight / CONTACT_M],
             stiffer: STATICS_STIFFER,
             shift: FIRST_SHIFT,
-            laws: law::from_state(&problem.links, &problem.laws, start),
+            link_curves: link_curve::from_state(&problem.links, &problem.link_curves, start),
         };
         let grip = || {
             let both = [solids.shapes(), solids.shapes()];
@@ -75,7 +75,7 @@ impl Oracle {
         };
         if held {
             // How hard each particle presses, before the first round lets any slide.
-            let step = Step { solids: [solids.clone(), solids.clone()], ..Step::of(PRESSING_S) };
+            let step = OracleStep { solids: [solids.clone(), solids.clone()], ..OracleStep::of(PRESSING_S) };
             self.step(&State::at_rest(start), &step)?;
         }
         let mut solved = self.solve(task(start.to_vec(), self.problem()), solids, grip())?;

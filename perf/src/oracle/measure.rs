@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::energy::bends;
-use super::law;
+use super::link_curve;
 use super::problem::Problem;
 use super::solution::State;
 
@@ -41,8 +41,8 @@ pub fn energies(problem: &Problem, state: &State) -> Energies {
     let moving = problem.mass.iter().zip(&state.v).map(|(m, v)| 0.5 * m * v.length_squared());
     let stretch = problem.links.iter().enumerate().filter(|(_, l)| l.compliance > 0.0).map(|(e, l)| {
         let strain = strain_of(l.ends, l.rest, &state.x);
-        match problem.laws.get(e) {
-            Some(of) => l.rest * law::energy(of, strain),
+        match problem.link_curves.get(e) {
+            Some(of) => l.rest * link_curve::energy(of, strain),
             None => (strain * l.rest).powi(2) * 0.5 / l.compliance,
         }
     });

@@ -1,16 +1,11 @@
 //! The oracle: an independent f64 solver of the engine's discretisation, by which the engine's solver error is measured.
 //!
-//! Reads: a [`Problem`] (particles, links, stencils of a baked garment) and [`Solids`]. Writes: x* of one implicit Euler
-//! step or of statics, with tensions, contact forces and what is left of every residual.
-//! Budget: a Newton iteration of 4,096 particles well below a second; never inside the frame.
-//! Thread: the caller's; it shares no solver code with the engine.
-//!
 //! x* is where the sum of inertia or weight, stretch, bending, contact and friction is at its least: Newton's method with
 //! a line search (`newton`) on a sparse Cholesky factorisation (`system`), inside rounds of the method of multipliers
 //! for what does not stretch and for contact (`energy`), so that neither needs a stiffness without bound.
 //!
 //! ```
-//! use toile_perf::oracle::{Oracle, Problem, Solids, State, Step};
+//! use toile_perf::oracle::{Oracle, Problem, Solids, State, OracleStep};
 //! # use glam::DVec3;
 //! # use toile_perf::oracle::Link;
 //! // `Problem::of(&garment)`, or plain data: a mass that hangs from a pin by 1 m of thread.
@@ -23,7 +18,7 @@
 //! };
 //! let start = State::at_rest(&problem.start);
 //! let mut oracle = Oracle::new(problem)?;
-//! let fallen = oracle.step(&start, &Step::of(1.0 / 120.0))?;
+//! let fallen = oracle.step(&start, &OracleStep::of(1.0 / 120.0))?;
 //! assert!(fallen.state.x[1].y < 0.0 && fallen.report.residual_n < 1e-10);
 //! let hanging = oracle.equilibrium(&start.x, &Solids::default())?;
 //! assert!((hanging.tension_n[0] - 0.0981).abs() < 1e-9 && hanging.report.stable);
@@ -35,8 +30,8 @@ mod cholesky;
 mod energy;
 mod equilibrium;
 mod error;
-mod law;
 mod leap;
+mod link_curve;
 pub mod measure;
 mod newton;
 mod options;
@@ -49,7 +44,7 @@ mod system;
 mod tests;
 
 pub use error::OracleError;
-pub use options::{OracleOptions, Step};
+pub use options::{OracleOptions, OracleStep};
 pub use problem::{Bend, Link, Problem};
 pub use settle::Oracle;
 pub use solids::{Ball, Plane, Solids};

@@ -6,7 +6,7 @@ use super::solids::Solids;
 
 /// One implicit Euler step and what the surroundings do in it.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Step {
+pub struct OracleStep {
     /// Length of the step (s).
     pub dt: f64,
     /// Share of the velocity that the air leaves, as the engine takes it in each substep: v = (v + g dt) kept, with
@@ -18,7 +18,7 @@ pub struct Step {
     pub solids: [Solids; 2],
 }
 
-impl Step {
+impl OracleStep {
     /// A step without air, solids or motion of the pins.
     pub fn of(dt: f64) -> Self {
         Self { dt, kept: 1.0, ..Self::default() }

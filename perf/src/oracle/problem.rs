@@ -1,10 +1,10 @@
 //! The discretisation in f64: particles, links, bending stencils; plain data, or what a baked garment holds.
 
 use glam::DVec3;
-use toile_base::fabric::link_law::LinkLaw;
+use toile_base::fabric::link_curve::LinkCurve;
 use toile_base::garment::Garment;
 use toile_base::garment::layout::{Bends, Diagonals, ENDED, FiberLists, Fibers, Hubs, Links};
-use toile_base::garment::link_laws::LawTable;
+use toile_base::garment::link_curves::CurveTable;
 
 use super::error::OracleError;
 
@@ -39,7 +39,7 @@ pub struct Problem {
     pub links: Vec<Link>,
     /// What each link does beyond one slope, and where its friction sticks: strain (1) and force (N), in place of its compliance `[links]`;
     /// empty where one slope is all that any has.
-    pub laws: Vec<LinkLaw>,
+    pub link_curves: Vec<LinkCurve>,
     /// Bending stencils of the garment.
     pub bends: Vec<Bend>,
     /// Acceleration of gravity (m/s2).
@@ -58,14 +58,14 @@ impl Problem {
     /// Which limb's colliders a particle can meet is left open: set [`Self::reach`] where the garment has parts.
     pub fn of(garment: &Garment) -> Self {
         let layout = garment.layout();
-        let [of_bias, of_shear, of_weft, of_fibers, of_lists] = layout.laws.tables();
+        let [of_bias, of_shear, of_weft, of_fibers, of_lists] = layout.link_curves.tables();
         let mut found = LinkCollector::default();
         tuples(&layout.shear, &mut found.of(of_shear));
         tuples(&layout.weft, &mut found.of(of_weft));
         diagonals(&layout.diagonals, &mut found.of(of_bias));
         fibers(&layout.fibers, &mut found.of(of_fibers));
         lists(&layout.crossing, &mut found.of(of_lists));
-        let LinkCollector { links, laws } = found;
+        let LinkCollector { links, link_curves } = found;
         let mut stencils = Vec::new();
         bends(&layout.bends, &mut stencils);
         bends(&layout.skewed, &mut stencils);
@@ -75,7 +75,7 @@ impl Problem {
             mass: garment.inverse_mass.iter().map(mass).collect(),
             start: garment.start.iter().map(|p| p.as_dvec3()).collect(),
             links,
-            laws: if layout.laws.acts() { laws } else { Vec::new() },
+            link_curves: if layout.link_curves.acts() { link_curves } else { Vec::new() },
             bends: stencils,
             gravity: DVec3::new(0.0, -9.81, 0.0),
             offset_m: f64::from(garment.fabric.contact_offset_mm) * 1e-3,
@@ -117,10 +117,10 @@ impl Problem {
             let figures = l.rest.is_finite() && l.rest > 0.0 && l.compliance.is_finite() && l.compliance >= 0.0;
             sound(figures && a != b && a < n && b < n, "link", at)?;
         }
-        if !self.laws.is_empty() {
-            expect("laws", self.laws.len(), self.links.len())?;
+        if !self.link_curves.is_empty() {
+            expect("laws", self.link_curves.len(), self.links.len())?;
         }
-        for (at, l) in self.laws.iter().enumerate() {
+        for (at, l) in self.link_curves.iter().enumerate() {
             let slopes = l.slope > 0.0 && l.slope.is_finite() && l.behind.iter().all(|s| *s > 0.0 && s.is_finite());
             let knees = l.knees[0] <= 0.0 && l.knees[1] >= 0.0 && l.stuck.is_finite();
             sound(slopes && knees && l.half_width >= 0.0 && l.half_width.is_finite(), "law", at)?;
@@ -142,34 +142,34 @@ pub(super) fn expect(what: &'static str, got: usize, expected: usize) -> Result<
 #[derive(Default)]
 struct LinkCollector {
     links: Vec<Link>,
-    laws: Vec<LinkLaw>,
+    link_curves: Vec<LinkCurve>,
 }
 
 impl LinkCollector {
     /// Takes links of one kind: a place of their parameters, their ends, rest length and compliance.
-    fn of<'a>(&'a mut self, table: &'a LawTable) -> impl FnMut(usize, [u32; 2], f32, f32) + 'a {
+    fn of<'a>(&'a mut self, table: &'a CurveTable) -> impl FnMut(usize, [u32; 2], f32, f32) + 'a {
         move |at, ends, rest, compliance| {
             if compliance >= ENDED || rest <= 0.0 {
                 return;
             }
             let (rest, compliance) = (f64::from(rest), f64::from(compliance));
             self.links.push(Link { ends, rest, compliance });
-            self.laws.push(law(table, at, rest / compliance));
+            self.link_curves.push(link_curve(table, at, rest / compliance));
         }
     }
 }
 
 /// The law of a place, of so much force for a strain of 1 (N).
-fn law(table: &LawTable, at: usize, slope: f64) -> LinkLaw {
+fn link_curve(table: &CurveTable, at: usize, slope: f64) -> LinkCurve {
     if table.is_empty() || !slope.is_finite() {
-        return LinkLaw::plain(slope.min(HARD_N));
+        return LinkCurve::plain(slope.min(HARD_N));
     }
     let [lower, below, upper, above, friction] =
         [&table.lower, &table.lower_slope, &table.upper, &table.upper_slope, &table.friction].map(|c| c[at].into());
-    LinkLaw { slope, knees: [lower, upper], behind: [below, above], half_width: friction * slope, stuck: 0.0 }
+    LinkCurve { slope, knees: [lower, upper], behind: [below, above], half_width: friction * slope, stuck: 0.0 }
 }
 
-/// Force for a strain of 1 of what does not stretch, beside links with laws (N).
+/// Force for a strain of 1 of what does not stretch, beside links with curves (N).
 const HARD_N: f64 = 1e9;
 
 fn tuples(from: &Links, add: &mut impl FnMut(usize, [u32; 2], f32, f32)) {

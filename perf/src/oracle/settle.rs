@@ -1,7 +1,7 @@
 //! The solver: rounds of the method of multipliers around Newton's method, and one step of implicit Euler by it.
 
 use glam::DVec3;
-use toile_base::fabric::link_law::LinkLaw;
+use toile_base::fabric::link_curve::LinkCurve;
 
 use super::energy::TotalEnergy;
 use super::energy::contact::Contact;
@@ -9,10 +9,10 @@ use super::energy::friction::Friction;
 use super::energy::links::Springs;
 use super::energy::load::Load;
 use super::error::OracleError;
-use super::law;
 use super::leap::Leaps;
+use super::link_curve;
 use super::newton::{self, NewtonState, StopRule};
-use super::options::{OracleOptions, Step};
+use super::options::{OracleOptions, OracleStep};
 use super::problem::{Problem, expect};
 use super::solids::Solids;
 use super::solution::{SolveReport, Solved, State, Violation};
@@ -59,7 +59,7 @@ pub(super) struct SolveTask {
     /// First shift of the Hessian (1/s2).
     pub shift: f64,
     /// Laws of the links as they act in it `[links]`, or empty.
-    pub laws: Vec<LinkLaw>,
+    pub link_curves: Vec<LinkCurve>,
 }
 
 impl Oracle {
@@ -90,7 +90,7 @@ impl Oracle {
     ///
     /// # Errors
     /// Where the figures cannot be used, or no solution is found.
-    pub fn step(&mut self, state: &State, step: &Step) -> Result<Solved, OracleError> {
+    pub fn step(&mut self, state: &State, step: &OracleStep) -> Result<Solved, OracleError> {
         self.check_step(state, step)?;
         let [dt, per_dt2] = [step.dt, (step.dt * step.dt).recip()];
         let p = &self.problem;
@@ -103,16 +103,16 @@ impl Oracle {
         let mut from = state.x.clone();
         (0..p.particles()).filter(|i| p.pinned(*i)).for_each(|i| from[i] = target[i]);
         let held = [heaviest_link(p) * per_dt2, p.mass.iter().copied().fold(0.0, f64::max) * per_dt2];
-        let laws = law::from_state(&p.links, &p.laws, &state.x);
+        let link_curves = link_curve::from_state(&p.links, &p.link_curves, &state.x);
         let load = Load::Inertia { target, per_dt2 };
-        let task = SolveTask { load, from, held, stiffer: STEP_STIFFER, shift: 0.0, laws };
+        let task = SolveTask { load, from, held, stiffer: STEP_STIFFER, shift: 0.0, link_curves };
         let slip_m = self.options.creep_m_s * dt;
         let both = || [step.solids[0].shapes(), step.solids[1].shapes()];
         let friction = (p.friction > 0.0).then(|| Friction::new(p.friction, slip_m, &state.x, both()));
         let mut solved = self.solve(task, &step.solids[1], friction)?;
         let v = solved.state.x.iter().zip(&state.x).map(|(after, before)| (*after - *before) / dt).collect();
         solved.state.v = v;
-        law::follow(&self.problem.links, &mut self.problem.laws, &solved.state.x);
+        link_curve::follow(&self.problem.links, &mut self.problem.link_curves, &solved.state.x);
         Ok(solved)
     }
 
@@ -124,7 +124,7 @@ impl Oracle {
         &mut self,
         start: &State,
         steps: usize,
-        mut around: impl FnMut(usize) -> Step,
+        mut around: impl FnMut(usize) -> OracleStep,
     ) -> Result<Vec<Solved>, OracleError> {
         let mut out: Vec<Solved> = Vec::with_capacity(steps);
         for k in 0..steps {
@@ -144,7 +144,7 @@ impl Oracle {
         if solids.is_sound() { Ok(()) } else { Err(OracleError::Unusable { what: "solids", at: 0 }) }
     }
 
-    fn check_step(&self, state: &State, step: &Step) -> Result<(), OracleError> {
+    fn check_step(&self, state: &State, step: &OracleStep) -> Result<(), OracleError> {
         self.check(state, &step.solids[0])?;
         self.check(state, &step.solids[1])?;
         expect("solids at the start", step.solids[0].len(), step.solids[1].len())?;
@@ -172,7 +172,7 @@ impl Oracle {
         let mut landscape = TotalEnergy {
             problem: &self.problem,
             load: task.load,
-            springs: Springs::new(&self.problem.links, task.laws, rho[0], std::mem::take(&mut self.tension)),
+            springs: Springs::new(&self.problem.links, task.link_curves, rho[0], std::mem::take(&mut self.tension)),
             contact: Contact::new(&self.problem, solids.shapes(), rho[1], std::mem::take(&mut self.pressure)),
             friction,
         };

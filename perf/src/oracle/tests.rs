@@ -2,7 +2,7 @@
 
 mod derivatives;
 mod exact;
-mod laws;
+mod link_curves;
 mod sliding;
 
 use glam::DVec3;

@@ -8,11 +8,11 @@ use toile_assets::sizes::Population;
 use toile_base::body::Measures;
 use toile_base::clock::ticks_to_ns;
 use toile_base::frame::{DepthFrame, Joints};
-use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::frame_loop::motion_input::MotionInput;
 use toile_engine::triple_buffer::Reader;
+use toile_engine::world::{Snapshot, World};
 use toile_fitting::FittingError;
-use toile_fitting::dress::measured::{self, Measured, ShopperFacts};
+use toile_fitting::dress::measured::{self, MeasuredSubject, ShopperFacts};
 use toile_fitting::dress::session;
 use toile_fitting::dress::try_on::{DressedWorld, RequestedGarment, TryOn};
 use toile_fitting::live::webcam::{WebcamJoints, WebcamOptions};
@@ -76,7 +76,7 @@ impl Seer {
 pub struct MeasuredShopper {
     kind: Seer,
     sensor: FollowerSensor,
-    measured: Measured,
+    measured: MeasuredSubject,
 }
 
 /// What the shopper tells of herself, to the centimetre.
@@ -141,7 +141,7 @@ pub struct Follower {
     /// What sees.
     pub seer: Seer,
     sensor: FollowerSensor,
-    frame: Frame,
+    world: World,
     reader: Reader<Snapshot>,
     model: std::sync::Arc<OwnPictureModel>,
     filter: JointFilter,
@@ -176,13 +176,13 @@ impl Follower {
         let request = TryOn::of_body("own picture", SHOPPER.0, body.measures, garments.to_vec());
         let first = standing.iter().map(|m| sensor.look(m).joints).find(session::is_present);
         let first = first.ok_or_else(|| FittingError::Input("nobody is seen; see docs/own-picture.md".into()))?;
-        let DressedWorld { frame, reader, .. } = request.build(&first)?;
+        let DressedWorld { world, reader, .. } = request.build(&first)?;
         sensor.reset();
         Ok(Self {
             seer: kind,
             sensor,
-            model: OwnPictureModel::of(frame.body(), frame.garments()),
-            frame,
+            model: OwnPictureModel::of(world.body(), world.garments()),
+            world,
             reader,
             filter: JointFilter::default(),
             intake: MotionInput::default(),
@@ -208,7 +208,7 @@ impl Follower {
             self.intake.take(&self.filter.push(&seen.joints), end_ns);
             came = true;
         }
-        self.frame.step(&self.intake.at(end_ns));
+        self.world.step(&self.intake.at(end_ns));
         if self.snapshots.len() == KEPT {
             self.snapshots.pop_front();
         }

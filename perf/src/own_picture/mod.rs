@@ -1,10 +1,4 @@
 //! The garment on the shopper's own picture, against the truth: the same person who really wears it, drawn by other code.
-//!
-//! Reads: people who stand, walk, cross their arms and put their hands behind their back, drawn by the ray tracer, in colour and in depth with
-//! a Kinect's noise; the pose network, where it is fetched. Writes: how far the garment's outline is from the true one, by motion and by what
-//! sees; pictures of both.
-//! Budget: six minutes, most of it drawing.
-//! Thread: the caller's, which lends all cores to the ray tracer.
 
 mod error;
 mod follower;

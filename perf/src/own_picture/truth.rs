@@ -5,8 +5,8 @@ use toile_assets::scene::SHOPPER;
 use toile_base::clock::ticks_to_ns;
 use toile_base::frame::{DepthFrame, Intrinsics};
 use toile_base::numeric::random::SplitMix64;
-use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::triple_buffer::Reader;
+use toile_engine::world::{Snapshot, World};
 use toile_fitting::FittingError;
 use toile_fitting::dress::try_on::{DressedWorld, RequestedGarment, TryOn};
 use toile_sensors::source::live::ColourImage;
@@ -36,7 +36,7 @@ pub struct TruthMoment {
 /// The person, in the garments or without any.
 pub struct Actor {
     motion: OwnMotion,
-    frame: Frame,
+    world: World,
     reader: Reader<Snapshot>,
     bare: DrawnFrame,
     dressed: DrawnFrame,
@@ -57,12 +57,12 @@ impl Actor {
         let (sex, measures) = SHOPPER;
         let request = TryOn::of_body("truth", sex, measures, garments.to_vec());
         let body = toile_assets::body::build(sex, &measures).map_err(FittingError::input)?;
-        let DressedWorld { frame, reader, .. } = request.build(&motion.joints(&body.skeleton, 0.0, 0))?;
+        let DressedWorld { world, reader, .. } = request.build(&motion.joints(&body.skeleton, 0.0, 0))?;
         Ok(Self {
             motion,
-            bare: DrawnFrame::of(frame.body(), &[], appearance()),
-            dressed: DrawnFrame::new(&frame, appearance()),
-            frame,
+            bare: DrawnFrame::of(world.body(), &[], appearance()),
+            dressed: DrawnFrame::new(&world, appearance()),
+            world,
             reader,
             random: SplitMix64::new(7),
             noise: KinectNoise::new(7),
@@ -74,14 +74,14 @@ impl Actor {
     /// A step of 120 Hz.
     pub fn step(&mut self, tick: u64) {
         let time_ns = ticks_to_ns(tick);
-        let joints = self.motion.joints(&self.frame.body().skeleton, time_ns as f32 * 1e-9, time_ns);
-        self.frame.step(&joints);
+        let joints = self.motion.joints(&self.world.body().skeleton, time_ns as f32 * 1e-9, time_ns);
+        self.world.step(&joints);
     }
 
     /// The same after the steps that lead to a picture.
     pub fn moment_at(&mut self, tick: u64, number: u64) -> TruthMoment {
-        while self.frame.tick() <= tick {
-            self.step(self.frame.tick());
+        while self.world.tick() <= tick {
+            self.step(self.world.tick());
         }
         self.moment(tick, number)
     }

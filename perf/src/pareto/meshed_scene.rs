@@ -1,7 +1,7 @@
 //! A scene as data: a shape in a fabric, and what the surroundings do at a time.
 
 use glam::{Affine3A, DVec3, Vec4};
-use toile_assets::scene::skirt::{self, Motion};
+use toile_assets::scene::skirt::{self, SkirtMotion};
 use toile_bake::Shape;
 use toile_bake::bake;
 use toile_bake::overrides::Overrides;
@@ -49,7 +49,7 @@ pub enum SceneMotion {
     /// A body that does not move: the cloth settles.
     Still,
     /// The benchmark's body.
-    Skirt(Motion),
+    Skirt(SkirtMotion),
     /// A mannequin that takes a pose within [`POSE_S`] from the one that garments are cut in, and then stands still.
     Mannequin(Box<Skeleton>, Box<Pose>),
 }

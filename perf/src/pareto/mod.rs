@@ -1,9 +1,5 @@
 //! Speed against error: what a step costs under many settings, and how far from x* it ends.
 //!
-//! Reads: the scenes (skirt, wardrobe, cantilever, tablecloth), the oracle. Writes: points, the front, charts, a report.
-//! Budget: six minutes for everything on two cores, twenty seconds with `quick`; nothing but the step itself is timed.
-//! Thread: one, and the helper of runs that are asked for two.
-//!
 //! x* of the cantilever is the oracle's equilibrium. Cloth that moves or folds has no equilibrium to be held against, and
 //! within a second the folds of any two runs differ. Its x* is what moments of one run become in 50 ms with 128 substeps
 //! of the quality `fine`; every setting goes on from the same moments. How far half as many substeps end from it is reported

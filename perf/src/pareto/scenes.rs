@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use toile_assets::scene::shopper;
-use toile_assets::scene::skirt::{self, Motion, Stretch};
+use toile_assets::scene::skirt::{self, SkirtMotion, Stretch};
 use toile_bake::Shape;
 use toile_base::fabric::Fabric;
 use toile_engine::colliders::{Colliders, RestSphere};
@@ -95,7 +95,7 @@ fn walk(
         main,
         fabric: skirt::fabric(&shape, Stretch::Inextensible),
         shape,
-        drive: SceneMotion::Skirt(Motion::Walk),
+        drive: SceneMotion::Skirt(SkirtMotion::Walk),
         colliders: Colliders::new(&rest, &skirt::CAPSULES, false)?,
         seconds: if quick { 0.5 } else { WALK_S },
         truth: ReferenceKind::Trajectory,

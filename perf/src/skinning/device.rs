@@ -11,7 +11,7 @@ use toile_base::skeleton::BONES;
 use toile_engine::lanes::Width;
 use toile_engine::skin::{Blend, SkinningJob};
 use toile_engine::workers::WorkerPool;
-use toile_fitting::scene::surface::Surface;
+use toile_fitting::scene::surface::SkinnedSurface;
 use toile_fitting::scene::yardstick;
 use toile_fitting::timing;
 use toile_gpu::graphics::{DeviceSkins, Graphics};
@@ -106,7 +106,7 @@ pub fn run(
 /// What is skinned in a row.
 struct SkinnedCase<'a> {
     job: &'a SkinningJob,
-    surface: &'a Surface,
+    surface: &'a SkinnedSurface,
     bodies: usize,
     options: &'a SkinningOptions,
 }

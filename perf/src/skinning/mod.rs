@@ -1,8 +1,4 @@
 //! The skinning benchmark: the engine's kernels, linear and dual, against the yardstick, each with its error; and a device's.
-//!
-//! Reads: the scene's shopper in the middle of a step. Writes: times, ratios to the yardstick, errors against f64, lanes.
-//! Budget: some seconds a measurement.
-//! Thread: the caller's, and the pool's where two are asked for.
 
 pub mod device;
 mod error;
@@ -22,7 +18,7 @@ use toile_engine::lanes::Width;
 use toile_engine::skin::{Blend, Padding, Posed, SkinningJob};
 use toile_engine::workers::WorkerPool;
 
-use toile_fitting::scene::surface::Surface;
+use toile_fitting::scene::surface::SkinnedSurface;
 use toile_fitting::scene::yardstick::{self, Yardstick};
 use toile_fitting::timing;
 
@@ -154,8 +150,8 @@ pub fn measure(options: &SkinningOptions) -> Result<Skinning, SkinningError> {
     })
 }
 
-fn subject(options: &SkinningOptions) -> Result<Surface, BodyError> {
-    let body = Surface::body()?;
+fn subject(options: &SkinningOptions) -> Result<SkinnedSurface, BodyError> {
+    let body = SkinnedSurface::body()?;
     let verts = options.verts.unwrap_or(body.positions.len()).max(1);
     Ok(match options.subject {
         SkinningSubject::Four => body.repeated(verts).with_four_influences(),
@@ -164,7 +160,7 @@ fn subject(options: &SkinningOptions) -> Result<Surface, BodyError> {
 }
 
 /// The surface as a job poses it.
-fn skinned(job: &SkinningJob, surface: &Surface, blend: Blend) -> Posed {
+fn skinned(job: &SkinningJob, surface: &SkinnedSurface, blend: Blend) -> Posed {
     let mut posed = job.posed();
     job.run(blend, &surface.palette, &mut posed);
     posed
@@ -173,7 +169,7 @@ fn skinned(job: &SkinningJob, surface: &Surface, blend: Blend) -> Posed {
 /// The skin that is timed, with its palettes and results.
 struct TimedSkinning<'a> {
     job: &'a SkinningJob,
-    surface: &'a Surface,
+    surface: &'a SkinnedSurface,
     pool: &'a mut WorkerPool,
     blend: Blend,
 }

@@ -5,7 +5,7 @@ use toile_base::mesh::SkinWeights;
 use toile_base::skeleton::{BONE_CHAIN, BONES};
 use toile_engine::skin::{Blend, Posed};
 
-use toile_fitting::scene::surface::Surface;
+use toile_fitting::scene::surface::SkinnedSurface;
 
 /// The largest errors of a posed surface; NaN where one of its numbers is NaN.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -17,13 +17,13 @@ pub struct SurfaceErrors {
 }
 
 /// Compares a posed surface with the oracle.
-pub fn compare(surface: &Surface, blend: Blend, posed: &Posed) -> SurfaceErrors {
+pub fn compare(surface: &SkinnedSurface, blend: Blend, posed: &Posed) -> SurfaceErrors {
     compare_each(surface, blend, posed.vertices(), |v| [posed.position(v), posed.normal(v)])
 }
 
 /// The same for the first `count` vertices, of which `posed` gives position (m) and unit normal.
 pub(super) fn compare_each(
-    surface: &Surface,
+    surface: &SkinnedSurface,
     blend: Blend,
     count: usize,
     posed: impl Fn(usize) -> [Vec3; 2],
@@ -102,7 +102,7 @@ mod tests {
 
     #[test]
     fn a_wrong_position_is_found() {
-        let surface = Surface::body().unwrap().repeated(100);
+        let surface = SkinnedSurface::body().unwrap().repeated(100);
         let mut moved = surface.clone();
         moved.positions[71].y += 0.003;
         let job = SkinningJob::new(&moved.positions, &moved.normals, &moved.weights).unwrap();

@@ -9,7 +9,7 @@ use toile_engine::body::palette;
 use toile_engine::skin::Blend;
 use toile_view::contact_sheet;
 use toile_view::image::{Image, Size};
-use toile_view::scene::{Camera, Colours, MANNEQUIN, Material, Scene, Surface};
+use toile_view::scene::{Colours, MANNEQUIN, Material, OrbitCamera, PictureScene, PictureSurface};
 use toile_view::trace::{self, TraceQuality};
 
 use super::error::SkinningError;
@@ -59,7 +59,7 @@ fn panel(body: &Body, weights: &[SkinWeights], degrees: f32, blend: Blend) -> Re
     let positions = posed(&body.mesh.positions, weights, &bones, blend)?;
     let mut normals = vec![Vec3::ZERO; positions.len()];
     vertex_normals(&positions, &body.mesh.triangles, &mut normals);
-    let surfaces = [Surface {
+    let surfaces = [PictureSurface {
         positions: &positions,
         normals: &normals,
         triangles: &body.mesh.triangles,
@@ -68,6 +68,6 @@ fn panel(body: &Body, weights: &[SkinWeights], degrees: f32, blend: Blend) -> Re
         look: None,
     }];
     let middle = skeleton.at(Joint::LeftElbow).lerp(skeleton.at(Joint::LeftWrist), 0.85);
-    let camera = Camera { target: middle, yaw: 0.5, height: 0.25, distance: 1.15, fov_y: 0.42 };
-    Ok(trace::render(&Scene { surfaces: &surfaces, floor: false }, &camera, PANEL, TraceQuality::Still))
+    let camera = OrbitCamera { target: middle, yaw: 0.5, height: 0.25, distance: 1.15, fov_y: 0.42 };
+    Ok(trace::render(&PictureScene { surfaces: &surfaces, floor: false }, &camera, PANEL, TraceQuality::Still))
 }

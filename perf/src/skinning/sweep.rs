@@ -89,7 +89,7 @@ pub fn sweep_timing() -> Result<SweepTiming, SkinningError> {
 }
 
 /// A place of a limb's curve: where, its change a metre of limb, its rotation.
-struct Place {
+struct LimbPlace {
     at: DVec3,
     tangent: DVec3,
     turn: DQuat,
@@ -99,7 +99,7 @@ fn wide(m: &Affine3A) -> (DMat3, DVec3) {
     (glam::Mat3::from(m.matrix3).as_dmat3(), Vec3::from(m.translation).as_dvec3())
 }
 
-fn place(limb: &SweptLimb, along: f64, palette: &[Affine3A; BONES]) -> Place {
+fn place(limb: &SweptLimb, along: f64, palette: &[Affine3A; BONES]) -> LimbPlace {
     let [(r1, s1), (r2, s2)] = [0, 1].map(|k| wide(&palette[limb.joints[k].index()]));
     let [a, b, c] = limb.rest.map(|p| p.as_dvec3());
     let (e1, e2) = ((b - a).normalize(), (c - b).normalize());
@@ -115,10 +115,10 @@ fn place(limb: &SweptLimb, along: f64, palette: &[Affine3A; BONES]) -> Place {
     let by = along - hinge;
     let (l1, l2) = (hinge, b.distance(c));
     if by <= -d {
-        return Place { at: r1 * (a + e1 * along) + s1, tangent: r1 * e1, turn: turn(0, along / l1) };
+        return LimbPlace { at: r1 * (a + e1 * along) + s1, tangent: r1 * e1, turn: turn(0, along / l1) };
     }
     if by >= d {
-        return Place { at: r2 * (b + e2 * by) + s2, tangent: r2 * e2, turn: turn(1, by / l2) };
+        return LimbPlace { at: r2 * (b + e2 * by) + s2, tangent: r2 * e2, turn: turn(1, by / l2) };
     }
     let (t1, t2, joint) = (r1 * e1, r2 * e2, r2 * b + s2);
     let middle = joint + (t2 - t1) * (0.25 * d * CUT);
@@ -134,7 +134,7 @@ fn place(limb: &SweptLimb, along: f64, palette: &[Affine3A; BONES]) -> Place {
     let two: [DVec3; 2] = std::array::from_fn(|i| one[i].lerp(one[i + 1], u));
     let (q1, q2) = (turn(0, 1.0 - d / l1), turn(1, d / l2));
     let q2 = if q1.dot(q2) < 0.0 { -q2 } else { q2 };
-    Place {
+    LimbPlace {
         at: two[0].lerp(two[1], u),
         tangent: (two[1] - two[0]) * (3.0 / d),
         turn: q1.slerp(q2, (by + d) / (2.0 * d)),

@@ -1,6 +1,6 @@
 //! What a run of the skirt is asked for, and the engine's settings for it: the one place that knows both.
 
-use toile_assets::scene::skirt::{self, Motion, Stretch};
+use toile_assets::scene::skirt::{self, SkirtMotion, Stretch};
 use toile_engine::cloth::{ContactRates, Quality, Settings, Wind};
 use toile_engine::lanes::Width;
 use toile_gpu::backend::Backend;
@@ -25,7 +25,7 @@ pub struct SkirtOptions {
     /// Vertices; a square.
     pub verts: usize,
     /// What the body does.
-    pub motion: Motion,
+    pub motion: SkirtMotion,
     /// How the skirt is meshed.
     pub mesh: SkirtMesh,
     /// How its threads stretch.
@@ -74,7 +74,7 @@ impl Default for SkirtOptions {
     fn default() -> Self {
         Self {
             verts: 4_096,
-            motion: Motion::Walk,
+            motion: SkirtMotion::Walk,
             mesh: SkirtMesh::Grid,
             stretch: Stretch::Inextensible,
             hysteresis: false,

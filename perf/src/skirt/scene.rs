@@ -9,8 +9,8 @@ use toile_bake::bake;
 use toile_base::garment::Garment;
 use toile_base::numeric::hash;
 use toile_base::skeleton::BONES;
-use toile_engine::cloth::layers::Layers;
-use toile_engine::cloth::program::METERED_STAGES;
+use toile_engine::cloth::contact::garments::GarmentContact;
+use toile_engine::cloth::step::program::METERED_STAGES;
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere};
 use toile_engine::workers::WorkerPool;
@@ -61,7 +61,7 @@ pub struct SkirtScene {
     pool: WorkerPool,
     stepper: ClothStepper,
     /// Those that keep each skirt from passing through itself, where that was asked for `[skirts]`.
-    layers: Box<[Layers]>,
+    layers: Box<[GarmentContact]>,
 }
 
 impl SkirtScene {
@@ -119,7 +119,7 @@ impl SkirtScene {
         let ready = |cloth: Cloth| if options.wind { cloth.in_wind(&garment) } else { cloth };
         let count = options.garments.clamp(1, MAX_GARMENTS);
         let cloths = (0..count).map(|_| ready(new())).collect();
-        let layers = Layers::new(std::slice::from_ref(&garment)).filter(|_| options.folds);
+        let layers = GarmentContact::new(std::slice::from_ref(&garment)).filter(|_| options.folds);
         let between = |a: Option<Heap>, b: Option<Heap>| u64::try_from(b?.live_bytes - a?.live_bytes).ok();
         let memory_bytes = between(before, baked).zip(between(baked, heap.read())).map(|(a, b)| [a, b]);
         let mut scene = Self {

@@ -4,7 +4,7 @@
 use std::fmt::Write;
 
 use serde::Serialize;
-use toile_assets::scene::skirt::{Motion, Stretch};
+use toile_assets::scene::skirt::{SkirtMotion, Stretch};
 use toile_bake::Shape;
 use toile_engine::lanes::Width;
 use toile_fitting::heap::HeapProbe;
@@ -55,7 +55,7 @@ pub fn run(base: &SkirtOptions, heap: &HeapProbe, progress: &mut dyn FnMut(&str)
     TargetTable { met: [met, maker.rows.len()], rows: maker.rows, runs: maker.runs, faults: maker.faults }
 }
 
-type Measured<T> = Result<T, String>;
+type RowResult<T> = Result<T, String>;
 
 struct TableRun<'a> {
     base: SkirtOptions,
@@ -68,7 +68,7 @@ struct TableRun<'a> {
 
 impl TableRun<'_> {
     /// A run of the case, or the one made before.
-    fn measured(&mut self, case: &str, change: impl FnOnce(&mut SkirtOptions)) -> Measured<SkirtReport> {
+    fn measured(&mut self, case: &str, change: impl FnOnce(&mut SkirtOptions)) -> RowResult<SkirtReport> {
         self.measured_with(case, change, |_| {})
     }
 
@@ -77,7 +77,7 @@ impl TableRun<'_> {
         case: &str,
         change: impl FnOnce(&mut SkirtOptions),
         reshape: impl FnOnce(&mut Shape),
-    ) -> Measured<SkirtReport> {
+    ) -> RowResult<SkirtReport> {
         if let Some(run) = self.runs.iter().find(|r| r.case == case) {
             return Ok(run.figures.clone());
         }
@@ -90,15 +90,15 @@ impl TableRun<'_> {
         Ok(report)
     }
 
-    fn walk(&mut self) -> Measured<SkirtReport> {
+    fn walk(&mut self) -> RowResult<SkirtReport> {
         self.measured("walk", |_| {})
     }
 
-    fn fast(&mut self) -> Measured<SkirtReport> {
-        self.measured("fast", |o| o.motion = Motion::Fast)
+    fn fast(&mut self) -> RowResult<SkirtReport> {
+        self.measured("fast", |o| o.motion = SkirtMotion::Fast)
     }
 
-    fn row<T>(&mut self, case: &str, peers: &str, of: &Measured<T>, claims: impl Fn(&T) -> Vec<Claim>) {
+    fn row<T>(&mut self, case: &str, peers: &str, of: &RowResult<T>, claims: impl Fn(&T) -> Vec<Claim>) {
         self.rows.push(TargetRow::new(case, peers, of.as_ref().map(claims)));
     }
 
@@ -129,7 +129,7 @@ impl TableRun<'_> {
                 o.verts = verts;
             })
         });
-        let sizes: Measured<Vec<SkirtReport>> = sizes.into_iter().collect();
+        let sizes: RowResult<Vec<SkirtReport>> = sizes.into_iter().collect();
         let peers = "NvCloth: strain grows 4 times";
         self.row("1,024 to 16,384 vertices, substeps chosen by the bake", peers, &sizes, |runs| {
             let strain = |r: &SkirtReport| Claim::percent(&format!("strain mean at {}", r.verts), r.strain.mean, 0.2);
@@ -154,7 +154,7 @@ impl TableRun<'_> {
     fn settled(&mut self) {
         for (name, stretch) in [("inextensible", Stretch::Inextensible), ("2,000 N/m", Stretch::Physical)] {
             let run =
-                self.measured(&format!("settled, {name}"), |o| (o.motion, o.stretch) = (Motion::Settled, stretch));
+                self.measured(&format!("settled, {name}"), |o| (o.motion, o.stretch) = (SkirtMotion::Settled, stretch));
             self.row(&format!("settled, {name}"), "NvCloth .14 / 4.3 %", &run, |r| {
                 let mean = Claim::percent("strain mean beyond the exact elastic", r.strain.beyond_elastic_mean, 0.05);
                 vec![mean, Claim::percent("max", r.strain.beyond_elastic_max, 0.5)]
@@ -162,10 +162,10 @@ impl TableRun<'_> {
         }
         let energies = [2, 4, 8, 16, 32].map(|substeps| {
             self.measured(&format!("settled, {substeps} substeps"), |o| {
-                (o.motion, o.substeps) = (Motion::Settled, Some(substeps));
+                (o.motion, o.substeps) = (SkirtMotion::Settled, Some(substeps));
             })
         });
-        let energies: Measured<Vec<SkirtReport>> = energies.into_iter().collect();
+        let energies: RowResult<Vec<SkirtReport>> = energies.into_iter().collect();
         self.row("settled: energy of motion at any substep count", "", &energies, |runs| {
             let claim =
                 |r: &SkirtReport| Claim::most(&format!("{} substeps", r.substeps), r.kinetic_energy_max_mj, 1.0, " mJ");
@@ -194,7 +194,7 @@ impl TableRun<'_> {
         let physical = |o: &mut SkirtOptions| o.stretch = Stretch::Physical;
         let run = self.measured("walk, 2,000 N/m", physical);
         self.row("walk with 2,000 N/m", "", &run, |r| timed(r, 0.7, [0.2, 2.0]));
-        let run = self.measured("fast, 2,000 N/m", |o| (o.motion, o.stretch) = (Motion::Fast, Stretch::Physical));
+        let run = self.measured("fast, 2,000 N/m", |o| (o.motion, o.stretch) = (SkirtMotion::Fast, Stretch::Physical));
         self.row("fast with 2,000 N/m", "", &run, |r| timed(r, 1.0, [1.0, 10.0]));
     }
 
@@ -242,7 +242,7 @@ impl TableRun<'_> {
     }
 }
 
-fn pair(a: Measured<SkirtReport>, b: Measured<SkirtReport>) -> Measured<[SkirtReport; 2]> {
+fn pair(a: RowResult<SkirtReport>, b: RowResult<SkirtReport>) -> RowResult<[SkirtReport; 2]> {
     Ok([a?, b?])
 }
 

@@ -10,7 +10,7 @@ use toile_engine::clock::Clock;
 use toile_engine::frame_loop::sensor_thread::{FrameSource, SourceFrame};
 
 use super::fault_kind::FaultKind;
-use super::scenario::{CAMERA_HZ, Fault, Scenario};
+use super::scenario::{CAMERA_HZ, Scenario, SoakFault};
 
 /// From a frame's stamp to its arrival (ns).
 const DELAY_NS: u64 = 20_000_000;
@@ -29,14 +29,14 @@ const BESIDE_M: Vec3 = Vec3::new(0.7, 0.0, -0.4);
 
 /// A simulated camera that plays the scenario's visits, with its faults.
 #[derive(Debug)]
-pub struct Camera<C> {
+pub struct ScenarioCamera<C> {
     scenario: Arc<Scenario>,
     clock: C,
     origin_ns: u64,
     next: u64,
 }
 
-impl<C: Clock> Camera<C> {
+impl<C: Clock> ScenarioCamera<C> {
     /// One whose first frame is of this time on the loop's clock (ns).
     pub fn new(scenario: Arc<Scenario>, clock: C, origin_ns: u64) -> Self {
         Self { scenario, clock, origin_ns, next: 0 }
@@ -58,7 +58,7 @@ impl<C: Clock> Camera<C> {
     }
 
     /// The same frame when something is wrong; none where none comes.
-    fn spoilt(&self, frame: u64, fault: &Fault) -> Option<Joints> {
+    fn spoilt(&self, frame: u64, fault: &SoakFault) -> Option<Joints> {
         let ns = stamp(frame);
         let mut rng = SplitMix64::new(self.scenario.plan.seed ^ !frame);
         Some(match fault.kind {
@@ -96,7 +96,7 @@ impl<C: Clock> Camera<C> {
 }
 
 /// Somebody of so many, the same for as long as the fault lasts.
-fn rng_place(fault: &Fault, count: usize) -> usize {
+fn rng_place(fault: &SoakFault, count: usize) -> usize {
     SplitMix64::new(fault.from_ns).next_u64() as usize % count
 }
 
@@ -105,7 +105,7 @@ fn stamp(frame: u64) -> u64 {
     frame / CAMERA_HZ * SECOND_NS + frame % CAMERA_HZ * SECOND_NS / CAMERA_HZ
 }
 
-impl<C: Clock + Send> FrameSource for Camera<C> {
+impl<C: Clock + Send> FrameSource for ScenarioCamera<C> {
     fn next_ns(&self) -> Option<u64> {
         Some(self.origin_ns + stamp(self.next) + DELAY_NS)
     }

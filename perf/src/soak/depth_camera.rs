@@ -1,9 +1,6 @@
 //! A depth camera that fails, with all that stands between it and the joints but the fit: the checks of its frames, its clock on the
 //! loop's, the pool of its images, the opening anew. On the simulated clock the camera is a loop beside the others; on the system's it
 //! has the two threads of a kiosk, the tracker's among them.
-//!
-//! Reads: the scenario's visits, as joints that the camera itself tracks. Writes: frames for the sensor thread, how the camera stands.
-//! Budget: none of a step's; what it allocates while it is opened anew is not the loop's.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicU8;
@@ -27,7 +24,7 @@ use toile_sensors::source::live::{
     Arrival, CameraError, CameraFrame, CameraInfo, CameraOpener, CameraState, LiveCamera, LiveDepth,
 };
 
-use super::camera::{Camera, NOISE_M};
+use super::camera::{NOISE_M, ScenarioCamera};
 use super::error::SoakError;
 use super::scenario::Scenario;
 
@@ -47,7 +44,7 @@ pub type CameraWatch = Box<dyn Fn() -> CameraState + Send>;
 #[derive(Debug)]
 pub enum SoakSource<C> {
     /// Joints of a sensor.
-    Joints(Camera<C>),
+    Joints(ScenarioCamera<C>),
     /// A depth camera on the simulated clock.
     Simulated(DepthSource<C>),
     /// A depth camera with the threads of a kiosk.

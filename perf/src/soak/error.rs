@@ -1,7 +1,7 @@
 //! Why a soak run cannot start.
 
 use thiserror::Error;
-use toile_engine::frame::FrameError;
+use toile_engine::world::WorldError;
 use toile_sensors::source::live::CameraError;
 
 use super::options::LEAST_APART_S;
@@ -27,7 +27,7 @@ pub enum SoakError {
     },
     /// A frame that cannot be set up.
     #[error(transparent)]
-    Frame(#[from] FrameError),
+    World(#[from] WorldError),
     /// A depth camera that cannot be opened.
     #[error(transparent)]
     Camera(#[from] CameraError),

@@ -17,7 +17,7 @@ use super::depth_camera::CameraWatch;
 use super::fault_kind::{FaultKind, RecoverySign};
 use super::memory::MemorySample;
 use super::observed_loops::{Observation, ObservedStep, RenderHealth, RunContext};
-use super::scenario::Fault;
+use super::scenario::SoakFault;
 
 /// A step follows the shopper whose joints are this far from theirs on average (m): twice what they are at worst while nothing is
 /// wrong, which the report says.
@@ -91,7 +91,7 @@ pub struct FaultOutcome {
 /// A fault that is not over.
 #[derive(Debug, Clone, Copy)]
 struct OpenFault {
-    fault: Fault,
+    fault: SoakFault,
     /// Whether the broken files were refused.
     refused: bool,
     noticed_ns: Option<u64>,
@@ -230,7 +230,7 @@ impl<C: JumpableClock> FaultMonitor<C> {
         if matches!(state, CameraState::Seeing | CameraState::Starting) {
             return;
         }
-        let blind = |fault: &Fault| fault.kind.camera_fault().is_some_and(CameraFault::is_blind);
+        let blind = |fault: &SoakFault| fault.kind.camera_fault().is_some_and(CameraFault::is_blind);
         for open in self.open.iter_mut().filter(|open| blind(&open.fault)) {
             open.noticed_ns.get_or_insert(now.saturating_sub(open.fault.from_ns));
         }

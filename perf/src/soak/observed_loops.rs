@@ -8,14 +8,14 @@ use std::sync::atomic::Ordering::Relaxed;
 
 use toile_base::filter::Filter;
 use toile_engine::clock::Clock;
-use toile_engine::frame::Snapshot;
 use toile_engine::frame_loop::ThreadLoop;
 use toile_engine::frame_loop::event::NoCounters;
-use toile_engine::frame_loop::physics_thread::{FrameScene, Scene};
+use toile_engine::frame_loop::physics_thread::{LoopScene, WorldScene};
 use toile_engine::frame_loop::queue::Sender;
 use toile_engine::frame_loop::render_thread::Renderer;
 use toile_engine::frame_loop::sensor_thread::{FrameSource, SensorThread};
 use toile_engine::meter::PERIOD_NS;
+use toile_engine::world::Snapshot;
 use toile_fitting::live::assembly::{PhysicsLoop, RenderLoop};
 use toile_fitting::live::running::Restart;
 
@@ -154,11 +154,11 @@ impl<S: FrameSource, F: Filter, C: Clock> ObservedLoop for SensorThread<S, F, C>
 #[derive(Debug)]
 pub struct ObservedPhysics<C> {
     /// The physics loop that is observed.
-    pub physics: PhysicsLoop<FrameScene, C, NoCounters>,
+    pub physics: PhysicsLoop<WorldScene, C, NoCounters>,
     scenario: Arc<Scenario>,
     origin_ns: u64,
     ticks: u64,
-    troubles: [u64; 2],
+    fault_counts: [u64; 2],
     crash_ns: Option<u64>,
     /// When garments are spoilt (ns), and how many times they were.
     spoils: Box<[u64]>,
@@ -167,10 +167,10 @@ pub struct ObservedPhysics<C> {
 
 impl<C: Clock> ObservedPhysics<C> {
     /// Observes this loop. Called at load: it allocates.
-    pub fn new(physics: PhysicsLoop<FrameScene, C, NoCounters>, scenario: Arc<Scenario>, origin_ns: u64) -> Self {
-        let troubles = physics.stepper.scene.troubles();
+    pub fn new(physics: PhysicsLoop<WorldScene, C, NoCounters>, scenario: Arc<Scenario>, origin_ns: u64) -> Self {
+        let fault_counts = physics.stepper.scene.fault_counts();
         let spoils = scenario.faults_of(FaultKind::ClothSpoilt).map(|f| origin_ns + f.from_ns).collect();
-        Self { troubles, physics, scenario, origin_ns, ticks: 0, crash_ns: None, spoils, spoilt: 0 }
+        Self { fault_counts, physics, scenario, origin_ns, ticks: 0, crash_ns: None, spoils, spoilt: 0 }
     }
 
     /// Panics at a time (ns), to see what a crash leaves.
@@ -189,16 +189,16 @@ impl<C: Clock> ObservedPhysics<C> {
 }
 
 /// Positions and bones of what a frame publishes that are not finite.
-fn nonfinite(scene: &FrameScene) -> u64 {
-    let pose = scene.frame.pose();
+fn nonfinite(scene: &WorldScene) -> u64 {
+    let pose = scene.world.pose();
     let bones = pose.local.iter().filter(|q| !q.is_finite()).count() + usize::from(!pose.root.is_finite());
-    let cloths = scene.frame.cloths().iter();
+    let cloths = scene.world.cloths().iter();
     (bones + cloths.map(|c| c.positions.iter().filter(|p| !p.is_finite()).count()).sum::<usize>()) as u64
 }
 
 /// Speed of the fastest particle (m/s); NaN is faster than all.
-fn fastest(scene: &FrameScene) -> f32 {
-    let cloths = scene.frame.cloths().iter();
+fn fastest(scene: &WorldScene) -> f32 {
+    let cloths = scene.world.cloths().iter();
     let squares = cloths.flat_map(|cloth| (0..cloth.positions.len()).map(|i| cloth.velocity(i).length_squared()));
     squares.fold(0.0f32, |most, square| if square <= most { most } else { square }).sqrt()
 }
@@ -222,16 +222,16 @@ impl<C: Clock> ObservedLoop for ObservedPhysics<C> {
         }
         self.ticks = self.physics.ticks();
         let (taken, stepper) = (self.physics.taken(), &self.physics.stepper);
-        let troubles = stepper.scene.troubles();
+        let fault_counts = stepper.scene.fault_counts();
         // Those of a scene that was just handed over are less.
-        let before = std::mem::replace(&mut self.troubles, troubles);
+        let before = std::mem::replace(&mut self.fault_counts, fault_counts);
         Some(Observation::Step(ObservedStep {
             scheduled_ns: taken.scheduled_ns,
             ended_ns: taken.ended_ns,
             seen_ns: stepper.seen_ns(),
             off_m: self.off(taken.scheduled_ns),
             nonfinite: nonfinite(stepper.scene.scene()),
-            rolled_back: troubles[0] > before[0] || troubles[1] > before[1],
+            rolled_back: fault_counts[0] > before[0] || fault_counts[1] > before[1],
             fastest_m_s: fastest(stepper.scene.scene()),
         }))
     }

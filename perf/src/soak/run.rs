@@ -10,11 +10,11 @@ use toile_engine::clock::{Clock, SimClock};
 use toile_engine::frame_loop::ThreadLoop;
 use toile_engine::frame_loop::event::NoCounters;
 use toile_engine::frame_loop::flight_recorder::FlightRecorder;
-use toile_engine::frame_loop::physics_thread::FrameScene;
+use toile_engine::frame_loop::physics_thread::WorldScene;
 use toile_engine::frame_loop::queue::{Capacity, bounded};
 use toile_engine::frame_loop::recording::{ENTRIES, ENTRIES_NAME, Entry};
 use toile_engine::frame_loop::simulate::{MAX_SIMULATED, simulate};
-use toile_engine::frame_loop::thread_roles::Placement;
+use toile_engine::frame_loop::thread_roles::RolePlacement;
 use toile_engine::frame_loop::threads::{self, Stop};
 use toile_engine::meter::PERIOD_NS;
 use toile_fitting::heap::HeapProbe;
@@ -22,7 +22,7 @@ use toile_fitting::live::assembly::{Assembly, LoopOptions, LoopParts, LoopQueues
 use toile_fitting::live::running::{EndedLoops, Loops, RunningLoop};
 use toile_fitting::live::scene_changer::DressedScene;
 
-use super::camera::Camera;
+use super::camera::ScenarioCamera;
 use super::depth_camera::{self, CameraLoop, SoakSource};
 use super::error::SoakError;
 use super::fault_kind::FaultKind;
@@ -93,7 +93,7 @@ pub struct SoakRun {
     /// How full every queue was.
     pub capacities: Vec<Capacity>,
     /// Where the threads ran.
-    pub threads: Vec<Placement>,
+    pub threads: Vec<RolePlacement>,
     /// What deserves attention.
     pub warnings: Vec<String>,
     /// Time that it took (s).
@@ -119,7 +119,7 @@ struct SoakLoops<C: Clock> {
     monitor: FaultMonitor<C>,
     queues: LoopQueues,
     flight_recorder: Arc<FlightRecorder>,
-    worker: Option<Placement>,
+    worker: Option<RolePlacement>,
 }
 
 /// Runs it.
@@ -150,7 +150,7 @@ impl<C: JumpableClock + Clone + Send + Sync + 'static> SoakLoops<C> {
         let (frame, reader) = scene_maker.make(0)?;
         let (frame, worker) = if options.workers > 1 {
             let (crew, worker) =
-                threads::worker_pool(options.workers).map_err(toile_engine::frame::FrameError::from)?;
+                threads::worker_pool(options.workers).map_err(toile_engine::world::WorldError::from)?;
             (frame.with_workers(crew), worker)
         } else {
             (frame, None)
@@ -159,11 +159,11 @@ impl<C: JumpableClock + Clone + Send + Sync + 'static> SoakLoops<C> {
         let origin_ns = clock.now_ns() + 4 * PERIOD_NS;
         let context = RunContext { scenario: scenario.clone(), clock: clock.clone(), origin_ns, count: tools.count };
         let (recording, entries) = bounded(ENTRIES_NAME, ENTRIES);
-        let scene = FrameScene::new(frame);
+        let scene = WorldScene::new(frame);
         let first = DressedScene { scene, reader, outfit: (), still: None, note: None, number: None };
         let (source, camera, watch) = match (options.plan.camera, options.real_time) {
             (SoakCamera::Joints, _) => {
-                (SoakSource::Joints(Camera::new(scenario.clone(), clock.clone(), origin_ns)), None, None)
+                (SoakSource::Joints(ScenarioCamera::new(scenario.clone(), clock.clone(), origin_ns)), None, None)
             }
             (SoakCamera::Depth, false) => {
                 let (camera, source, watch) = depth_camera::simulated(&scenario, clock, origin_ns)?;
@@ -207,7 +207,7 @@ impl<C: JumpableClock + Clone + Send + Sync + 'static> SoakLoops<C> {
     }
 
     /// What they came to, once they have ended.
-    fn ended(mut self, threads: Vec<Placement>) -> SoakRun {
+    fn ended(mut self, threads: Vec<RolePlacement>) -> SoakRun {
         self.recorder.inner.look();
         self.monitor.close();
         let count = self.monitor.context().count;
@@ -332,7 +332,7 @@ fn real(loops: SoakLoops<JumpClock>, options: &SoakOptions, tools: &SoakTools<'_
     let mut threads = RunningLoop::start(Loops { sensor, physics, render }, clock.clone())?;
     let recorder = beside("record", recorder, clock.clone(), stop.clone())?;
     let scenes = beside("scenes", scenes, clock.clone(), stop.clone())?;
-    let placed: Vec<Placement> = threads.placements().iter().cloned().chain(worker).collect();
+    let placed: Vec<RolePlacement> = threads.placements().iter().cloned().chain(worker).collect();
     let end = monitor.context().origin_ns + options.plan.seconds * SECOND_NS;
     let mut reported = 0;
     while clock.now_ns() < end {

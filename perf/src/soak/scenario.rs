@@ -30,7 +30,7 @@ pub const CAMERA_HZ: u64 = 30;
 
 /// One fault, in time since the run's begin (ns).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Fault {
+pub struct SoakFault {
     /// What kind of fault it is.
     pub kind: FaultKind,
     /// When it begins (ns).
@@ -50,7 +50,7 @@ pub struct WornSize {
 
 /// A shopper before the mirror, in time since the run's begin (ns).
 #[derive(Debug, Clone, PartialEq)]
-pub struct Visit {
+pub struct SoakVisit {
     /// When the shopper comes (ns).
     pub from_ns: u64,
     /// When the shopper goes (ns).
@@ -66,7 +66,7 @@ pub struct Visit {
     place: Vec3,
 }
 
-impl Visit {
+impl SoakVisit {
     /// Where their joints are at a time, as they are in truth (m).
     pub fn joints(&self, ns: u64) -> [Vec3; JOINTS] {
         // Forth and back, as nobody jumps.
@@ -101,11 +101,11 @@ pub struct Scenario {
     /// What was asked for.
     pub plan: SoakPlan,
     /// The shoppers, in their order; the first is there from the begin.
-    pub visits: Vec<Visit>,
+    pub visits: Vec<SoakVisit>,
     /// What they put on, in its order.
     pub requests: Vec<SceneRequest>,
     /// What goes wrong, in its order.
-    pub faults: Vec<Fault>,
+    pub faults: Vec<SoakFault>,
 }
 
 impl Scenario {
@@ -140,19 +140,19 @@ impl Scenario {
     }
 
     /// Who stands before the camera at a time, if somebody does.
-    pub fn visit_at(&self, ns: u64) -> Option<&Visit> {
+    pub fn visit_at(&self, ns: u64) -> Option<&SoakVisit> {
         let after = self.visits.partition_point(|v| v.from_ns <= ns);
         self.visits[..after].last().filter(|v| ns < v.until_ns)
     }
 
     /// The last fault that began before a time, if it goes on.
-    pub fn fault_at(&self, ns: u64) -> Option<&Fault> {
+    pub fn fault_at(&self, ns: u64) -> Option<&SoakFault> {
         let after = self.faults.partition_point(|f| f.from_ns <= ns);
         self.faults[..after].last().filter(|f| ns < f.until_ns)
     }
 
     /// The faults of a kind, in their order.
-    pub fn faults_of(&self, kind: FaultKind) -> impl Iterator<Item = &Fault> {
+    pub fn faults_of(&self, kind: FaultKind) -> impl Iterator<Item = &SoakFault> {
         self.faults.iter().filter(move |f| f.kind == kind)
     }
 }
@@ -183,7 +183,7 @@ impl Wardrobe {
     }
 
     /// A shopper near to the size of an outfit.
-    fn visit(&self, outfit: usize, from_ns: u64, rng: &mut SplitMix64) -> Visit {
+    fn visit(&self, outfit: usize, from_ns: u64, rng: &mut SplitMix64) -> SoakVisit {
         let (_, near, population) = &self.outfits[outfit];
         let sex = match population {
             Population::Men => Sex::Male,
@@ -203,7 +203,7 @@ impl Wardrobe {
         let until_ns = from_ns + ns(rng.between(VISIT_S[0], VISIT_S[1]));
         let pace = f64::from(rng.between(0.6, 1.1));
         let place = Vec3::new(rng.between(-0.4, 0.4), 0.0, rng.between(-0.3, 0.3));
-        Visit { from_ns, until_ns, sex, measures: [own, *near], skeleton, pace, place }
+        SoakVisit { from_ns, until_ns, sex, measures: [own, *near], skeleton, pace, place }
     }
 
     /// Something to change into: of the sizes of a garment the nearest, or one beside it.
@@ -225,7 +225,7 @@ impl Wardrobe {
 }
 
 /// The faults: spread over the run, each kind as often as the others.
-fn faults(plan: &SoakPlan) -> Result<Vec<Fault>, SoakError> {
+fn faults(plan: &SoakPlan) -> Result<Vec<SoakFault>, SoakError> {
     let SoakPlan { seed, seconds, faults, .. } = *plan;
     if faults as u64 * LEAST_APART_S > seconds {
         return Err(SoakError::Crowded { faults, seconds });
@@ -240,7 +240,7 @@ fn faults(plan: &SoakPlan) -> Result<Vec<Fault>, SoakError> {
         let kind = kinds[order.pop().unwrap_or(0)];
         let begin = (i as f64 + 0.15 + 0.1 * f64::from(rng.uniform())) * apart;
         let from_ns = (begin * SECOND_NS as f64) as u64;
-        Fault { kind, from_ns, until_ns: from_ns + ns(kind.length(&mut rng)) }
+        SoakFault { kind, from_ns, until_ns: from_ns + ns(kind.length(&mut rng)) }
     };
     Ok((0..faults).map(place).collect())
 }

@@ -3,7 +3,7 @@
 use toile_assets::wardrobe;
 use toile_engine::clock::Clock;
 use toile_engine::frame_loop::ThreadLoop;
-use toile_engine::frame_loop::physics_thread::FrameScene;
+use toile_engine::frame_loop::physics_thread::WorldScene;
 use toile_fitting::live::live_scene::SceneHandover;
 use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
 
@@ -21,11 +21,11 @@ const LOOK_NS: u64 = 20_000_000;
 pub struct SceneLoop<C> {
     context: RunContext<C>,
     scene_maker: SceneMaker,
-    changer: SceneChanger<FrameScene, ()>,
+    changer: SceneChanger<WorldScene, ()>,
     /// The next request of the scenario.
     next: usize,
     /// A scene that is made, when it may be handed over (ns), and whether another shopper comes with it.
-    made: Option<(u64, DressedScene<FrameScene, ()>, bool)>,
+    made: Option<(u64, DressedScene<WorldScene, ()>, bool)>,
     /// When broken garments are tried (ns), and how often that was done.
     broken: Box<[u64]>,
     tried: usize,
@@ -40,7 +40,7 @@ pub struct SceneLoop<C> {
 
 impl<C: Clock> SceneLoop<C> {
     /// At load; the first scene is shown already.
-    pub fn new(context: RunContext<C>, scene_maker: SceneMaker, handover: SceneHandover<FrameScene, ()>) -> Self {
+    pub fn new(context: RunContext<C>, scene_maker: SceneMaker, handover: SceneHandover<WorldScene, ()>) -> Self {
         let broken =
             context.scenario.faults_of(FaultKind::BrokenGarment).map(|f| context.origin_ns + f.from_ns).collect();
         Self {
@@ -73,7 +73,7 @@ impl<C: Clock> SceneLoop<C> {
         self.next += 1;
         match self.scene_maker.make(number) {
             Ok((frame, reader)) => {
-                let scene = FrameScene::new(frame);
+                let scene = WorldScene::new(frame);
                 let scene = DressedScene { scene, reader, outfit: (), still: None, note: None, number: Some(number) };
                 self.made = Some((at + MAKING_NS, scene, afresh));
             }

@@ -8,8 +8,8 @@ use toile_base::frame::Joints;
 use toile_base::garment::Garment;
 use toile_base::rig::Rig;
 use toile_engine::cloth::{Quality, Settings};
-use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::triple_buffer::Reader;
+use toile_engine::world::{Snapshot, World};
 use toile_fitting::dress::try_on::DressedBody;
 
 use super::error::SoakError;
@@ -43,7 +43,7 @@ impl SceneMaker {
     ///
     /// # Errors
     /// A number that the scenario does not have, a body or a garment that cannot be made.
-    pub fn make(&mut self, number: u64) -> Result<(Frame, Reader<Snapshot>), SoakError> {
+    pub fn make(&mut self, number: u64) -> Result<(World, Reader<Snapshot>), SoakError> {
         let wrong = |reason: String| SoakError::Scene { number, reason };
         let scenario = self.scenario.clone();
         let request = scenario.requests.get(number as usize).ok_or_else(|| wrong("the scenario has none".into()))?;
@@ -53,10 +53,10 @@ impl SceneMaker {
         let quality = if light { Quality::Draft } else { Quality::default() };
         let settings = Settings { quality, workers: 1, ..Settings::default() };
         let shown = if light { thinned(body) } else { body.clone() };
-        let (mut frame, reader) = DressedBody::new(rig.clone(), shown, vec![garment]).build(settings)?;
+        let (mut world, reader) = DressedBody::new(rig.clone(), shown, vec![garment]).build(settings)?;
         let at = scenario.visits[request.visit].joints(request.at_ns);
-        frame.dress(&Joints::seen(request.at_ns, at));
-        Ok((frame, reader))
+        world.dress(&Joints::seen(request.at_ns, at));
+        Ok((world, reader))
     }
 
     fn shopper(&mut self, visit: usize) -> Result<(&Body, &Rig), String> {

@@ -8,7 +8,7 @@ use toile_base::garment::Garment;
 use toile_engine::cloth::{Cloth, Settings};
 use toile_engine::colliders::Colliders;
 
-use crate::oracle::{Ball, Oracle, OracleError, OracleOptions, Plane, Problem, Solids, State, Step, adapter};
+use crate::oracle::{Ball, Oracle, OracleError, OracleOptions, OracleStep, Plane, Problem, Solids, State, adapter};
 
 /// What counts as solved: a force of 1e-7 N moves the lightest particle of a piece by a nanometre in a substep.
 const OPTIONS: OracleOptions = OracleOptions {
@@ -70,7 +70,7 @@ impl ExactStepper {
             let [begin, end] = [substep, substep + 1].map(|s| f64::from(s) / f64::from(substeps));
             let pins = from.iter().zip(&to).map(|(a, b)| a.lerp(*b, end)).collect();
             let solids = [begin, end].map(|at| between(&around, at));
-            self.substep(&Step { dt, kept, pins, solids }, f64::from(settings.max_speed));
+            self.substep(&OracleStep { dt, kept, pins, solids }, f64::from(settings.max_speed));
         }
         for (i, w) in garment.inverse_mass.iter().enumerate() {
             if *w > 0.0 {
@@ -81,7 +81,7 @@ impl ExactStepper {
     }
 
     /// One substep, within the speed limit, as the engine keeps it.
-    fn substep(&mut self, step: &Step, max_speed: f64) {
+    fn substep(&mut self, step: &OracleStep, max_speed: f64) {
         let solved = match self.oracle.step(&self.state, step) {
             Ok(solved) => solved.state.x,
             Err(OracleError::NotConverged(near)) => {

@@ -6,7 +6,7 @@ use toile_bake::bake;
 use toile_bake::check::MeshError;
 use toile_base::garment::{Garment, Part};
 use toile_base::skeleton::BONES;
-use toile_engine::cloth::layers::Layers;
+use toile_engine::cloth::contact::garments::GarmentContact;
 use toile_engine::cloth::{Cloth, ContactRates, Settings, Step};
 use toile_engine::colliders::Colliders;
 use toile_engine::workers::WorkerPool;
@@ -21,7 +21,7 @@ use super::trial::TrialFigures;
 pub struct LayerTrial {
     garments: Vec<Garment>,
     cloths: Vec<Cloth>,
-    layers: Layers,
+    layers: GarmentContact,
     pool: WorkerPool,
     floor: Colliders,
     settings: Settings,
@@ -59,7 +59,7 @@ impl LayerTrial {
         let faces: Vec<&[[u32; 3]]> = garments.iter().map(|g| &*g.triangles).collect();
         Ok(Self {
             crossed: CrossedEdges::new(&faces),
-            layers: Layers::new(&garments).expect("sheets have faces"),
+            layers: GarmentContact::new(&garments).expect("sheets have faces"),
             pool: WorkerPool::new(1).expect("one worker is the caller's thread"),
             settings: Settings { contact: ContactRates { layers: 1, folds: 1, ..settings.contact }, ..*settings },
             seen: TrialFigures::default(),

@@ -3,8 +3,8 @@
 use glam::{Affine3A, Vec3, Vec3A, Vec4};
 use toile_base::garment::Garment;
 use toile_base::skeleton::BONES;
-use toile_engine::cloth::guard::GuardEvents;
-use toile_engine::cloth::layers::Layers;
+use toile_engine::cloth::contact::garments::GarmentContact;
+use toile_engine::cloth::step::guard::GuardEvents;
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere};
 use toile_engine::workers::WorkerPool;
@@ -48,7 +48,7 @@ pub struct TrialRecovery {
 /// What keeps a cloth out of itself, which the processor steps.
 #[derive(Debug)]
 struct Folds {
-    layers: Layers,
+    layers: GarmentContact,
     pool: WorkerPool,
     crossed: CrossedEdges,
 }
@@ -129,7 +129,7 @@ impl<'a> Trial<'a> {
 
     /// The same cloth, kept out of itself, with its crossings counted.
     pub fn with_folds(mut self) -> Self {
-        let layers = Layers::new(std::slice::from_ref(self.garment));
+        let layers = GarmentContact::new(std::slice::from_ref(self.garment));
         let pool = WorkerPool::new(1).expect("one worker is the caller's thread");
         let crossed = CrossedEdges::new(&[&self.garment.triangles]);
         self.settings.contact.folds = 1;

@@ -11,7 +11,7 @@ use super::error::TurnsError;
 
 /// What one run said.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Reading {
+pub struct TurnReading {
     /// Time of a step.
     pub step_us: StepMedian,
     /// Strain of the same steps.
@@ -44,7 +44,7 @@ pub struct StrainParts {
     pub max: f64,
 }
 
-impl Reading {
+impl TurnReading {
     /// One run of a case by a program, or what it said where it would not.
     ///
     /// # Errors
@@ -75,11 +75,11 @@ mod tests {
         let json =
             br#"{"kind":"bench-skirt","step_us":{"p50":2.5,"p99":3.0},"strain":{"mean":0.001,"p99":0.02,"max":0.3,
             "edges":7},"stages_us":{"bend":1.5},"state_hash":"00ff","memory_bytes":12}"#;
-        let reading = Reading::of(true, json, b"").unwrap();
+        let reading = TurnReading::of(true, json, b"").unwrap();
         assert_eq!((reading.step_us.p50, reading.strain.p99, reading.memory_bytes), (2.5, 0.02, Some(12)));
         assert_eq!(reading.stages_us["bend"], 1.5);
-        let refusal = Reading::of(false, b"", b"error: unexpected argument '--garment' found\nmore");
+        let refusal = TurnReading::of(false, b"", b"error: unexpected argument '--garment' found\nmore");
         assert_eq!(refusal.unwrap_err(), "error: unexpected argument '--garment' found");
-        assert!(Reading::of(true, b"{}", b"").is_err());
+        assert!(TurnReading::of(true, b"{}", b"").is_err());
     }
 }

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use toile_base::numeric::statistics::median;
-use toile_engine::cloth::program::METERED_STAGES;
+use toile_engine::cloth::step::program::METERED_STAGES;
 
 use super::case::TurnCase;
 use super::error::TurnsError;
-use super::reading::Reading;
+use super::reading::TurnReading;
 
 /// What a case showed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -17,9 +17,9 @@ pub struct TurnRow {
     /// Its name.
     pub case: String,
     /// By this program: the last turn's report, with the median time of all turns.
-    pub own: Option<Reading>,
+    pub own: Option<TurnReading>,
     /// By the other one.
-    pub other: Option<Reading>,
+    pub other: Option<TurnReading>,
     /// Own time over the other's, over the turns.
     pub ratio: Option<TurnRatio>,
     /// Why one of them has no figures.
@@ -38,7 +38,7 @@ pub struct TurnRatio {
 }
 
 impl TurnRatio {
-    fn of(own: &[Reading], other: &[Reading]) -> Option<Self> {
+    fn of(own: &[TurnReading], other: &[TurnReading]) -> Option<Self> {
         let mut ratios: Vec<f64> = own.iter().zip(other).map(|(a, b)| a.step_us.p50 / b.step_us.p50).collect();
         let (min, max) = (ratios.iter().copied().fold(f64::MAX, f64::min), ratios.iter().copied().fold(0.0, f64::max));
         Some(Self { p50: median(&mut ratios)?, min, max })
@@ -77,7 +77,7 @@ pub fn run(
         for _ in 0..turns.max(1) {
             for (program, readings) in [(Some(&*own), &mut mine), (against, &mut theirs)] {
                 let Some(program) = program.filter(|_| refused.is_none()) else { continue };
-                match Reading::take(program, case, steps)? {
+                match TurnReading::take(program, case, steps)? {
                     Ok(reading) => readings.push(reading),
                     Err(words) => refused = Some(format!("{}: {words}", program.display())),
                 }
@@ -94,9 +94,9 @@ pub fn run(
 pub struct TurnReport {
     /// What this program showed.
     #[serde(flatten)]
-    pub own: Reading,
+    pub own: TurnReading,
     /// What the other one did, where one was given.
-    pub other: Option<Reading>,
+    pub other: Option<TurnReading>,
     /// Own time over the other's.
     pub ratio: Option<TurnRatio>,
     /// Turns of each.
@@ -121,7 +121,7 @@ impl TurnTable {
 }
 
 /// The last reading with the median of all times.
-fn whole(readings: Vec<Reading>) -> Option<Reading> {
+fn whole(readings: Vec<TurnReading>) -> Option<TurnReading> {
     let mut times: Vec<f64> = readings.iter().map(|r| r.step_us.p50).collect();
     let mut last = readings.into_iter().next_back()?;
     last.step_us.p50 = median(&mut times)?;
@@ -156,7 +156,7 @@ impl TurnTable {
     }
 }
 
-fn line(text: &mut String, case: &str, reading: &Reading, ratio: Option<TurnRatio>) {
+fn line(text: &mut String, case: &str, reading: &TurnReading, ratio: Option<TurnRatio>) {
     let ratio = ratio.map_or(String::new(), |r| format!("{:.3} ({:.3} to {:.3})", r.p50, r.min, r.max));
     let _ = write!(text, "| {case} | {:.1} | {ratio} |", reading.step_us.p50);
     for stage in METERED_STAGES {
@@ -174,7 +174,7 @@ mod tests {
 
     #[test]
     fn a_row_has_both_programs_and_how_they_stand_to_each_other() {
-        let mut own = Reading::default();
+        let mut own = TurnReading::default();
         own.step_us.p50 = 150.0;
         own.stages_us.insert("bend".into(), 20.0);
         let mut other = own.clone();
@@ -197,7 +197,7 @@ mod tests {
     #[test]
     fn the_median_of_the_turns_counts() {
         let at = |us: f64| {
-            let mut reading = Reading::default();
+            let mut reading = TurnReading::default();
             reading.step_us.p50 = us;
             reading
         };

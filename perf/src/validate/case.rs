@@ -3,7 +3,7 @@
 use serde::Serialize;
 use toile_gpu::backend::{Backend, Backends};
 
-use super::specimen::{Placement, Specimen, SpecimenError};
+use super::specimen::{ParticlePlaces, Specimen, SpecimenError};
 use super::{CaseSetup, Level};
 
 /// What one run gave.
@@ -40,7 +40,7 @@ impl CaseOutcome {
     }
 
     /// What is read off a specimen at rest, and off the oracle's equilibrium too in the converged setting.
-    pub fn at_rest(specimen: &Specimen, setup: CaseSetup<'_>, read: impl Fn(&Placement<'_>) -> f64) -> Self {
+    pub fn at_rest(specimen: &Specimen, setup: CaseSetup<'_>, read: impl Fn(&ParticlePlaces<'_>) -> f64) -> Self {
         let solved = if setup.level == Level::Converged { specimen.solved().map(|seen| read(&seen)) } else { None };
         Self { solved, ..Self::of(specimen, read(&specimen.seen())) }
     }

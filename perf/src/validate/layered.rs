@@ -8,7 +8,7 @@ use toile_bake::bake;
 use toile_base::garment::Garment;
 use toile_base::numeric::statistics::median_of;
 use toile_base::skeleton::BONES;
-use toile_engine::cloth::layers::Layers;
+use toile_engine::cloth::contact::garments::GarmentContact;
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::Colliders;
 use toile_engine::workers::WorkerPool;
@@ -16,7 +16,7 @@ use toile_engine::workers::WorkerPool;
 use super::Level;
 use super::case::CaseOutcome;
 use super::mesh::CaseFabric;
-use super::specimen::{Placement, SpecimenError, Surroundings, moving_mass, particle_of};
+use super::specimen::{ParticlePlaces, SpecimenError, Surroundings, moving_mass, particle_of};
 
 /// Pieces of cloth over one another, from the lowest upwards. Only the processor steps them: the graphics device has no layers.
 pub struct LayeredSpecimen {
@@ -27,7 +27,7 @@ pub struct LayeredSpecimen {
     pub settings: Settings,
     /// The bones at the end of the coming step; what is held follows bone 0.
     pub palette: [Affine3A; BONES],
-    layers: Layers,
+    layers: GarmentContact,
     colliders: Colliders,
     pool: WorkerPool,
     particle: Vec<Vec<usize>>,
@@ -50,7 +50,8 @@ impl LayeredSpecimen {
         let most = garments.iter().max_by_key(|g| g.substeps).ok_or(SpecimenError::Apart)?;
         let mut settings = level.settings(most);
         (settings.contact.layers, settings.contact.folds) = (1, 0);
-        let layers = Layers::new(&garments).filter(|layers| layers.asked(&settings)).ok_or(SpecimenError::Apart)?;
+        let layers =
+            GarmentContact::new(&garments).filter(|layers| layers.asked(&settings)).ok_or(SpecimenError::Apart)?;
         Ok(Self {
             cloths: garments.iter().map(|g| Cloth::new(g, &colliders)).collect(),
             particle: garments.iter().map(particle_of).collect(),
@@ -87,8 +88,8 @@ impl LayeredSpecimen {
     }
 
     /// Places of a piece's particles now.
-    pub fn seen(&self, piece: usize) -> Placement<'_> {
-        Placement::of(&self.garments[piece], &self.particle[piece], &self.cloths[piece])
+    pub fn seen(&self, piece: usize) -> ParticlePlaces<'_> {
+        ParticlePlaces::of(&self.garments[piece], &self.particle[piece], &self.cloths[piece])
     }
 
     /// Mean place of some vertices of a piece (m).

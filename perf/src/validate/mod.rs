@@ -1,8 +1,4 @@
 //! Validation: the engine in its production settings against exact solutions.
-//!
-//! Reads: nothing; every case makes its own cloth. Writes: rows of expected, got, error and the time of a step.
-//! Budget: the whole set within five minutes on two cores; never inside the frame.
-//! Thread: as many as are asked for; cases are independent and rows come out in a fixed order.
 
 pub mod case;
 pub mod cases;

@@ -166,18 +166,18 @@ impl Specimen {
     }
 
     /// Positions of particles and solids now.
-    pub fn seen(&self) -> Placement<'_> {
-        Placement::of(&self.garment, &self.particle, &self.cloth)
+    pub fn seen(&self) -> ParticlePlaces<'_> {
+        ParticlePlaces::of(&self.garment, &self.particle, &self.cloth)
     }
 
     /// Where everything would be at rest: the oracle's equilibrium of the very same garment, searched for from where the
     /// engine has brought it. Nothing where none is found.
-    pub fn solved(&self) -> Option<Placement<'_>> {
+    pub fn solved(&self) -> Option<ParticlePlaces<'_>> {
         let mut problem = Problem::of(&self.garment);
         problem.gravity = self.settings.gravity.as_dvec3();
         let start: Vec<DVec3> = self.cloth.positions.iter().map(|p| p.as_dvec3()).collect();
         let solved = Oracle::new(problem).ok()?.equilibrium(&start, &Solids::default()).ok()?;
-        Some(Placement { garment: &self.garment, particle: &self.particle, at: solved.state.x })
+        Some(ParticlePlaces { garment: &self.garment, particle: &self.particle, at: solved.state.x })
     }
 
     /// Where a vertex of the shape is (m).
@@ -247,14 +247,14 @@ pub fn particle_of(garment: &Garment) -> Vec<usize> {
 }
 
 /// Where the particles of a garment are, read in the numbers of its shape.
-pub struct Placement<'a> {
+pub struct ParticlePlaces<'a> {
     garment: &'a Garment,
     particle: &'a [usize],
     /// Positions (m) `[particles]`.
     at: Vec<DVec3>,
 }
 
-impl<'a> Placement<'a> {
+impl<'a> ParticlePlaces<'a> {
     /// Of a garment whose vertices are these particles, as its state has them.
     pub fn of(garment: &'a Garment, particle: &'a [usize], cloth: &Cloth) -> Self {
         Self { garment, particle, at: cloth.positions.iter().map(|p| p.as_dvec3()).collect() }

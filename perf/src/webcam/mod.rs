@@ -1,9 +1,4 @@
 //! Joints by a webcam against the truth, and against those of the body fitted to depth: the same people, seen from the same place.
-//!
-//! Reads: people of several sizes who move, drawn by the ray tracer; the pose network, where it is fetched. Writes: angles between each limb
-//! and its truth, the time of a picture, the stature by the floor.
-//! Budget: a minute a person, most of it drawing.
-//! Thread: the caller's, which lends all cores to the ray tracer.
 
 pub mod scene;
 

@@ -9,13 +9,13 @@ use toile_base::frame::{DepthFrame, Intrinsics, Joints};
 use toile_base::numeric::random::SplitMix64;
 use toile_base::skeleton::BONES;
 use toile_engine::body::{JointFrames, palette};
-use toile_engine::frame::BLEND;
 use toile_engine::skin::SkinningJob;
+use toile_engine::world::BLEND;
 use toile_pose::scale::WebcamMount;
 use toile_sensors::source::live::ColourImage;
 use toile_sensors::source::synthetic::{KinectNoise, SyntheticCamera, room};
 use toile_view::image::Size;
-use toile_view::scene::{Camera, Colours, MANNEQUIN, Material, Scene, Surface};
+use toile_view::scene::{Colours, MANNEQUIN, Material, OrbitCamera, PictureScene, PictureSurface};
 use toile_view::trace::{TraceQuality, TracedScene};
 
 use toile_assets::people::SizedPerson;
@@ -91,7 +91,7 @@ impl Performer {
         let intrinsics = camera.intrinsics;
         let view = room::view(&camera, WALL, &[(&skin, &body.mesh.triangles)]);
         let depth = camera.frame(time_ns, self.noise.apply(&intrinsics, &view.z));
-        let surface = Surface {
+        let surface = PictureSurface {
             positions: &skin,
             normals: &normals,
             triangles: &body.mesh.triangles,
@@ -106,17 +106,17 @@ impl Performer {
 }
 
 /// The webcam's picture of surfaces before a plain wall.
-pub fn picture(surfaces: &[Surface<'_>], random: &mut SplitMix64) -> ColourImage {
+pub fn picture(surfaces: &[PictureSurface<'_>], random: &mut SplitMix64) -> ColourImage {
     let [width, height] = SIZE;
     let away = TARGET - PLACE;
-    let view = Camera {
+    let view = OrbitCamera {
         target: TARGET,
         yaw: 0.0,
         height: -away.y,
         distance: -away.z,
         fov_y: 2.0 * (0.5 * height as f32 / FOCAL).atan(),
     };
-    let scene = TracedScene::build(Scene { surfaces, floor: true });
+    let scene = TracedScene::build(PictureScene { surfaces, floor: true });
     let image = scene.render(&view, Size::new(width, height), TraceQuality::Motion);
     let mut noisy = |v: u8| (f32::from(v) + NOISE * random.gaussian()).round().clamp(0.0, 255.0) as u8;
     let rgb = image.bytes().iter().map(|v| noisy(*v)).collect();

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use toile_base::numeric::statistics::{median, quantile};
-use toile_engine::cloth::measure as engine;
+use toile_engine::cloth::step::measure as engine;
 use toile_fitting::heap::HeapProbe;
 use toile_fitting::scene::StepTimes;
 use toile_fitting::scene::events::ClothEvents;

@@ -1,8 +1,4 @@
 //! Garments of the wardrobe on a mannequin that performs: time and error of the cloth where meshes are no grids.
-//!
-//! Reads: the wardrobe, the scene's performance, the engine's cloth. Writes: a report of one run.
-//! Budget: about ten seconds a garment; nothing but the step itself is timed.
-//! Thread: one, and those of the engine; with nothing else running.
 
 mod error;
 mod mannequin;

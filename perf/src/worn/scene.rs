@@ -12,9 +12,9 @@ use toile_base::numeric::hash;
 use toile_base::skeleton::{BONES, Pose, Skeleton};
 use toile_engine::body::palette;
 use toile_engine::body_surface::BodySurface;
-use toile_engine::cloth::layers::{Layers, lay_outside};
-use toile_engine::cloth::measure;
-use toile_engine::cloth::program::METERED_STAGES;
+use toile_engine::cloth::contact::garments::{GarmentContact, lay_outside};
+use toile_engine::cloth::step::measure;
+use toile_engine::cloth::step::program::METERED_STAGES;
 use toile_engine::cloth::{Cloth, ContactRates, Quality, Settings, Step};
 use toile_engine::colliders::Colliders;
 use toile_engine::lanes::Width;
@@ -104,7 +104,7 @@ pub struct WornScene {
     pool: WorkerPool,
     backends: Backends,
     stepper: ClothStepper,
-    layers: Option<Layers>,
+    layers: Option<GarmentContact>,
     skinning: SkinningJob,
     /// The bone that carries most of each triangle's first corner `[triangles]`.
     skin_bones: Vec<u8>,
@@ -138,7 +138,7 @@ impl WornScene {
         if settings.contact.layers > 0 {
             lay_outside(&mut garments);
         }
-        let layers = Layers::new(&garments).filter(|layers| layers.asked(&settings));
+        let layers = GarmentContact::new(&garments).filter(|layers| layers.asked(&settings));
         let parts: Vec<Part> = garments.iter().flat_map(|g| g.parts.iter().copied()).collect();
         let colliders = match settings.contact.skin > 0 {
             true => colliders.with_skin(BodySurface::new(body, &skinning.posed(), &parts)),
@@ -216,7 +216,7 @@ impl WornScene {
     }
 
     /// What keeps the garments in their order, where they do.
-    pub fn layers(&self) -> Option<&Layers> {
+    pub fn layers(&self) -> Option<&GarmentContact> {
         self.layers.as_ref()
     }
 

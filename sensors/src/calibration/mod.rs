@@ -1,8 +1,5 @@
 //! Calibrated cameras: what a lens does, where the camera stands, and the files in which that is written.
 //!
-//! Reads: calibrations of Pose2Sim and Anipose (TOML) and of OpenCV (YAML). Writes: [`CalibratedCamera`]s.
-//! Budget: at load only. Thread: the loading thread.
-//!
 //! A camera maps a point X of the world (m) to `p = R X + t`, to the normalised image `x = p.x / p.z, y = p.y / p.z`, through
 //! Brown's lens (1971) and to the pixel `(fx x' + cx, fy y' + cy)`; the middle of the first pixel is (0, 0), as in OpenCV.
 
@@ -18,7 +15,7 @@ use std::path::Path;
 
 use toile_assets::file;
 
-use crate::error::{Fault, Place, SourceError};
+use crate::error::{FilePlace, ReaderFault, SourceError};
 use crate::limits::{CAMERA, MAX_CAMERAS};
 
 /// Reads a calibration: a TOML file of Pose2Sim, a YAML file of OpenCV, or a folder of YAML files, one a camera.
@@ -44,7 +41,7 @@ pub fn open(path: &Path) -> Result<Rig, SourceError> {
 }
 
 /// Reads a calibration of Pose2Sim from memory.
-pub(crate) fn read_toml(bytes: &[u8]) -> Result<Rig, Fault> {
+pub(crate) fn read_toml(bytes: &[u8]) -> Result<Rig, ReaderFault> {
     pose2sim::read(bytes)
 }
 
@@ -64,7 +61,9 @@ fn folder(path: &Path) -> Result<Vec<CalibratedCamera>, SourceError> {
     }
     if cameras.is_empty() || cameras.len() > MAX_CAMERAS {
         let problem = format!("{} cameras in YAML files where 1 to {MAX_CAMERAS} are read", cameras.len());
-        return Err(Fault::new(Place::Whole, problem, "give a YAML file of OpenCV for each camera").at(&shown));
+        return Err(
+            ReaderFault::new(FilePlace::Whole, problem, "give a YAML file of OpenCV for each camera").at(&shown)
+        );
     }
     Ok(cameras)
 }

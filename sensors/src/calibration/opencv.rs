@@ -11,7 +11,7 @@ use glam::{DMat3, DQuat, DVec3};
 
 use super::camera::CalibratedCamera;
 use super::parameters::CameraParameters;
-use crate::error::{Fault, Place};
+use crate::error::{FilePlace, ReaderFault};
 
 const CURE: &str =
     "write it with OpenCV's FileStorage: camera_matrix, distortion_coefficients, image_width, image_height, R and T";
@@ -28,8 +28,8 @@ struct Value {
 }
 
 /// Reads the cameras of one file; a single camera is called as the file is.
-pub(super) fn read(bytes: &[u8], name: &str) -> Result<Vec<CalibratedCamera>, Fault> {
-    let whole = |problem: String| Fault::new(Place::Whole, problem, CURE);
+pub(super) fn read(bytes: &[u8], name: &str) -> Result<Vec<CalibratedCamera>, ReaderFault> {
+    let whole = |problem: String| ReaderFault::new(FilePlace::Whole, problem, CURE);
     let text = std::str::from_utf8(bytes).map_err(|_| whole("not text".to_owned()))?;
     let values = values(text)?;
     let camera = |name: &str, lens: [&[&str]; 2], pose: Option<(DMat3, DVec3)>| {
@@ -85,12 +85,12 @@ fn turn(value: &Value) -> Result<DMat3, String> {
 }
 
 /// All values of the file by their keys, those of a matrix's own keys taken into it.
-fn values(text: &str) -> Result<BTreeMap<String, Value>, Fault> {
+fn values(text: &str) -> Result<BTreeMap<String, Value>, ReaderFault> {
     let mut found = BTreeMap::<String, Value>::new();
     let mut current: Option<String> = None;
     let mut open = false;
     for (number, line) in text.lines().enumerate() {
-        let fault = |problem: String| Fault::new(Place::Line(number + 1), problem, CURE);
+        let fault = |problem: String| ReaderFault::new(FilePlace::Line(number + 1), problem, CURE);
         let bare = line.trim();
         if bare.is_empty() || bare.starts_with(['%', '#']) || bare == "---" || bare == "..." {
             continue;
@@ -123,7 +123,7 @@ fn values(text: &str) -> Result<BTreeMap<String, Value>, Fault> {
     for (key, m) in &found {
         if m.rows * m.columns != m.data.len() {
             let problem = format!("{key} has {} numbers where {} x {} are stated", m.data.len(), m.rows, m.columns);
-            return Err(Fault::new(Place::Whole, problem, CURE));
+            return Err(ReaderFault::new(FilePlace::Whole, problem, CURE));
         }
     }
     Ok(found)

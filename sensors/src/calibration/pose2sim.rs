@@ -8,7 +8,7 @@ use serde::Deserialize;
 
 use super::camera::{CalibratedCamera, Rig};
 use super::parameters::CameraParameters;
-use crate::error::{Fault, Place};
+use crate::error::{FilePlace, ReaderFault};
 use crate::limits::MAX_CAMERAS;
 
 const CURE: &str = "give the calibration as Pose2Sim writes it";
@@ -36,8 +36,8 @@ enum Rotation {
 }
 
 /// Reads a calibration.
-pub(super) fn read(bytes: &[u8]) -> Result<Rig, Fault> {
-    let fault = |problem: String| Fault::new(Place::Whole, problem, CURE);
+pub(super) fn read(bytes: &[u8]) -> Result<Rig, ReaderFault> {
+    let fault = |problem: String| ReaderFault::new(FilePlace::Whole, problem, CURE);
     let text = std::str::from_utf8(bytes).map_err(|_| fault("not text".to_owned()))?;
     let tables: toml::Table = text.parse().map_err(|e: toml::de::Error| fault(format!("not TOML: {}", e.message())))?;
     let rate = tables.get("metadata").and_then(|m| m.get("frame_rate"));

@@ -1,7 +1,6 @@
 //! The shopper's depth made clean: holes filled, noise smoothed without blurring edges, points and normals in our world.
 //!
-//! Reads: `DepthFrame` and the shopper's mask. Writes: a [`Cloud`] in the order of the image. Budget: smoothing 3 ms for
-//! full 640x480 images, all of it 10 ms; no allocation once the first frame was seen.
+//! Budget: smoothing 3 ms for full 640x480 images, all of it 10 ms; no allocation once the first frame was seen.
 //! Thread: the sensor thread.
 
 pub mod cloud;

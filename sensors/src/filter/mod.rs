@@ -1,6 +1,6 @@
 //! Joints made believable, frame by frame: gate, smooth, hold what is lost, keep the bones' lengths.
 //!
-//! Reads: `Joints` as tracked. Writes: `Joints` without jumps. Budget: under 50 us a frame, no allocation, fixed state.
+//! Budget: under 50 us a frame, no allocation, fixed state.
 //! Thread: the sensor thread.
 
 pub mod angles;

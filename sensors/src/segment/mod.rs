@@ -1,7 +1,6 @@
 //! Who of all that a depth camera sees is the shopper: floor off, pieces of surface, people, the one in the measuring zone.
 //!
-//! Reads: `DepthFrame`, one after the other. Writes: a mask of the shopper's pixels. Budget: 5 ms a 640x480 frame, no
-//! allocation once the first frame was seen.
+//! Budget: 5 ms a 640x480 frame, no allocation once the first frame was seen.
 //! Thread: the sensor thread.
 //!
 //! No user map is needed. The floor is a plane found by random sampling and then fitted robustly ([`floor`]); what stands on it

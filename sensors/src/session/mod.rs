@@ -1,8 +1,5 @@
 //! A session: what a sensor saw of one shopper, from the first frame to the last.
 //!
-//! Reads: recordings' frames. Writes: `Session`, and its own recording (MCAP). Budget: at load only.
-//! Thread: the loading thread.
-//!
 //! # The recording
 //!
 //! An [MCAP](https://mcap.dev) file, profile `toile`, chunks uncompressed and with checksums, so that any MCAP tool lists

@@ -7,7 +7,7 @@ use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use super::layout::{self, DEPTH_TOPIC, ENCODING, HANDS_TOPIC, JOINTS_TOPIC, METADATA, NOTES, VERSION};
 use super::recording::{DepthRoom, Session, too_many};
 use super::unpack::Zstd;
-use crate::error::{Fault, Place, SourceError};
+use crate::error::{FilePlace, ReaderFault, SourceError};
 use crate::limits::{MAX_CHANNELS, MAX_CHUNK_BYTES, MAX_DEPTH_FRAMES, MAX_JOINT_FRAMES};
 use toile_base::frame::HandState;
 
@@ -33,7 +33,7 @@ enum Topic {
 }
 
 #[derive(Default)]
-struct Reading {
+struct SessionReader {
     session: Session,
     /// Channel ids seen, and what they carry; a handful.
     topics: Vec<(u16, Topic)>,
@@ -44,27 +44,27 @@ struct Reading {
     complete: bool,
 }
 
-fn read_bytes(bytes: &[u8]) -> Result<Session, Fault> {
+fn read_bytes(bytes: &[u8]) -> Result<Session, ReaderFault> {
     if !bytes.starts_with(mcap::MAGIC) {
         let short = mcap::MAGIC.starts_with(bytes);
         let problem = if short { "the file ends within its magic number" } else { "not an MCAP file" };
-        return Err(Fault::new(Place::Byte(0), problem, CURE));
+        return Err(ReaderFault::new(FilePlace::Byte(0), problem, CURE));
     }
-    let mut reading = Reading::default();
+    let mut reading = SessionReader::default();
     let (end, cut) = records(bytes, |opcode, data| reading.take(opcode, data))?;
     if !reading.is_ours {
         let cure = "give a session that was recorded by Toile";
         let problem = if cut { "cut off before it says who recorded it" } else { "an MCAP file of another program" };
-        return Err(Fault::new(Place::Byte(end), problem, cure));
+        return Err(ReaderFault::new(FilePlace::Byte(end), problem, cure));
     }
-    let Reading { mut session, hands, complete, .. } = reading;
+    let SessionReader { mut session, hands, complete, .. } = reading;
     for (time_ns, hands) in hands {
         if let Ok(frame) = session.joints.binary_search_by_key(&time_ns, |f| f.time_ns) {
             session.joints[frame].hands = hands;
         }
     }
     if session.joints.is_empty() && session.depth.is_empty() {
-        return Err(Fault::new(Place::Byte(end), "cut off before the first frame, or empty", CURE));
+        return Err(ReaderFault::new(FilePlace::Byte(end), "cut off before the first frame, or empty", CURE));
     }
     if cut || !complete {
         let (joints, depth) = (session.joints.len(), session.depth.len());
@@ -78,7 +78,7 @@ fn read_bytes(bytes: &[u8]) -> Result<Session, Fault> {
 
 /// Feeds every record, those within chunks too, to `take`. Gives the place of the end and whether the file is cut off.
 /// A record that claims to be longer than the file, or than a chunk may be, is refused before memory is taken.
-fn records(bytes: &[u8], mut take: impl FnMut(u8, &[u8]) -> Result<bool, String>) -> Result<(u64, bool), Fault> {
+fn records(bytes: &[u8], mut take: impl FnMut(u8, &[u8]) -> Result<bool, String>) -> Result<(u64, bool), ReaderFault> {
     let options = LinearReaderOptions::default()
         .with_skip_end_magic(true)
         .with_prevalidate_chunk_crcs(true)
@@ -95,7 +95,8 @@ fn records(bytes: &[u8], mut take: impl FnMut(u8, &[u8]) -> Result<bool, String>
                 at += count;
             }
             Ok(LinearReadEvent::Record { data, opcode }) => {
-                let go_on = take(opcode, data).map_err(|problem| Fault::new(Place::Byte(at as u64), problem, CURE))?;
+                let go_on = take(opcode, data)
+                    .map_err(|problem| ReaderFault::new(FilePlace::Byte(at as u64), problem, CURE))?;
                 if !go_on {
                     return Ok((at as u64, false));
                 }
@@ -108,7 +109,7 @@ fn records(bytes: &[u8], mut take: impl FnMut(u8, &[u8]) -> Result<bool, String>
 }
 
 /// What is wrong with a file, in words of the file alone: a library's own would name its source.
-fn faulty(at: usize, error: &McapError) -> Fault {
+fn faulty(at: usize, error: &McapError) -> ReaderFault {
     let (problem, cure) = match error {
         McapError::UnsupportedCompression(name) => {
             let name: String = name.chars().filter(|c| !c.is_control()).take(20).collect();
@@ -122,10 +123,10 @@ fn faulty(at: usize, error: &McapError) -> Fault {
         }
         _ => ("corrupt: a record is not as the MCAP format has it".into(), CURE),
     };
-    Fault::new(Place::Byte(at as u64), problem, cure)
+    ReaderFault::new(FilePlace::Byte(at as u64), problem, cure)
 }
 
-impl Reading {
+impl SessionReader {
     /// Takes one record; false where the recording ends. Only the kinds that a session holds are parsed.
     fn take(&mut self, opcode: u8, data: &[u8]) -> Result<bool, String> {
         match opcode {

@@ -1,6 +1,6 @@
 //! What a session holds, and what it promises.
 
-use crate::error::{Fault, Place, SourceError};
+use crate::error::{FilePlace, ReaderFault, SourceError};
 use crate::limits::{MAX_DEPTH_BYTES, MAX_DEPTH_FRAMES, MAX_DURATION_NS, MAX_GAP_NS, MAX_JOINT_FRAMES};
 use toile_base::clock::SECOND_NS;
 use toile_base::frame::{DepthFrame, Intrinsics, Joints};
@@ -39,10 +39,10 @@ impl Session {
 
     /// Refuses a session that breaks its own promises: empty, too long, times that do not increase, numbers that are
     /// not finite, images of another size than their camera.
-    pub(crate) fn check(&self) -> Result<(), Fault> {
+    pub(crate) fn check(&self) -> Result<(), ReaderFault> {
         const CURE: &str = "record it again or repair the file";
         if self.joints.is_empty() && self.depth.is_empty() {
-            return Err(Fault::new(Place::Whole, "no frame with a person or a depth image in it", CURE));
+            return Err(ReaderFault::new(FilePlace::Whole, "no frame with a person or a depth image in it", CURE));
         }
         if self.joints.len() > MAX_JOINT_FRAMES || self.depth.len() > MAX_DEPTH_FRAMES {
             return Err(too_many(self.joints.len().max(self.depth.len())));
@@ -50,11 +50,15 @@ impl Session {
         check_times(self.joints.iter().map(|f| f.time_ns))?;
         check_times(self.depth.iter().map(|f| f.time_ns))?;
         if let Some(i) = self.joints.iter().position(|j| !j.is_valid()) {
-            return Err(Fault::new(Place::Frame(i), "a joint is not finite, or its confidence not within 0..1", CURE));
+            return Err(ReaderFault::new(
+                FilePlace::Frame(i),
+                "a joint is not finite, or its confidence not within 0..1",
+                CURE,
+            ));
         }
         for (i, frame) in self.depth.iter().enumerate() {
             if let Some(fault) = frame.fault() {
-                return Err(Fault::new(Place::Frame(i), fault, CURE));
+                return Err(ReaderFault::new(FilePlace::Frame(i), fault, CURE));
             }
         }
         Ok(())
@@ -62,11 +66,11 @@ impl Session {
 }
 
 /// Refuses times that do not increase, that pause for longer than [`MAX_GAP_NS`], or that end after [`MAX_DURATION_NS`].
-fn check_times(times: impl Iterator<Item = u64>) -> Result<(), Fault> {
+fn check_times(times: impl Iterator<Item = u64>) -> Result<(), ReaderFault> {
     let seconds = |ns: u64| ns as f64 / SECOND_NS as f64;
     let mut last: Option<u64> = None;
     for (i, time) in times.enumerate() {
-        let fault = |problem: String, cure| Err(Fault::new(Place::Frame(i), problem, cure));
+        let fault = |problem: String, cure| Err(ReaderFault::new(FilePlace::Frame(i), problem, cure));
         match last.map(|last| time.checked_sub(last)) {
             Some(None | Some(0)) => {
                 return fault(
@@ -100,7 +104,7 @@ pub(crate) struct DepthRoom {
 
 impl DepthRoom {
     /// Takes room for one image, or says why there is none.
-    pub(crate) fn take(&mut self, camera: &Intrinsics) -> Result<(), Fault> {
+    pub(crate) fn take(&mut self, camera: &Intrinsics) -> Result<(), ReaderFault> {
         self.frames += 1;
         self.bytes += camera.pixels() as u64 * 2;
         if self.frames > MAX_DEPTH_FRAMES {
@@ -108,17 +112,21 @@ impl DepthRoom {
         }
         if self.bytes > MAX_DEPTH_BYTES {
             let problem = format!("its depth images take more than {} MiB of memory", MAX_DEPTH_BYTES >> 20);
-            return Err(Fault::new(Place::Frame(self.frames - 1), problem, "cut the recording into shorter pieces"));
+            return Err(ReaderFault::new(
+                FilePlace::Frame(self.frames - 1),
+                problem,
+                "cut the recording into shorter pieces",
+            ));
         }
         Ok(())
     }
 }
 
 /// The fault of a recording with more frames than [`MAX_JOINT_FRAMES`] or [`MAX_DEPTH_FRAMES`].
-pub(crate) fn too_many(frames: usize) -> Fault {
+pub(crate) fn too_many(frames: usize) -> ReaderFault {
     let limits = format!("{MAX_JOINT_FRAMES} joint frames and {MAX_DEPTH_FRAMES} depth frames");
     let problem = format!("{frames} frames are more than a session holds ({limits})");
-    Fault::new(Place::Whole, problem, "cut the recording into shorter pieces")
+    ReaderFault::new(FilePlace::Whole, problem, "cut the recording into shorter pieces")
 }
 
 #[cfg(test)]
@@ -129,11 +137,11 @@ mod tests {
     fn times_increase_pause_for_a_minute_at_most_and_end_within_two_hours() {
         let refused = |times: &[u64]| check_times(times.iter().map(|s| s * SECOND_NS)).err().map(|fault| fault.place);
         assert_eq!(refused(&[0, 60, 120]), None);
-        assert_eq!(refused(&[0, 60, 121]), Some(Place::Frame(2)));
-        assert_eq!(refused(&[0, 86_400]), Some(Place::Frame(1)));
-        assert_eq!(refused(&[5, 5]), Some(Place::Frame(1)));
-        assert_eq!(refused(&[5, 6, 4]), Some(Place::Frame(2)));
-        assert_eq!(refused(&[7_201]), Some(Place::Frame(0)));
+        assert_eq!(refused(&[0, 60, 121]), Some(FilePlace::Frame(2)));
+        assert_eq!(refused(&[0, 86_400]), Some(FilePlace::Frame(1)));
+        assert_eq!(refused(&[5, 5]), Some(FilePlace::Frame(1)));
+        assert_eq!(refused(&[5, 6, 4]), Some(FilePlace::Frame(2)));
+        assert_eq!(refused(&[7_201]), Some(FilePlace::Frame(0)));
         assert!(check_times([0, u64::MAX].into_iter()).is_err());
     }
 

@@ -13,7 +13,7 @@ use super::layout::{
     self, DEPTH_TOPIC, ENCODING, HANDS_TOPIC, JOINTS_TOPIC, METADATA, NOTES, SCHEMA_ENCODING, VERSION,
 };
 use super::recording::Session;
-use crate::error::{Fault, Place, SourceError};
+use crate::error::{FilePlace, ReaderFault, SourceError};
 
 /// Size of a chunk (bytes): what a cut-off file loses at most.
 const CHUNK_BYTES: u64 = 256 << 10;
@@ -46,15 +46,17 @@ impl Session {
 }
 
 /// A session as the bytes of an MCAP file; the same session gives the same bytes.
-fn to_bytes(session: &Session) -> Result<Vec<u8>, Fault> {
+fn to_bytes(session: &Session) -> Result<Vec<u8>, ReaderFault> {
     session.check()?;
     let mut depth = Vec::with_capacity(session.depth.len());
     for (i, frame) in session.depth.iter().enumerate() {
         let cure = "record it again";
-        let message = layout::encode_depth(frame).map_err(|problem| Fault::new(Place::Frame(i), problem, cure))?;
+        let message =
+            layout::encode_depth(frame).map_err(|problem| ReaderFault::new(FilePlace::Frame(i), problem, cure))?;
         depth.push((frame.time_ns, message));
     }
-    encode(session, depth).map_err(|e| Fault::new(Place::Whole, format!("MCAP: {e}"), "report this as a defect"))
+    encode(session, depth)
+        .map_err(|e| ReaderFault::new(FilePlace::Whole, format!("MCAP: {e}"), "report this as a defect"))
 }
 
 fn encode(session: &Session, depth: Vec<(u64, Vec<u8>)>) -> McapResult<Vec<u8>> {

@@ -7,7 +7,7 @@ use glam::{Quat, Vec3};
 use toile_base::numeric::statistics::{median_of, quantile_of};
 use toile_base::skeleton::Joint;
 
-use crate::error::{Fault, Place};
+use crate::error::{FilePlace, ReaderFault};
 use toile_base::frame::Joints;
 
 /// Tilt below which a recording is left as it is (rad): 4 degrees, the lean of a relaxed stance.
@@ -38,10 +38,10 @@ const LEGS: [[Joint; 4]; 2] = [
 ];
 
 /// Levels, puts the floor under the feet and centres at the median pelvis; `frames` have world axes already.
-pub(super) fn to_world(frames: &mut [Joints], notes: &mut Vec<String>) -> Result<(), Fault> {
+pub(super) fn to_world(frames: &mut [Joints], notes: &mut Vec<String>) -> Result<(), ReaderFault> {
     if !frames.iter().any(|f| f.joints.iter().any(|j| j.is_believed())) {
         let cure = "record again with the shopper in full view";
-        return Err(Fault::new(Place::Whole, "no joint is believed in any frame", cure));
+        return Err(ReaderFault::new(FilePlace::Whole, "no joint is believed in any frame", cure));
     }
     level(frames, notes);
     stand(frames, notes);

@@ -10,7 +10,7 @@ use serde::Deserialize;
 
 use super::joint_map::{Format, JointMap};
 use super::{align, tidy};
-use crate::error::{Fault, Place};
+use crate::error::{FilePlace, ReaderFault};
 use crate::filter::gate::derive_confidence;
 use crate::limits::MAX_JOINT_FRAMES;
 use crate::session::{Session, too_many};
@@ -57,7 +57,7 @@ pub(super) fn recognises(head: &[u8]) -> bool {
     has(b"\"bone_list\"") || has(b"\"timestamp_usec\"") || has(b"\"joint_positions\"") || has(b"\"k4abt_sdk_version\"")
 }
 
-pub(super) fn read(bytes: &[u8]) -> Result<Session, Fault> {
+pub(super) fn read(bytes: &[u8]) -> Result<Session, ReaderFault> {
     let frames = parse(bytes)?;
     let main = tidy::most_frequent(frames.iter().flat_map(|f| f.bodies.iter().map(|b| b.body_id)));
     let map = JointMap::of(Format::Azure32);
@@ -67,7 +67,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Session, Fault> {
             empty += 1;
             continue;
         };
-        let at = |problem| Fault::new(Place::Frame(i), problem, CURE);
+        let at = |problem| ReaderFault::new(FilePlace::Frame(i), problem, CURE);
         let ns =
             frame.timestamp_usec.checked_mul(1_000).ok_or_else(|| at("the time is beyond any clock".to_owned()))?;
         joints.push(map.joints(ns, &points(body).map_err(at)?));
@@ -89,19 +89,23 @@ pub(super) fn read(bytes: &[u8]) -> Result<Session, Fault> {
 }
 
 /// All frames, of an object that holds them or of lines.
-fn parse(bytes: &[u8]) -> Result<Vec<AzureFrame>, Fault> {
+fn parse(bytes: &[u8]) -> Result<Vec<AzureFrame>, ReaderFault> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let mut frames = Vec::new();
     for record in serde_json::Deserializer::from_slice(bytes).into_iter::<Record>() {
         let record = record.map_err(|e| {
-            Fault::new(Place::Line(e.line()), format!("not a recording of Azure Kinect body tracking: {e}"), CURE)
+            ReaderFault::new(
+                FilePlace::Line(e.line()),
+                format!("not a recording of Azure Kinect body tracking: {e}"),
+                CURE,
+            )
         })?;
         match (record.frames, record.timestamp_usec) {
             (Some(more), _) => frames.extend(more),
             (None, Some(timestamp_usec)) => frames.push(AzureFrame { timestamp_usec, bodies: record.bodies }),
             (None, None) => {
                 let problem = "an object that holds neither frames nor a frame's timestamp_usec";
-                return Err(Fault::new(Place::Frame(frames.len()), problem, CURE));
+                return Err(ReaderFault::new(FilePlace::Frame(frames.len()), problem, CURE));
             }
         }
         if frames.len() > MAX_JOINT_FRAMES {

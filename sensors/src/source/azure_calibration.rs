@@ -3,7 +3,7 @@
 use glam::{Mat3, Vec3};
 use serde::Deserialize;
 
-use super::camera::Camera;
+use super::camera::DepthCamera;
 use crate::colour_camera::ColourCamera;
 use crate::lens::BrownConrady;
 use toile_base::frame::Intrinsics;
@@ -30,9 +30,9 @@ const COLOUR_MODES: [Mode; 6] = [
 ];
 
 /// The depth camera that a calibration describes, for images of this size (px); or what is wrong with it.
-pub(super) fn read(json: &[u8], size: [u32; 2]) -> Result<Camera, String> {
+pub(super) fn read(json: &[u8], size: [u32; 2]) -> Result<DepthCamera, String> {
     let (intrinsics, lens) = found(json, "depth", "LocationD0")?.in_mode("depth", &DEPTH_MODES, size)?;
-    Ok(Camera { distortion: Some(lens), ..Camera::pinhole(intrinsics) })
+    Ok(DepthCamera { distortion: Some(lens), ..DepthCamera::pinhole(intrinsics) })
 }
 
 /// The colour camera that it describes, in the depth camera's axes, for pictures of the mode of this number; or what is wrong with it.

@@ -2,10 +2,10 @@
 //! attached calibration. Colour, infrared and motion are not read.
 
 use super::azure_calibration;
-use super::camera::Camera;
+use super::camera::DepthCamera;
 use super::ebml::{Element, Elements, number};
 use super::sequence::Sequence;
-use crate::error::{Fault, Place};
+use crate::error::{FilePlace, ReaderFault};
 use crate::session::Session;
 
 /// Names of the boxes, as Matroska's specification (RFC 9559) numbers them.
@@ -51,13 +51,17 @@ struct MkvTrack {
     size: [u32; 2],
 }
 
-pub(super) fn read(bytes: &[u8], camera: Option<Camera>) -> Result<Session, Fault> {
+pub(super) fn read(bytes: &[u8], camera: Option<DepthCamera>) -> Result<Session, ReaderFault> {
     let segments = || Elements::of(bytes).filter(|e| e.id == id::SEGMENT);
     let mut head = Head { scale_ns: DEFAULT_SCALE_NS, track: None, calibration: None };
     segments().flat_map(|s| s.children()).for_each(|e| head.take(&e));
     let track = head.track.ok_or_else(|| {
         let problem = "no track of 16-bit depth named DEPTH (b16g) in this Matroska file";
-        Fault::new(Place::Whole, problem, "record the depth camera with k4arecorder, or export it as 16-bit PNG")
+        ReaderFault::new(
+            FilePlace::Whole,
+            problem,
+            "record the depth camera with k4arecorder, or export it as 16-bit PNG",
+        )
     })?;
     let camera = match camera {
         Some(camera) => camera,
@@ -70,7 +74,7 @@ pub(super) fn read(bytes: &[u8], camera: Option<Camera>) -> Result<Session, Faul
             "images of {} x {} pixels, and a camera of {} x {}",
             track.size[0], track.size[1], k.width, k.height
         );
-        return Err(Fault::new(Place::Whole, problem, "give the camera JSON that fits, or none"));
+        return Err(ReaderFault::new(FilePlace::Whole, problem, "give the camera JSON that fits, or none"));
     }
     let (mut broken, mut cut) = (0, false);
     for element in segments().flat_map(|s| s.children()) {
@@ -108,12 +112,12 @@ impl<'a> Head<'a> {
     }
 
     /// The depth camera that the attached calibration describes, in the track's mode.
-    fn camera(&self, track: &MkvTrack) -> Result<Camera, Fault> {
+    fn camera(&self, track: &MkvTrack) -> Result<DepthCamera, ReaderFault> {
         let file = self.calibration.as_ref().ok_or_else(|| {
             let cure = "give the depth camera as a camera JSON";
-            Fault::new(Place::Whole, "no calibration.json is attached", cure)
+            ReaderFault::new(FilePlace::Whole, "no calibration.json is attached", cure)
         })?;
-        let described = |problem| Fault::new(Place::Byte(file.at as u64), problem, CURE);
+        let described = |problem| ReaderFault::new(FilePlace::Byte(file.at as u64), problem, CURE);
         azure_calibration::read(file.data, track.size).map_err(described)
     }
 }
@@ -138,7 +142,12 @@ fn calibration_file<'a>(file: &Element<'a>) -> Option<Element<'a>> {
 }
 
 /// Takes the depth images of a cluster; gives the number of broken ones.
-fn cluster(cluster: &Element<'_>, track: &MkvTrack, scale_ns: u64, sequence: &mut Sequence) -> Result<usize, Fault> {
+fn cluster(
+    cluster: &Element<'_>,
+    track: &MkvTrack,
+    scale_ns: u64,
+    sequence: &mut Sequence,
+) -> Result<usize, ReaderFault> {
     let (mut begin, mut broken) = (0u64, 0);
     for element in cluster.children() {
         let block = match element.id {

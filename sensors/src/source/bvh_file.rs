@@ -4,7 +4,7 @@
 
 use glam::DVec3;
 
-use crate::error::{Fault, Place};
+use crate::error::{FilePlace, ReaderFault};
 use crate::limits::{MAX_BVH_DEPTH, MAX_BVH_JOINTS, MAX_JOINT_FRAMES};
 
 const CURE: &str = "export the motion again as BVH";
@@ -60,15 +60,15 @@ impl<'a> BvhWords<'a> {
         Some(&tail[..end])
     }
 
-    fn fault(&self, problem: impl Into<String>) -> Fault {
-        Fault::new(Place::Line(self.line), problem, CURE)
+    fn fault(&self, problem: impl Into<String>) -> ReaderFault {
+        ReaderFault::new(FilePlace::Line(self.line), problem, CURE)
     }
 
-    fn word(&mut self, wanted: &str) -> Result<&'a str, Fault> {
+    fn word(&mut self, wanted: &str) -> Result<&'a str, ReaderFault> {
         self.next().ok_or_else(|| self.fault(format!("the file ends where {wanted} should stand")))
     }
 
-    fn expect(&mut self, wanted: &str) -> Result<(), Fault> {
+    fn expect(&mut self, wanted: &str) -> Result<(), ReaderFault> {
         let found = self.word(wanted)?;
         if found.eq_ignore_ascii_case(wanted) {
             return Ok(());
@@ -76,7 +76,7 @@ impl<'a> BvhWords<'a> {
         Err(self.fault(format!("'{}' stands where '{wanted}' should", clip(found))))
     }
 
-    fn number(&mut self, what: &str) -> Result<f64, Fault> {
+    fn number(&mut self, what: &str) -> Result<f64, ReaderFault> {
         let word = self.word(what)?;
         match word.parse::<f64>() {
             Ok(x) if x.is_finite() && x.abs() < 1e9 => Ok(x),
@@ -84,7 +84,7 @@ impl<'a> BvhWords<'a> {
         }
     }
 
-    fn count(&mut self, what: &str, limit: usize) -> Result<usize, Fault> {
+    fn count(&mut self, what: &str, limit: usize) -> Result<usize, ReaderFault> {
         let word = self.word(what)?;
         match word.parse::<usize>() {
             Ok(n) if n <= limit => Ok(n),
@@ -100,10 +100,11 @@ fn clip(word: &str) -> &str {
 }
 
 /// Parses a file.
-pub(super) fn parse(bytes: &[u8]) -> Result<Bvh, Fault> {
+pub(super) fn parse(bytes: &[u8]) -> Result<Bvh, ReaderFault> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let text = std::str::from_utf8(bytes)
-        .map_err(|e| Fault::new(Place::Byte(e.valid_up_to() as u64), "not text", "give the file as exported"))?;
+    let text = std::str::from_utf8(bytes).map_err(|e| {
+        ReaderFault::new(FilePlace::Byte(e.valid_up_to() as u64), "not text", "give the file as exported")
+    })?;
     let mut words = BvhWords { rest: text, line: 1 };
     words.expect("HIERARCHY")?;
     words.expect("ROOT")?;
@@ -136,7 +137,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Bvh, Fault> {
 }
 
 /// Reads from the root's name up to and with the word MOTION.
-fn hierarchy(words: &mut BvhWords<'_>) -> Result<Vec<Node>, Fault> {
+fn hierarchy(words: &mut BvhWords<'_>) -> Result<Vec<Node>, ReaderFault> {
     let mut nodes = vec![node(words, None)?];
     let mut open = vec![0_usize];
     loop {
@@ -169,7 +170,7 @@ fn hierarchy(words: &mut BvhWords<'_>) -> Result<Vec<Node>, Fault> {
 }
 
 /// Reads name, brace, offset and channels of one joint; the end site has no channels.
-fn node(words: &mut BvhWords<'_>, parent: Option<usize>) -> Result<Node, Fault> {
+fn node(words: &mut BvhWords<'_>, parent: Option<usize>) -> Result<Node, ReaderFault> {
     let mut name = words.word("a joint's name")?.to_owned();
     // Names may hold spaces: they end at the brace.
     loop {
@@ -199,7 +200,7 @@ fn node(words: &mut BvhWords<'_>, parent: Option<usize>) -> Result<Node, Fault> 
     Ok(Node { name, parent, offset, channels })
 }
 
-fn channel(words: &mut BvhWords<'_>) -> Result<Channel, Fault> {
+fn channel(words: &mut BvhWords<'_>) -> Result<Channel, ReaderFault> {
     let word = words.word("a channel's name")?;
     Ok(match word.to_ascii_lowercase().as_str() {
         "xposition" => Channel::Position(0),
@@ -247,7 +248,7 @@ mod tests {
             ("JOINT", "ROOT"),
         ] {
             let fault = parse(SMALL.replace(from, to).as_bytes()).unwrap_err();
-            assert!(matches!(fault.place, Place::Line(_)), "{to}: {fault:?}");
+            assert!(matches!(fault.place, FilePlace::Line(_)), "{to}: {fault:?}");
         }
     }
 

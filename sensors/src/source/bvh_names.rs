@@ -6,7 +6,7 @@
 use toile_base::skeleton::{JOINTS, Joint};
 
 use super::bvh_file::Node;
-use crate::error::{Fault, Place};
+use crate::error::{FilePlace, ReaderFault};
 
 /// A dialect: names that it alone has, then the names of each joint, the first that the file has counts. `@` stands for the
 /// side. Names are compared without case, prefix (`mixamorig:`) and separators.
@@ -133,12 +133,12 @@ const NEEDED: [Joint; 9] = [
 pub(super) type Names = [Option<usize>; JOINTS];
 
 /// Maps a file's joints to ours.
-pub(super) fn map(nodes: &[Node]) -> Result<Names, Fault> {
+pub(super) fn map(nodes: &[Node]) -> Result<Names, ReaderFault> {
     const CURE: &str = "rename its joints as in VRM, Mixamo or the CMU files";
     let plain: Vec<String> = nodes.iter().map(|n| plain(&n.name)).collect();
     let find = |name: &str| plain.iter().position(|p| !p.is_empty() && *p == self::plain(name));
     let Some(dialect) = DIALECTS.iter().find(|d| d.marks.iter().all(|t| find(t).is_some())) else {
-        return Err(Fault::new(Place::Whole, "the skeleton's joint names are of no known dialect", CURE));
+        return Err(ReaderFault::new(FilePlace::Whole, "the skeleton's joint names are of no known dialect", CURE));
     };
     let mut names: Names = [None; JOINTS];
     for (joint, candidates) in dialect.middle {
@@ -151,7 +151,9 @@ pub(super) fn map(nodes: &[Node]) -> Result<Names, Fault> {
         }
     }
     match NEEDED.into_iter().find(|j| names[j.index()].is_none()) {
-        Some(joint) => Err(Fault::new(Place::Whole, format!("the skeleton has no joint for {joint:?}"), CURE)),
+        Some(joint) => {
+            Err(ReaderFault::new(FilePlace::Whole, format!("the skeleton has no joint for {joint:?}"), CURE))
+        }
         None => Ok(names),
     }
 }

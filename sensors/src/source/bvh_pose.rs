@@ -6,7 +6,7 @@ use toile_base::skeleton::{JOINTS, Joint};
 use super::align;
 use super::bvh_file::{Bvh, Channel};
 use super::bvh_names::Names;
-use crate::error::{Fault, Place};
+use crate::error::{FilePlace, ReaderFault};
 use crate::session::Session;
 use toile_base::clock::SECOND_NS;
 use toile_base::frame::{Joints, TrackedJoint};
@@ -29,7 +29,7 @@ const COINCIDENT: f64 = 1e-3;
 
 type Positions = [DVec3; JOINTS];
 
-pub(super) fn session(bvh: &Bvh, names: &Names) -> Result<Session, Fault> {
+pub(super) fn session(bvh: &Bvh, names: &Names) -> Result<Session, ReaderFault> {
     let mut notes = Vec::new();
     let mut positions: Vec<Positions> = bvh.values.chunks_exact(bvh.channels).map(|v| frame(bvh, names, v)).collect();
     let up = to_y_up(&mut positions);
@@ -42,7 +42,7 @@ pub(super) fn session(bvh: &Bvh, names: &Names) -> Result<Session, Fault> {
     let mut joints = Vec::with_capacity(positions.len());
     for (i, p) in positions.iter().enumerate() {
         joints.push(tracked(p, &present, metres, time_ns(i, bvh.frame_time)).ok_or_else(|| {
-            Fault::new(Place::Frame(i), "a joint is flung out of the room", "export the motion again as BVH")
+            ReaderFault::new(FilePlace::Frame(i), "a joint is flung out of the room", "export the motion again as BVH")
         })?);
     }
     align::stand(&mut joints, &mut notes);
@@ -103,13 +103,13 @@ fn axis_name(axis: DVec3) -> &'static str {
 }
 
 /// Length of a file unit (m), and whether it is known rather than assumed.
-fn unit(bvh: &Bvh, names: &Names, notes: &mut Vec<String>) -> Result<(f64, bool), Fault> {
+fn unit(bvh: &Bvh, names: &Names, notes: &mut Vec<String>) -> Result<(f64, bool), ReaderFault> {
     let leg = (chain(bvh, names, Joint::LeftAnkle, Joint::LeftHip)
         + chain(bvh, names, Joint::RightAnkle, Joint::RightHip))
         * 0.5;
     if leg < 1e-6 {
         let cure = "export the motion with its skeleton";
-        return Err(Fault::new(Place::Whole, "the skeleton's legs have no length", cure));
+        return Err(ReaderFault::new(FilePlace::Whole, "the skeleton's legs have no length", cure));
     }
     // Height of the ankles and of the skull above the head joint are a tenth of the stature together.
     let stature = (leg + chain(bvh, names, Joint::Head, Joint::Pelvis)) / 0.9;

@@ -4,13 +4,13 @@
 use glam::{Affine3A, Mat3A, Vec3, Vec3A};
 use serde::Deserialize;
 
-use crate::error::{Fault, Place};
+use crate::error::{FilePlace, ReaderFault};
 use crate::lens::BrownConrady;
 use toile_base::frame::{Intrinsics, pose_fault};
 
 /// A depth camera as described beside its images.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Camera {
+pub(super) struct DepthCamera {
     pub intrinsics: Intrinsics,
     /// How the lens bends straight lines, where it does.
     pub distortion: Option<BrownConrady>,
@@ -22,7 +22,7 @@ pub(super) struct Camera {
     pub quarter_turns: u8,
 }
 
-impl Camera {
+impl DepthCamera {
     /// A pinhole of unknown pose that measures in millimetres.
     pub const fn pinhole(intrinsics: Intrinsics) -> Self {
         Self { intrinsics, distortion: None, pose: None, mm_per_unit: 1.0, quarter_turns: 0 }
@@ -63,10 +63,10 @@ struct Bent {
 
 const CURE: &str = "give width, height, fx, fy, cx, cy in pixels and cam_to_world in mm";
 
-pub(super) fn read(bytes: &[u8]) -> Result<Camera, Fault> {
+pub(super) fn read(bytes: &[u8]) -> Result<DepthCamera, ReaderFault> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let d: Described = serde_json::from_slice(bytes)
-        .map_err(|e| Fault::new(Place::Line(e.line()), format!("not a camera description: {e}"), CURE))?;
+        .map_err(|e| ReaderFault::new(FilePlace::Line(e.line()), format!("not a camera description: {e}"), CURE))?;
     let intrinsics = Intrinsics { width: d.width, height: d.height, fx: d.fx, fy: d.fy, cx: d.cx, cy: d.cy };
     let pose = d.cam_to_world.map(|m| {
         let column = |k: usize| Vec3A::new(m[0][k] as f32, m[1][k] as f32, m[2][k] as f32);
@@ -74,13 +74,13 @@ pub(super) fn read(bytes: &[u8]) -> Result<Camera, Fault> {
         Affine3A::from_mat3_translation(rotation.into(), Vec3::from(column(3)) * 1e-3)
     });
     if let Some(fault) = intrinsics.fault().or_else(|| pose.as_ref().and_then(pose_fault)) {
-        return Err(Fault::new(Place::Whole, fault, CURE));
+        return Err(ReaderFault::new(FilePlace::Whole, fault, CURE));
     }
     let mm_per_unit = d.mm_per_unit.unwrap_or(1.0);
     if !(1e-3..=1e3).contains(&mm_per_unit) {
         let problem = format!("mm_per_unit is {mm_per_unit}, which is no unit of a depth camera");
-        return Err(Fault::new(
-            Place::Whole,
+        return Err(ReaderFault::new(
+            FilePlace::Whole,
             problem,
             "give the millimetres in one unit, such as 0.2 for 5000 to the metre",
         ));
@@ -91,5 +91,5 @@ pub(super) fn read(bytes: &[u8]) -> Result<Camera, Fault> {
         centre: [0.0; 2],
         widest: f32::INFINITY,
     });
-    Ok(Camera { intrinsics, distortion, pose, mm_per_unit, quarter_turns: d.quarter_turns % 4 })
+    Ok(DepthCamera { intrinsics, distortion, pose, mm_per_unit, quarter_turns: d.quarter_turns % 4 })
 }

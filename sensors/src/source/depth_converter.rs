@@ -1,13 +1,13 @@
 //! From the samples of a depth camera to millimetres of a pinhole: unit, lens, and the side on which the camera lies.
 
-use super::camera::Camera;
+use super::camera::DepthCamera;
 use super::straighten::Straighten;
-use crate::error::{Fault, Place};
+use crate::error::{FilePlace, ReaderFault};
 use toile_base::frame::Intrinsics;
 
 /// Converts the images of one camera, one after the other.
 pub(super) struct DepthConverter {
-    camera: Camera,
+    camera: DepthCamera,
     straighten: Option<Straighten>,
     /// The image in millimetres, before it is straightened and turned `[sensor pixels]`.
     millimetres: Vec<u16>,
@@ -17,7 +17,7 @@ pub(super) struct DepthConverter {
 
 impl DepthConverter {
     /// Of a camera; what is done to its images is noted.
-    pub fn new(camera: Camera, notes: &mut Vec<String>) -> Result<Self, Fault> {
+    pub fn new(camera: DepthCamera, notes: &mut Vec<String>) -> Result<Self, ReaderFault> {
         let bent = camera.distortion.as_ref();
         let straighten = match bent.map(|lens| Straighten::new(camera.intrinsics, lens)) {
             None => None,
@@ -31,7 +31,7 @@ impl DepthConverter {
             }
             Some(None) => {
                 let cure = "give the coefficients k1 .. k6, p1, p2 of a calibrated lens, or leave them out";
-                return Err(Fault::new(Place::Whole, "the distortion folds the image over itself", cure));
+                return Err(ReaderFault::new(FilePlace::Whole, "the distortion folds the image over itself", cure));
             }
         };
         if camera.quarter_turns != 0 {
@@ -110,7 +110,7 @@ mod tests {
     fn a_turned_image_shows_the_same_points_to_a_turned_camera() {
         let k = Intrinsics { width: 4, height: 3, fx: 5.0, fy: 6.0, cx: 1.25, cy: 0.75 };
         for quarters in 0..4 {
-            let camera = Camera { quarter_turns: quarters, ..Camera::pinhole(k) };
+            let camera = DepthCamera { quarter_turns: quarters, ..DepthCamera::pinhole(k) };
             let mut converter = DepthConverter::new(camera, &mut Vec::new()).unwrap();
             let out = converter.convert((0..12).map(|i| 1_000 + i));
             let to = converter.kept();

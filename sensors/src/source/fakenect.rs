@@ -8,10 +8,10 @@ use std::path::Path;
 
 use toile_assets::file;
 
-use super::camera::{self, Camera};
+use super::camera::{self, DepthCamera};
 use super::files::{OpenOptions, count_bytes, shown};
 use super::sequence::Sequence;
-use crate::error::{Fault, Place, SourceError};
+use crate::error::{FilePlace, ReaderFault, SourceError};
 use crate::limits::{CAMERA, MAX_FOLDER_FILES, RECORDING};
 use crate::session::Session;
 use toile_base::clock::SECOND_NS;
@@ -36,7 +36,7 @@ pub(super) fn read(folder: &Path, options: &OpenOptions) -> Result<Session, Sour
         Some(json) => camera::read(&file::read(json, &CAMERA)?).map_err(|fault| fault.at(&shown(json)))?,
         None => {
             notes.push("no camera was given: a Kinect v1 is assumed (f = 575.8 px, centred)".to_owned());
-            Camera::pinhole(Intrinsics::KINECT_V1)
+            DepthCamera::pinhole(Intrinsics::KINECT_V1)
         }
     };
     let mut sequence = Sequence::new(camera, notes).map_err(|fault| fault.at(&shown(folder)))?;
@@ -45,7 +45,7 @@ pub(super) fn read(folder: &Path, options: &OpenOptions) -> Result<Session, Sour
         let image = folder.join(name);
         let bytes = file::read(&image, &RECORDING)?;
         count_bytes(&mut total, &bytes).map_err(|fault| fault.at(&shown(folder)))?;
-        let at = |fault: Fault| fault.at(&shown(&image));
+        let at = |fault: ReaderFault| fault.at(&shown(&image));
         let samples = samples(&bytes, &sequence.sensor()).map_err(at)?;
         let millimetres = samples.chunks_exact(2).map(|b| millimetres(u16::from_le_bytes([b[0], b[1]])));
         sequence.push(time_ns, millimetres).map_err(at)?;
@@ -57,8 +57,9 @@ pub(super) fn read(folder: &Path, options: &OpenOptions) -> Result<Session, Sour
 }
 
 /// Depth images of an index and their times, the seconds in their names: `d-SECONDS-TICKS.pgm`.
-fn names(text: &[u8]) -> Result<Vec<(u64, &str)>, Fault> {
-    let text = std::str::from_utf8(text).map_err(|_| Fault::new(Place::Whole, "the index is no text", CURE))?;
+fn names(text: &[u8]) -> Result<Vec<(u64, &str)>, ReaderFault> {
+    let text =
+        std::str::from_utf8(text).map_err(|_| ReaderFault::new(FilePlace::Whole, "the index is no text", CURE))?;
     let mut names = Vec::new();
     for (i, line) in text.lines().enumerate() {
         let line = line.trim();
@@ -67,11 +68,11 @@ fn names(text: &[u8]) -> Result<Vec<(u64, &str)>, Fault> {
         let seconds = seconds.filter(|s| (0.0..1e11).contains(s));
         // A name leads to a file beside the index, and nowhere else.
         let (Some(seconds), false) = (seconds, line.contains(['/', '\\'])) else {
-            return Err(Fault::new(Place::Line(i + 1), "no name of a depth image with its time", CURE));
+            return Err(ReaderFault::new(FilePlace::Line(i + 1), "no name of a depth image with its time", CURE));
         };
         if names.len() >= MAX_FOLDER_FILES {
             let problem = format!("more than {MAX_FOLDER_FILES} depth images");
-            return Err(Fault::new(Place::Line(i + 1), problem, "cut the recording into shorter pieces"));
+            return Err(ReaderFault::new(FilePlace::Line(i + 1), problem, "cut the recording into shorter pieces"));
         }
         names.push(((seconds * SECOND_NS as f64) as u64, line));
     }
@@ -80,15 +81,15 @@ fn names(text: &[u8]) -> Result<Vec<(u64, &str)>, Fault> {
 
 /// The samples of a PGM as the recorder writes it: a header of one line, then little-endian words, which a PGM's should not
 /// be.
-fn samples<'a>(bytes: &'a [u8], camera: &Intrinsics) -> Result<&'a [u8], Fault> {
+fn samples<'a>(bytes: &'a [u8], camera: &Intrinsics) -> Result<&'a [u8], ReaderFault> {
     let head = &bytes[..bytes.len().min(64)];
     let end = head.iter().position(|b| *b == b'\n').filter(|_| head.starts_with(b"P5"));
-    let end = end.ok_or_else(|| Fault::new(Place::Byte(0), "no PGM header of one line", CURE))?;
+    let end = end.ok_or_else(|| ReaderFault::new(FilePlace::Byte(0), "no PGM header of one line", CURE))?;
     let samples = &bytes[end + 1..];
     if samples.len() != camera.pixels() * 2 {
         let (w, h) = (camera.width, camera.height);
         let problem = format!("{} bytes are no image of {w} x {h} pixels", samples.len());
-        return Err(Fault::new(Place::Byte(end as u64 + 1), problem, CURE));
+        return Err(ReaderFault::new(FilePlace::Byte(end as u64 + 1), problem, CURE));
     }
     Ok(samples)
 }

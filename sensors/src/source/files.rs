@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::error::{Fault, Place};
+use crate::error::{FilePlace, ReaderFault};
 use crate::limits::{MAX_FILE_BYTES, RECORDING};
 
 /// How to open a recording.
@@ -14,11 +14,11 @@ pub struct OpenOptions {
 }
 
 /// Counts the bytes of a folder's files, which together are at most [`MAX_FILE_BYTES`].
-pub(super) fn count_bytes(total: &mut u64, bytes: &[u8]) -> Result<(), Fault> {
+pub(super) fn count_bytes(total: &mut u64, bytes: &[u8]) -> Result<(), ReaderFault> {
     *total += bytes.len() as u64;
     if *total > MAX_FILE_BYTES {
         let problem = format!("its files have more than the {MAX_FILE_BYTES} bytes that are read of a recording");
-        return Err(Fault::new(Place::Whole, problem, RECORDING.cure));
+        return Err(ReaderFault::new(FilePlace::Whole, problem, RECORDING.cure));
     }
     Ok(())
 }

@@ -11,7 +11,7 @@ use super::files::{OpenOptions, count_bytes, shown};
 use super::raw_depth::{assumed_camera, samples};
 use super::sequence::{Sequence, assumed_time, untimed};
 use super::{fakenect, png_depth};
-use crate::error::{Fault, Place, SourceError};
+use crate::error::{FilePlace, ReaderFault, SourceError};
 use crate::limits::{CAMERA, MAX_FOLDER_FILES, RECORDING};
 use crate::session::Session;
 use toile_base::clock::SECOND_NS;
@@ -57,13 +57,17 @@ pub(super) fn read(folder: &Path, options: &OpenOptions) -> Result<Session, Sour
     Ok(session)
 }
 
-fn push(bytes: &[u8], time_ns: u64, sequence: &mut Sequence) -> Result<(), Fault> {
+fn push(bytes: &[u8], time_ns: u64, sequence: &mut Sequence) -> Result<(), ReaderFault> {
     if bytes.starts_with(png_depth::MAGIC) {
         let image = png_depth::decode(bytes, &sequence.sensor())?;
         return sequence.push(time_ns, image.into_iter());
     }
     if !bytes.len().is_multiple_of(2) {
-        return Err(Fault::new(Place::Whole, "an odd number of bytes, which is no image of 16 bits a pixel", CURE));
+        return Err(ReaderFault::new(
+            FilePlace::Whole,
+            "an odd number of bytes, which is no image of 16 bits a pixel",
+            CURE,
+        ));
     }
     sequence.push(time_ns, samples(bytes))
 }
@@ -76,7 +80,9 @@ fn list(folder: &Path) -> Result<(Vec<PathBuf>, Option<PathBuf>), SourceError> {
         let path = entry.map_err(refused)?.path();
         if i >= MAX_FOLDER_FILES {
             let problem = format!("more than {MAX_FOLDER_FILES} files in the folder");
-            return Err(Fault::new(Place::Whole, problem, "cut the recording into shorter pieces").at(&shown(folder)));
+            return Err(
+                ReaderFault::new(FilePlace::Whole, problem, "cut the recording into shorter pieces").at(&shown(folder))
+            );
         }
         let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
         if path.file_name().is_some_and(|n| n == CAMERA_FILE) {
@@ -89,7 +95,7 @@ fn list(folder: &Path) -> Result<(Vec<PathBuf>, Option<PathBuf>), SourceError> {
     }
     let mut images = if png.len() >= raw.len() { png } else { raw };
     if images.is_empty() {
-        return Err(Fault::new(Place::Whole, "no depth image in the folder", CURE).at(&shown(folder)));
+        return Err(ReaderFault::new(FilePlace::Whole, "no depth image in the folder", CURE).at(&shown(folder)));
     }
     images.sort_by_cached_key(|path| natural(&path.file_name().unwrap_or_default().to_string_lossy()));
     Ok((images, camera))

@@ -10,7 +10,7 @@ use glam::Vec3;
 use super::joint_map::{Format, JointMap};
 use super::kinect2::turned;
 use super::{align, tidy};
-use crate::error::{Fault, Place};
+use crate::error::{FilePlace, ReaderFault};
 use crate::limits::MAX_JOINT_FRAMES;
 use crate::session::{Session, too_many};
 use toile_base::frame::{Joints, TrackedJoint};
@@ -32,9 +32,10 @@ const PERIOD_NS: f64 = 1e9 / 30.0;
 
 const CURE: &str = "record it again, or delete that line";
 
-pub(super) fn read(bytes: &[u8]) -> Result<Session, Fault> {
-    let text = std::str::from_utf8(bytes)
-        .map_err(|e| Fault::new(Place::Byte(e.valid_up_to() as u64), "not text", "give the file as recorded"))?;
+pub(super) fn read(bytes: &[u8]) -> Result<Session, ReaderFault> {
+    let text = std::str::from_utf8(bytes).map_err(|e| {
+        ReaderFault::new(FilePlace::Byte(e.valid_up_to() as u64), "not text", "give the file as recorded")
+    })?;
     let lines = text.trim_start_matches('\u{feff}').lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let mut frames = Vec::new();
     let mut kind: Option<(Format, JointMap)> = None;
@@ -46,7 +47,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<Session, Fault> {
             let format = format_of(line);
             (format, JointMap::of(format))
         });
-        frames.push(frame(line, *format, map).map_err(|problem| Fault::new(Place::Line(i + 1), problem, CURE))?);
+        frames.push(
+            frame(line, *format, map).map_err(|problem| ReaderFault::new(FilePlace::Line(i + 1), problem, CURE))?,
+        );
     }
     let mut notes = Vec::new();
     let unit = match kind {
@@ -54,7 +57,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Session, Fault> {
         _ => UNITS_NS[0],
     };
     for (i, frame) in frames.iter_mut().enumerate() {
-        let beyond = || Fault::new(Place::Frame(i), "the time is beyond any clock", CURE);
+        let beyond = || ReaderFault::new(FilePlace::Frame(i), "the time is beyond any clock", CURE);
         frame.time_ns = frame.time_ns.checked_mul(unit).ok_or_else(beyond)?;
     }
     let mut joints = tidy::tidy(frames, &mut notes)?;

@@ -10,7 +10,7 @@ use toile_base::skeleton::Joint;
 use super::joint_map::{Format, JointMap};
 use super::kinect2::{KINECT_JOINTS, turned};
 use super::{align, tidy};
-use crate::error::{Fault, Place};
+use crate::error::{FilePlace, ReaderFault};
 use crate::filter::gate::derive_confidence;
 use crate::limits::MAX_JOINT_FRAMES;
 use crate::session::{Session, too_many};
@@ -52,11 +52,11 @@ struct CameraJoint {
     z: f32,
 }
 
-pub(super) fn read(bytes: &[u8]) -> Result<Session, Fault> {
+pub(super) fn read(bytes: &[u8]) -> Result<Session, ReaderFault> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let bodies: Vec<KinectronBody> = serde_json::from_slice(bytes).map_err(|e| {
         let problem = format!("not a Kinectron recording: {e}");
-        Fault::new(Place::Line(e.line()), problem, CURE)
+        ReaderFault::new(FilePlace::Line(e.line()), problem, CURE)
     })?;
     if bodies.len() > MAX_JOINT_FRAMES {
         return Err(too_many(bodies.len()));
@@ -71,7 +71,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Session, Fault> {
             others += 1;
             continue;
         }
-        frames.push(frame(body, &map).map_err(|problem| Fault::new(Place::Frame(i), problem, CURE))?);
+        frames.push(frame(body, &map).map_err(|problem| ReaderFault::new(FilePlace::Frame(i), problem, CURE))?);
     }
     if others > 0 {
         notes.push(format!("{others} frames are untracked or of another person and were left out"));

@@ -13,7 +13,7 @@ use super::joint_map::{Format, JointMap};
 use super::mediapipe_landmarks::{Image, Landmark, LandmarkPerson, POINTS};
 use super::mediapipe_place as place;
 use super::{align, tidy};
-use crate::error::{Fault, Place};
+use crate::error::{FilePlace, ReaderFault};
 use crate::limits::MAX_JOINT_FRAMES;
 use crate::session::{Session, too_many};
 use toile_base::frame::Joints;
@@ -69,13 +69,13 @@ pub(super) fn recognises(head: &[u8]) -> bool {
     head.windows(10).any(|w| w == b"andmarks\":" || w == b"andmarks\" ")
 }
 
-pub(super) fn read(bytes: &[u8]) -> Result<Session, Fault> {
+pub(super) fn read(bytes: &[u8]) -> Result<Session, ReaderFault> {
     let frames = parse(bytes)?;
     let mut notes = Vec::new();
     let mut people = Vec::with_capacity(frames.len());
     let mut last = None;
     for (i, frame) in frames.iter().enumerate() {
-        let person = person(frame, last).map_err(|problem| Fault::new(Place::Frame(i), problem, CURE))?;
+        let person = person(frame, last).map_err(|problem| ReaderFault::new(FilePlace::Frame(i), problem, CURE))?;
         if let Some(person) = person {
             last = person.image.as_ref().map(Image::hips).or(last);
             people.push(person);
@@ -96,10 +96,10 @@ pub(super) fn read(bytes: &[u8]) -> Result<Session, Fault> {
     Ok(Session { joints, notes, raw_scale_known: false, ..Session::default() })
 }
 
-fn parse(bytes: &[u8]) -> Result<Vec<LandmarkFrame>, Fault> {
+fn parse(bytes: &[u8]) -> Result<Vec<LandmarkFrame>, ReaderFault> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii();
     let fault = |e: serde_json::Error| {
-        Fault::new(Place::Line(e.line()), format!("not results of the Pose Landmarker: {e}"), CURE)
+        ReaderFault::new(FilePlace::Line(e.line()), format!("not results of the Pose Landmarker: {e}"), CURE)
     };
     if bytes.starts_with(b"[") {
         let frames: Vec<LandmarkFrame> = serde_json::from_slice(bytes).map_err(fault)?;

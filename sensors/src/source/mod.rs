@@ -1,8 +1,5 @@
 //! Recordings of real sensors: one file a format, recognised by content.
 //!
-//! Reads: files and folders of any of the kinds below. Writes: a `Session` in our world. Budget: at load only.
-//! Thread: the loading thread.
-//!
 //! | kind | recognised by |
 //! |---|---|
 //! | Toile session (MCAP) | the MCAP magic |
@@ -59,7 +56,7 @@ use toile_assets::file;
 use crate::limits::{CAMERA, RECORDING};
 use files::shown;
 
-pub use crate::error::{Place, SourceError};
+pub use crate::error::{FilePlace, SourceError};
 pub use crate::session::Session;
 pub use files::OpenOptions;
 

@@ -4,12 +4,12 @@ use std::path::Path;
 
 use toile_assets::file;
 
-use super::camera::{self, Camera};
+use super::camera::{self, DepthCamera};
 use super::files::{OpenOptions, shown};
 use super::live::library;
 use super::openni_library::OpenNiLibrary;
 use super::sequence::Sequence;
-use crate::error::{Fault, Place, SourceError};
+use crate::error::{FilePlace, ReaderFault, SourceError};
 use crate::limits::{CAMERA, MAX_DEPTH_FRAMES};
 use crate::session::{Session, too_many};
 
@@ -30,7 +30,7 @@ pub(super) fn read(path: &Path, options: &OpenOptions) -> Result<Session, Source
     Ok(session)
 }
 
-fn play(path: &Path, camera: Option<Camera>) -> Result<Session, Fault> {
+fn play(path: &Path, camera: Option<DepthCamera>) -> Result<Session, ReaderFault> {
     let library = OpenNiLibrary::start(&library::folders())?;
     let device = library.open(Some(path.as_os_str().as_encoded_bytes()))?;
     device.play_at_once();
@@ -45,13 +45,13 @@ fn play(path: &Path, camera: Option<Camera>) -> Result<Session, Fault> {
         let (time, (width, height, mm_per_unit)) = (frame.time_ns(), frame.shape()?);
         samples.clear();
         if !frame.depth(width, height, &mut samples) {
-            return Err(Fault::new(Place::Whole, "a depth image shorter than its size", CURE));
+            return Err(ReaderFault::new(FilePlace::Whole, "a depth image shorter than its size", CURE));
         }
         drop(frame);
         if sequence.is_none() {
             let camera = match camera {
                 Some(camera) => camera,
-                None => Camera { mm_per_unit, ..Camera::pinhole(stream.intrinsics(width, height)?) },
+                None => DepthCamera { mm_per_unit, ..DepthCamera::pinhole(stream.intrinsics(width, height)?) },
             };
             sequence = Some(Sequence::new(camera, Vec::new())?);
         }
@@ -59,6 +59,6 @@ fn play(path: &Path, camera: Option<Camera>) -> Result<Session, Fault> {
             sequence.push(time, samples.iter().copied())?;
         }
     }
-    let cut = Fault::new(Place::Whole, "no depth frame can be played", CURE);
+    let cut = ReaderFault::new(FilePlace::Whole, "no depth frame can be played", CURE);
     sequence.ok_or(cut)?.finish()
 }

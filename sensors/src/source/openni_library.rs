@@ -10,7 +10,7 @@ use std::ptr;
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 
 use super::live::library::{Library, LibraryName, functions};
-use crate::error::{Fault, Place};
+use crate::error::{FilePlace, ReaderFault};
 use toile_base::frame::Intrinsics;
 
 pub(super) const LIBRARY: LibraryName = LibraryName {
@@ -122,8 +122,8 @@ unsafe impl Send for OpenNiStream {}
 
 impl OpenNiLibrary {
     /// Loads it, and waits until nobody else uses it.
-    pub fn start(folders: &[PathBuf]) -> Result<Arc<Self>, Fault> {
-        let whole = |e: &dyn std::fmt::Display| Fault::new(Place::Whole, e.to_string(), "then try again");
+    pub fn start(folders: &[PathBuf]) -> Result<Arc<Self>, ReaderFault> {
+        let whole = |e: &dyn std::fmt::Display| ReaderFault::new(FilePlace::Whole, e.to_string(), "then try again");
         let library = Library::load(&LIBRARY, folders).map_err(|e| whole(&e))?;
         let api = OniApi::of(&library).map_err(|e| whole(&e))?;
         let (in_use, free) = &IN_USE;
@@ -136,9 +136,9 @@ impl OpenNiLibrary {
     }
 
     /// Opens a device by its address, a recording by its path; none is the first camera that is found.
-    pub fn open(self: &Arc<Self>, uri: Option<&[u8]>) -> Result<Arc<OpenNiDevice>, Fault> {
+    pub fn open(self: &Arc<Self>, uri: Option<&[u8]>) -> Result<Arc<OpenNiDevice>, ReaderFault> {
         let uri = uri.map(CString::new).transpose();
-        let uri = uri.map_err(|_| Fault::new(Place::Whole, "a path with a zero in it", CURE))?;
+        let uri = uri.map_err(|_| ReaderFault::new(FilePlace::Whole, "a path with a zero in it", CURE))?;
         let (mut handle, address) = (ptr::null_mut(), uri.as_ref().map_or(ptr::null(), |uri| uri.as_ptr()));
         // SAFETY: `uri`, if there is one, ends with a zero and `handle` is a place for one pointer; both outlive the call.
         checked(&self.api, unsafe { (self.api.oniDeviceOpen)(address, &mut handle) }, "OpenNI cannot open it")?;
@@ -174,16 +174,16 @@ impl OpenNiDevice {
     }
 
     /// Its depth stream, started.
-    pub fn depth(self: &Arc<Self>) -> Result<OpenNiStream, Fault> {
+    pub fn depth(self: &Arc<Self>) -> Result<OpenNiStream, ReaderFault> {
         self.stream(SENSOR_DEPTH, "it holds no depth stream", "its depth stream cannot be played")
     }
 
     /// Its colour stream, started.
-    pub fn colour(self: &Arc<Self>) -> Result<OpenNiStream, Fault> {
+    pub fn colour(self: &Arc<Self>) -> Result<OpenNiStream, ReaderFault> {
         self.stream(SENSOR_COLOUR, "it holds no colour stream", "its colour stream cannot be played")
     }
 
-    fn stream(self: &Arc<Self>, sensor: c_int, none: &str, refused: &str) -> Result<OpenNiStream, Fault> {
+    fn stream(self: &Arc<Self>, sensor: c_int, none: &str, refused: &str) -> Result<OpenNiStream, ReaderFault> {
         let (api, mut handle) = (&self.library.api, ptr::null_mut());
         // SAFETY: the device is open and `handle` is a place for one pointer.
         checked(api, unsafe { (api.oniDeviceCreateStream)(self.handle, sensor, &mut handle) }, none)?;
@@ -240,11 +240,15 @@ impl OpenNiStream {
     }
 
     /// The camera by its fields of view.
-    pub fn intrinsics(&self, width: u32, height: u32) -> Result<Intrinsics, Fault> {
+    pub fn intrinsics(&self, width: u32, height: u32) -> Result<Intrinsics, ReaderFault> {
         let field = |id| self.property::<4>(id).map(f32::from_ne_bytes);
         let (Some(across), Some(down)) = (field(HORIZONTAL_FOV), field(VERTICAL_FOV)) else {
             let cure = "give the depth camera as a camera JSON";
-            return Err(Fault::new(Place::Whole, "the recording does not say the camera's field of view", cure));
+            return Err(ReaderFault::new(
+                FilePlace::Whole,
+                "the recording does not say the camera's field of view",
+                cure,
+            ));
         };
         let focal = |size: u32, angle: f32| size as f32 * 0.5 / (angle * 0.5).tan();
         let middle = |size: u32| (size as f32 - 1.0) * 0.5;
@@ -256,7 +260,7 @@ impl OpenNiStream {
             cx: middle(width),
             cy: middle(height),
         };
-        k.fault().map_or(Ok(k), |fault| Err(Fault::new(Place::Whole, fault, CURE)))
+        k.fault().map_or(Ok(k), |fault| Err(ReaderFault::new(FilePlace::Whole, fault, CURE)))
     }
 
     /// Where the driver has a colour stream show what this depth stream measured at a pixel (px and depth in its units); none where it
@@ -318,14 +322,14 @@ impl OpenNiFrame<'_> {
     }
 
     /// Width, height and unit, where they are those of a depth image.
-    pub fn shape(&self) -> Result<(u32, u32, f32), Fault> {
+    pub fn shape(&self) -> Result<(u32, u32, f32), ReaderFault> {
         let format = self.frame().mode.pixel_format;
         let mm_per_unit = unit_of(format).ok_or_else(|| {
             let problem = format!("depth in OpenNI's format {format}, not in millimetres");
-            Fault::new(Place::Whole, problem, "record it again in millimetres")
+            ReaderFault::new(FilePlace::Whole, problem, "record it again in millimetres")
         })?;
         let size = self.size().filter(|_| self.frame().cropping == 0);
-        let (w, h) = size.ok_or_else(|| Fault::new(Place::Whole, "a cropped or empty depth image", CURE))?;
+        let (w, h) = size.ok_or_else(|| ReaderFault::new(FilePlace::Whole, "a cropped or empty depth image", CURE))?;
         Ok((w, h, mm_per_unit))
     }
 
@@ -370,7 +374,7 @@ impl Drop for OpenNiFrame<'_> {
 }
 
 /// A fault with the library's own words where a call failed.
-fn checked(api: &OniApi, status: c_int, what: &str) -> Result<(), Fault> {
+fn checked(api: &OniApi, status: c_int, what: &str) -> Result<(), ReaderFault> {
     if status == OK {
         return Ok(());
     }
@@ -381,7 +385,7 @@ fn checked(api: &OniApi, status: c_int, what: &str) -> Result<(), Fault> {
     };
     let message = message.split_whitespace().collect::<Vec<_>>().join(" ");
     let message: String = message.chars().take(200).collect();
-    Err(Fault::new(Place::Whole, format!("{what} (OpenNI says {status}: {message})"), CURE))
+    Err(ReaderFault::new(FilePlace::Whole, format!("{what} (OpenNI says {status}: {message})"), CURE))
 }
 
 #[cfg(test)]

@@ -30,13 +30,13 @@ pub(super) struct PlacedCamera {
 
 /// Finds the pose from frame to frame.
 #[derive(Debug, Default)]
-pub(super) struct Placement {
+pub(super) struct CameraPlacement {
     tried: usize,
     /// The first image that shows anything.
     first: Option<DepthFrame>,
 }
 
-impl Placement {
+impl CameraPlacement {
     /// Looks at the next frame; gives the pose once the floor is seen, or once it was sought in vain.
     pub fn push(&mut self, frame: &DepthFrame) -> Option<PlacedCamera> {
         if !shows_anything(frame) {

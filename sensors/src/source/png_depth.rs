@@ -2,10 +2,10 @@
 
 use std::io::Cursor;
 
-use super::camera::Camera;
+use super::camera::DepthCamera;
 use super::raw_depth::assumed_camera;
 use super::sequence::{Sequence, assumed_time};
-use crate::error::{Fault, Place};
+use crate::error::{FilePlace, ReaderFault};
 use crate::session::Session;
 use toile_base::frame::Intrinsics;
 
@@ -15,7 +15,7 @@ pub(super) const MAGIC: &[u8] = b"\x89PNG\r\n\x1a\n";
 const CURE: &str = "export depth as 16-bit grey PNG, one channel, in millimetres";
 
 /// Reads one image.
-pub(super) fn read(bytes: &[u8], camera: Option<Camera>) -> Result<Session, Fault> {
+pub(super) fn read(bytes: &[u8], camera: Option<DepthCamera>) -> Result<Session, ReaderFault> {
     let mut notes = Vec::new();
     let camera = camera.unwrap_or_else(|| assumed_camera(&mut notes));
     let mut sequence = Sequence::new(camera, notes)?;
@@ -25,8 +25,8 @@ pub(super) fn read(bytes: &[u8], camera: Option<Camera>) -> Result<Session, Faul
 }
 
 /// The samples of an image of the camera's size, which is checked before memory is taken.
-pub(super) fn decode(bytes: &[u8], camera: &Intrinsics) -> Result<Vec<u16>, Fault> {
-    let whole = |problem| Fault::new(Place::Whole, problem, CURE);
+pub(super) fn decode(bytes: &[u8], camera: &Intrinsics) -> Result<Vec<u16>, ReaderFault> {
+    let whole = |problem| ReaderFault::new(FilePlace::Whole, problem, CURE);
     let broken = |e: png::DecodingError| whole(format!("the PNG is broken ({e})"));
     let size = camera.pixels() * 2;
     let limits = png::Limits { bytes: 2 * size + (1 << 20) };
@@ -37,7 +37,7 @@ pub(super) fn decode(bytes: &[u8], camera: &Intrinsics) -> Result<Vec<u16>, Faul
     let (w, h) = (reader.info().width, reader.info().height);
     if (w, h) != (camera.width, camera.height) {
         let problem = format!("the PNG has {w} x {h} pixels where the camera has {} x {}", camera.width, camera.height);
-        return Err(Fault::new(Place::Whole, problem, "give the camera JSON that fits"));
+        return Err(ReaderFault::new(FilePlace::Whole, problem, "give the camera JSON that fits"));
     }
     let mut samples = vec![0; size];
     reader.next_frame(&mut samples).map_err(broken)?;

@@ -1,8 +1,8 @@
 //! Raw depth: images of 16-bit little-endian millimetres, one after the other, 0 = nothing measured.
 
-use super::camera::Camera;
+use super::camera::DepthCamera;
 use super::sequence::{Sequence, assumed_time, untimed};
-use crate::error::{Fault, Place};
+use crate::error::{FilePlace, ReaderFault};
 use crate::limits::MAX_DEPTH_FRAMES;
 use crate::session::{Session, too_many};
 use toile_base::frame::Intrinsics;
@@ -11,13 +11,13 @@ use toile_base::frame::Intrinsics;
 pub(super) const KINECT_V1_BYTES: u64 = 640 * 480 * 2;
 
 /// The camera that is assumed where none is given, and what is said of that.
-pub(super) fn assumed_camera(notes: &mut Vec<String>) -> Camera {
+pub(super) fn assumed_camera(notes: &mut Vec<String>) -> DepthCamera {
     let note = "no camera was given: a Kinect v1 is assumed (640 x 480, f = 575.8 px, centred); sizes depend on it";
     notes.push(note.to_owned());
-    Camera::pinhole(Intrinsics::KINECT_V1)
+    DepthCamera::pinhole(Intrinsics::KINECT_V1)
 }
 
-pub(super) fn read(bytes: &[u8], camera: Option<Camera>) -> Result<Session, Fault> {
+pub(super) fn read(bytes: &[u8], camera: Option<DepthCamera>) -> Result<Session, ReaderFault> {
     let mut notes = Vec::new();
     let camera = camera.unwrap_or_else(|| assumed_camera(&mut notes));
     let image = camera.intrinsics.pixels() * 2;
@@ -25,7 +25,7 @@ pub(super) fn read(bytes: &[u8], camera: Option<Camera>) -> Result<Session, Faul
         let (w, h) = (camera.intrinsics.width, camera.intrinsics.height);
         let problem = format!("{} bytes are not a number of images of {w} x {h} x 2 bytes", bytes.len());
         let cure = "give the camera JSON that fits, or the complete file";
-        return Err(Fault::new(Place::Byte(bytes.len() as u64), problem, cure));
+        return Err(ReaderFault::new(FilePlace::Byte(bytes.len() as u64), problem, cure));
     }
     if bytes.len() / image > MAX_DEPTH_FRAMES {
         return Err(too_many(bytes.len() / image));

@@ -2,10 +2,10 @@
 
 use glam::{Affine3A, Vec3};
 
-use super::camera::Camera;
+use super::camera::DepthCamera;
 use super::depth_converter::DepthConverter;
-use super::placement::{self, Placement};
-use crate::error::{Fault, Place};
+use super::placement::{self, CameraPlacement};
+use crate::error::{FilePlace, ReaderFault};
 use crate::limits::MAX_DURATION_NS;
 use crate::session::{DepthRoom, Session};
 use toile_base::clock::SECOND_NS;
@@ -26,7 +26,7 @@ pub(super) fn untimed(images: usize) -> String {
 
 /// Depth images of one camera, as they come.
 pub(super) struct Sequence {
-    camera: Camera,
+    camera: DepthCamera,
     converter: DepthConverter,
     room: DepthRoom,
     start_ns: Option<u64>,
@@ -38,7 +38,7 @@ pub(super) struct Sequence {
 
 impl Sequence {
     /// No images yet; refused where the camera's lens is described by numbers of no lens.
-    pub fn new(camera: Camera, mut notes: Vec<String>) -> Result<Self, Fault> {
+    pub fn new(camera: DepthCamera, mut notes: Vec<String>) -> Result<Self, ReaderFault> {
         let converter = DepthConverter::new(camera, &mut notes)?;
         let room = DepthRoom::default();
         Ok(Self { camera, converter, room, start_ns: None, backwards: 0, frames: Vec::new(), notes })
@@ -51,12 +51,12 @@ impl Sequence {
 
     /// Takes one image of the sensor's size (in the camera's units, 0 = nothing). One that goes back in time is dropped
     /// and counted.
-    pub fn push(&mut self, time_ns: u64, samples: impl ExactSizeIterator<Item = u16>) -> Result<(), Fault> {
+    pub fn push(&mut self, time_ns: u64, samples: impl ExactSizeIterator<Item = u16>) -> Result<(), ReaderFault> {
         let index = self.frames.len() + self.backwards;
         if samples.len() != self.camera.intrinsics.pixels() {
             let k = self.camera.intrinsics;
             let problem = format!("{} depths where the camera has {} x {} pixels", samples.len(), k.width, k.height);
-            return Err(Fault::new(Place::Frame(index), problem, "give the camera JSON that fits"));
+            return Err(ReaderFault::new(FilePlace::Frame(index), problem, "give the camera JSON that fits"));
         }
         let start = *self.start_ns.get_or_insert(time_ns);
         let last = self.frames.last().map(|f| f.time_ns);
@@ -66,7 +66,11 @@ impl Sequence {
         };
         if time_ns > MAX_DURATION_NS {
             let problem = "its time lies more than two hours after the first image";
-            return Err(Fault::new(Place::Frame(index), problem, "cut the recording where the clock was set"));
+            return Err(ReaderFault::new(
+                FilePlace::Frame(index),
+                problem,
+                "cut the recording where the clock was set",
+            ));
         }
         let intrinsics = self.converter.kept();
         self.room.take(&intrinsics)?;
@@ -77,7 +81,7 @@ impl Sequence {
     }
 
     /// All images as a session in our world.
-    pub fn finish(mut self) -> Result<Session, Fault> {
+    pub fn finish(mut self) -> Result<Session, ReaderFault> {
         if self.backwards > 0 {
             let total = self.frames.len() + self.backwards;
             self.notes.push(format!("{} of {total} images went back in time and were dropped", self.backwards));
@@ -90,11 +94,11 @@ impl Sequence {
 /// Sets the images into our world: the floor at y = 0, centred at what is seen. Where the pose is known, so is the floor, if
 /// something stands near y = 0 of the camera's world; otherwise it lies under the lowest points. Of a camera of unknown pose
 /// all comes from the floor that is seen.
-fn place(depth: &mut [DepthFrame], posed: bool, notes: &mut Vec<String>) -> Result<(), Fault> {
+fn place(depth: &mut [DepthFrame], posed: bool, notes: &mut Vec<String>) -> Result<(), ReaderFault> {
     let pose = if posed { centred(depth, notes) } else { found(depth, notes) };
     let pose = pose.ok_or_else(|| {
         let cure = "record again with somebody in view";
-        Fault::new(Place::Frame(0), "every depth image is empty", cure)
+        ReaderFault::new(FilePlace::Frame(0), "every depth image is empty", cure)
     })?;
     depth.iter_mut().for_each(|f| f.camera_to_world = pose);
     Ok(())
@@ -102,7 +106,7 @@ fn place(depth: &mut [DepthFrame], posed: bool, notes: &mut Vec<String>) -> Resu
 
 /// The pose of a camera that nothing is known of.
 fn found(depth: &[DepthFrame], notes: &mut Vec<String>) -> Option<Affine3A> {
-    let mut placement = Placement::default();
+    let mut placement = CameraPlacement::default();
     let placed = depth.iter().find_map(|frame| placement.push(frame)).or_else(|| placement.assumed())?;
     notes.push(placed.note);
     Some(placed.pose)
@@ -133,7 +137,7 @@ mod tests {
     use super::*;
 
     /// A board of a person's size at the origin, as a level camera sees it, with its lowest edge at a height (m).
-    fn board(camera: &Camera, pose: Affine3A, low: f32) -> Vec<u16> {
+    fn board(camera: &DepthCamera, pose: Affine3A, low: f32) -> Vec<u16> {
         let k = camera.intrinsics;
         let eye = pose.translation;
         let pixel = |i: usize| {
@@ -147,7 +151,7 @@ mod tests {
     fn height_over_the_floor(low: f32) -> f32 {
         let mut pose = level_camera();
         pose.translation = glam::Vec3A::new(0.3, 0.9, 3.2);
-        let camera = Camera { pose: Some(pose), ..Camera::pinhole(Intrinsics::KINECT_V1) };
+        let camera = DepthCamera { pose: Some(pose), ..DepthCamera::pinhole(Intrinsics::KINECT_V1) };
         let image = board(&camera, pose, low);
         let mut sequence = Sequence::new(camera, Vec::new()).expect("a camera");
         sequence.push(0, image.into_iter()).expect("an image");

@@ -2,7 +2,7 @@
 
 use toile_base::numeric::statistics::quantile_of;
 
-use crate::error::{Fault, Place};
+use crate::error::{FilePlace, ReaderFault};
 use crate::limits::{MAX_DURATION_NS, MAX_JOINT_FRAMES};
 use crate::session::too_many;
 use toile_base::clock::SECOND_NS;
@@ -11,7 +11,7 @@ use toile_base::frame::Joints;
 /// Makes times start at 0 and strictly increase. A frame that follows within a third of the nominal period (the median
 /// distance) takes the place of the one before: such pairs are late frames handed over in a burst, and the last is
 /// nearest to its own time. Frames that go back in time are dropped.
-pub(super) fn tidy(frames: Vec<Joints>, notes: &mut Vec<String>) -> Result<Vec<Joints>, Fault> {
+pub(super) fn tidy(frames: Vec<Joints>, notes: &mut Vec<String>) -> Result<Vec<Joints>, ReaderFault> {
     if frames.len() > MAX_JOINT_FRAMES {
         return Err(too_many(frames.len()));
     }
@@ -28,7 +28,11 @@ pub(super) fn tidy(frames: Vec<Joints>, notes: &mut Vec<String>) -> Result<Vec<J
         frame.time_ns = time;
         if time > MAX_DURATION_NS {
             let problem = "its time lies more than two hours after the first frame";
-            return Err(Fault::new(Place::Frame(kept.len()), problem, "cut the recording where the clock was set"));
+            return Err(ReaderFault::new(
+                FilePlace::Frame(kept.len()),
+                problem,
+                "cut the recording where the clock was set",
+            ));
         }
         match kept.last_mut() {
             Some(last) if time < last.time_ns => backwards += 1,

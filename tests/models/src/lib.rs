@@ -1,11 +1,7 @@
 //! The hand-offs between threads, in every order in which they can run: the engine's own files, over atomics and threads
 //! that a model checker (loom) plays.
-//!
-//! Reads: engine/core/src/workers. Writes: nothing.
-//! Budget: a minute for all models.
-//! Thread: those of the models, which are played one after the other.
 
-// Rooms in the order of the data: a room imports only from the groups above its own (tests/tests/layers.rs).
+// Modules in the order of the data: each imports only from the groups above its own (tests/tests/layers.rs).
 #[expect(unsafe_code, reason = "the same contract over the model's cell")]
 pub mod sync;
 #[expect(unsafe_code, reason = "the protocol of the triple buffer, whose own atomics cannot be replaced")]

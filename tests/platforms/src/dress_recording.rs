@@ -13,10 +13,10 @@ use toile_engine::body::palette;
 use toile_engine::body_surface::BodySurface;
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere};
-use toile_engine::frame::BLEND;
 use toile_engine::lanes::Width;
 use toile_engine::skin::SkinningJob;
 use toile_engine::workers::WorkerPool;
+use toile_engine::world::BLEND;
 
 use crate::hash_of;
 

@@ -7,7 +7,7 @@ use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere};
 use toile_engine::lanes::Width;
 
-use crate::skirt::{self, Motion, Stretch};
+use crate::skirt::{self, SkirtMotion, Stretch};
 use crate::{STEPS, hash_of};
 
 /// Rows and columns of the skirt: 4,096 vertices.
@@ -30,11 +30,11 @@ pub fn skirt_hash(width: Width) -> u64 {
     let mut cloth = Cloth::new(&garment, &colliders);
     let settings = Settings { width, ..Settings::default() };
     let mut palette = [Affine3A::IDENTITY; BONES];
-    colliders.place_spheres(&skirt::spheres(Motion::Walk, 0.0));
+    colliders.place_spheres(&skirt::spheres(SkirtMotion::Walk, 0.0));
     for tick in 1..=STEPS {
         let time = tick as f64 * f64::from(settings.step_seconds);
-        palette[0] = skirt::root(Motion::Walk, time);
-        colliders.place_spheres(&skirt::spheres(Motion::Walk, time));
+        palette[0] = skirt::root(SkirtMotion::Walk, time);
+        colliders.place_spheres(&skirt::spheres(SkirtMotion::Walk, time));
         cloth.step(&garment, &Step { palette: &palette, colliders: &colliders, settings: &settings });
     }
     let mut particle = vec![0; garment.source.len()];

@@ -1,7 +1,7 @@
 //! Fabrics as values in physical units, and the curves of one link.
 
 pub mod friction_element;
-pub mod link_law;
+pub mod link_curve;
 pub mod loop_widths;
 pub mod print;
 pub mod stretch_curve;
@@ -216,7 +216,7 @@ impl Fabric {
     }
 
     /// Whether its links have more than one slope, or rub.
-    pub fn has_link_laws(&self) -> bool {
+    pub fn has_link_curves(&self) -> bool {
         let StretchCurves { warp, weft } = self.stretch;
         warp.is_some()
             || weft.is_some()

@@ -1,6 +1,6 @@
 //! Curves beyond one slope: stretch that is soft up to a knee and stiff behind it, shear that locks.
 
-use super::link_law::LinkLaw;
+use super::link_curve::LinkCurve;
 
 /// How a fabric stretches along its threads, where it was measured as a curve.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -83,13 +83,13 @@ impl StretchCurve {
     }
 
     /// The law, in f64.
-    pub fn law(&self) -> LinkLaw {
+    pub fn link_curve(&self) -> LinkCurve {
         let slope = f64::from(self.below_n_m());
-        LinkLaw {
+        LinkCurve {
             knees: [f64::NEG_INFINITY, f64::from(self.knee_percent) / 100.0],
             behind: [1.0, f64::from(self.beyond_n_m) / slope],
             half_width: 0.5 * f64::from(self.hysteresis_n_m),
-            ..LinkLaw::plain(slope)
+            ..LinkCurve::plain(slope)
         }
     }
 
@@ -141,11 +141,11 @@ impl StretchCurve {
     /// Work of the load and of the way back, down to no force (N/m).
     pub fn works(&self, extension: f64) -> [f64; 2] {
         const STEPS: u32 = 500;
-        let (mut law, step) = (self.law(), extension / f64::from(STEPS));
+        let (mut link_curve, step) = (self.link_curve(), extension / f64::from(STEPS));
         let at = |k: u32| step * (f64::from(k) + 0.5);
-        let load: f64 = (0..STEPS).map(|k| law.force(at(k))).sum();
-        law.force(extension);
-        let back: f64 = (0..STEPS).rev().map(|k| law.force(at(k)).max(0.0)).sum();
+        let load: f64 = (0..STEPS).map(|k| link_curve.force(at(k))).sum();
+        link_curve.force(extension);
+        let back: f64 = (0..STEPS).rev().map(|k| link_curve.force(at(k)).max(0.0)).sum();
         [load * step, back * step]
     }
 }
@@ -188,8 +188,8 @@ mod tests {
 
     #[test]
     fn a_table_gives_the_two_slopes_that_it_was_made_of() {
-        let law = |e: f32| if e <= 2.0 { 30.0 * e } else { 60.0 + 400.0 * (e - 2.0) };
-        let points: Vec<[f32; 2]> = (1..=16).map(|k| 0.25 * k as f32).map(|e| [e, law(e)]).collect();
+        let link_curve = |e: f32| if e <= 2.0 { 30.0 * e } else { 60.0 + 400.0 * (e - 2.0) };
+        let points: Vec<[f32; 2]> = (1..=16).map(|k| 0.25 * k as f32).map(|e| [e, link_curve(e)]).collect();
         let curve = StretchCurve::through(&points).unwrap();
         assert!((curve.knee_percent - 2.0).abs() < 0.02 && (curve.below_n_m() - 3_000.0).abs() < 30.0, "{curve:?}");
         assert!((curve.beyond_n_m - 40_000.0).abs() < 400.0);
@@ -204,7 +204,7 @@ mod tests {
             let [load, back] = curve.works(extension);
             assert!((load / (0.5 * linearity * 490.3 * extension) - 1.0).abs() < 1e-3, "{curve:?}");
             assert!((back / load / resilience - 1.0).abs() < 2e-3, "{} of {resilience}", back / load);
-            assert!((curve.law().force(extension) / 490.3 - 1.0).abs() < 1e-3);
+            assert!((curve.link_curve().force(extension) / 490.3 - 1.0).abs() < 1e-3);
         }
     }
 

@@ -5,7 +5,7 @@ use std::ops::{Deref, DerefMut};
 use super::check::{self, LayoutError};
 use super::data::GarmentData;
 use super::layout::{self, Layout};
-use super::link_laws::ONE_SLOPE;
+use super::link_curves::ONE_SLOPE;
 
 /// One garment in one size, baked: what the cloth borrows and never changes.
 ///
@@ -62,13 +62,13 @@ impl Garment {
 
     /// Takes away the friction in shear and stretch.
     pub fn leave_out_link_friction(&mut self) {
-        self.layout.laws.change(|[lower, below, upper, above, _]| [lower, below, upper, above, 0.0]);
+        self.layout.link_curves.change(|[lower, below, upper, above, _]| [lower, below, upper, above, 0.0]);
     }
 
     /// Takes away the second slopes of stretch and shear; threads that buckle still do.
     pub fn leave_out_second_slopes(&mut self) {
         let [_, _, far, one, _] = ONE_SLOPE;
-        self.layout.laws.change(|[lower, below, _, above, friction]| {
+        self.layout.link_curves.change(|[lower, below, _, above, friction]| {
             let locks = below > 1.0;
             let [lower, below] = if locks && above > 1.0 { [-far, one] } else { [lower, below] };
             [lower, below, far, one, friction]
@@ -78,7 +78,7 @@ impl Garment {
     /// Lets threads that are pushed together bear as much as they pull.
     pub fn leave_out_buckling(&mut self) {
         let [far, one, ..] = ONE_SLOPE;
-        self.layout.laws.change(|[lower, below, upper, above, friction]| {
+        self.layout.link_curves.change(|[lower, below, upper, above, friction]| {
             let [lower, below] = if below < 1.0 { [far, one] } else { [lower, below] };
             [lower, below, upper, above, friction]
         });
@@ -92,14 +92,14 @@ impl Garment {
     /// Takes away the resistance to shear.
     pub fn leave_out_shear(&mut self) {
         (self.layout.diagonals, self.layout.shear) = (Default::default(), Default::default());
-        (self.layout.laws.diagonals, self.layout.laws.shear) = (Default::default(), Default::default());
+        (self.layout.link_curves.diagonals, self.layout.link_curves.shear) = (Default::default(), Default::default());
     }
 
     /// Makes threads that do not stretch.
     pub fn make_inextensible(&mut self) {
         let layout = &mut self.layout;
-        let threads = [&mut layout.laws.weft, &mut layout.laws.fibers, &mut layout.laws.crossing];
-        threads.into_iter().for_each(|laws| *laws = Default::default());
+        let threads = [&mut layout.link_curves.weft, &mut layout.link_curves.fibers, &mut layout.link_curves.crossing];
+        threads.into_iter().for_each(|link_curves| *link_curves = Default::default());
         let all = [&mut layout.weft.compliance, &mut layout.fibers.compliance, &mut layout.crossing.compliance];
         all.into_iter().flat_map(|c| c.iter_mut()).filter(|c| **c < layout::ENDED).for_each(|c| *c = 0.0);
     }

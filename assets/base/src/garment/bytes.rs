@@ -19,8 +19,8 @@ use super::layout::{
     Bends, BundleRow, ConstraintRun, ConstraintSet, DiagonalShare, Diagonals, FiberBundle, FiberList, FiberLists,
     Fibers, HubGroup, Hubs, Layout, Links, OwnerShare, Tethers, Tuples, Zigzag,
 };
-use super::link_laws::{LawTable, LinkLaws};
-use super::look::{Look, MeshPicture};
+use super::link_curves::{CurveTable, LinkCurves};
+use super::look::{GarmentAppearance, MeshPicture};
 use super::part::Part;
 use super::solver::Solver;
 use super::trim::{ClothTrim, TrimKind};
@@ -369,7 +369,7 @@ structs! {
     Tuck { into, band, particles }
     ClothTrim { panel, kind, ends, half, colour }
     MeshPicture { texture, corners }
-    Look { cloth, edges, trims, near, picture }
+    GarmentAppearance { cloth, edges, trims, near, picture }
     GarmentData {
         name, size, layer, tuck, fabric, source, start, inverse_mass, parts, triangles, look, fixed, fixed_weights, substeps,
         strain_edges, hoop_edges,
@@ -391,11 +391,11 @@ structs! {
     Fibers { bundles, rows, links, rest, compliance }
     FiberList { solver, direction, closed, lanes, rows, first, at }
     FiberLists { lists, sets, index, rest, compliance }
-    LawTable { lower, lower_slope, upper, upper_slope, friction }
-    LinkLaws { diagonals, shear, weft, fibers, crossing }
+    CurveTable { lower, lower_slope, upper, upper_slope, friction }
+    LinkCurves { diagonals, shear, weft, fibers, crossing }
     FrictionSlot { centre, kind, chords, limit, first, len }
     BendFriction { slots, particles, coefficients }
-    Layout { diagonals, shear, weft, fibers, crossing, bends, skewed, hubs, laws, friction, tethers, spans, owner }
+    Layout { diagonals, shear, weft, fibers, crossing, bends, skewed, hubs, link_curves, friction, tethers, spans, owner }
 }
 
 // The skin weights of a garment are influences of four bones.

@@ -11,7 +11,7 @@ use thiserror::Error;
 
 use super::data::GarmentData;
 use super::layout::{ConstraintSet, Diagonals, FiberLists, Fibers, Layout, Links, OWNERS, Tuples};
-use super::link_laws::LawTable;
+use super::link_curves::CurveTable;
 
 /// Why constraints and particles do not make a garment. Numbers count from 0.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -66,7 +66,7 @@ pub(super) fn check(data: &GarmentData, layout: &Layout) -> Result<(), LayoutErr
     fibers(&layout.fibers, &mut marks)?;
     lists(&layout.crossing, &mut marks)?;
     bends(layout, n)?;
-    laws(layout)
+    link_curves(layout)
 }
 
 fn length(what: &'static str, found: usize, needed: usize) -> Result<(), LayoutError> {
@@ -330,16 +330,16 @@ fn bends(layout: &Layout, n: usize) -> Result<(), LayoutError> {
 }
 
 /// A table of stretch curves is empty, or has one row for each place of parameters.
-fn laws(layout: &Layout) -> Result<(), LayoutError> {
-    let laws = &layout.laws;
-    let of = |what: &'static str, table: &LawTable, places: usize| {
+fn link_curves(layout: &Layout) -> Result<(), LayoutError> {
+    let link_curves = &layout.link_curves;
+    let of = |what: &'static str, table: &CurveTable, places: usize| {
         let columns = [&table.lower, &table.lower_slope, &table.upper, &table.upper_slope, &table.friction];
         let needed = if table.is_empty() { 0 } else { places };
         columns.into_iter().try_for_each(|column| length(what, column.len(), needed))
     };
-    of("laws.diagonals", &laws.diagonals, layout.diagonals.rest.len())?;
-    of("laws.shear", &laws.shear, layout.shear.rest.len())?;
-    of("laws.weft", &laws.weft, layout.weft.rest.len())?;
-    of("laws.fibers", &laws.fibers, layout.fibers.rest.len())?;
-    of("laws.crossing", &laws.crossing, layout.crossing.rest.len())
+    of("laws.diagonals", &link_curves.diagonals, layout.diagonals.rest.len())?;
+    of("laws.shear", &link_curves.shear, layout.shear.rest.len())?;
+    of("laws.weft", &link_curves.weft, layout.weft.rest.len())?;
+    of("laws.fibers", &link_curves.fibers, layout.fibers.rest.len())?;
+    of("laws.crossing", &link_curves.crossing, layout.crossing.rest.len())
 }

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::look::Look;
+use super::look::GarmentAppearance;
 use super::part::Part;
 use super::tuck::Tuck;
 use crate::fabric::Fabric;
@@ -32,7 +32,7 @@ pub struct GarmentData {
     /// Triangles for pictures and normals.
     pub triangles: Box<[[u32; 3]]>,
     /// How they show their cloth.
-    pub look: Look,
+    pub look: GarmentAppearance,
     /// The particles that are skinned.
     pub fixed: Box<[u32]>,
     /// Their weights, in the order of `fixed`.

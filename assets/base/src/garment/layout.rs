@@ -8,7 +8,7 @@
 use std::ops::Range;
 
 use super::bend_friction::BendFriction;
-use super::link_laws::LinkLaws;
+use super::link_curves::LinkCurves;
 use super::{Direction, Solver};
 
 /// Workers that a garment can be shared between.
@@ -373,7 +373,7 @@ pub struct Layout {
     /// Bending where the mesh is uneven: measured over whole rings.
     pub hubs: Hubs,
     /// What links do beyond one slope; none where the fabric has no numbers for it.
-    pub laws: LinkLaws,
+    pub link_curves: LinkCurves,
     /// Which of the three rub, and how much; none where the fabric has no numbers for it.
     pub friction: BendFriction,
     /// What holds the garment together when all else gives way.
@@ -432,7 +432,7 @@ impl Layout {
             + 4 * (self.hubs.particles.len() + self.hubs.coefficients.len())
             + size_of_val(&*self.hubs.groups)
             + self.friction.bytes()
-            + self.laws.bytes()
+            + self.link_curves.bytes()
             + self.tethers.anchor.len() * 8
             + self.owner.len()
             + self.spans.iter().map(Vec::len).sum::<usize>() * 8

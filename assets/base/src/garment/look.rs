@@ -12,7 +12,7 @@ pub const EDGE_REACH_M: f32 = 0.06;
 
 /// What pictures need of a garment beside its places; all of it is empty for one that shows its fabric's colour alone.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Look {
+pub struct GarmentAppearance {
     /// Where the corners of each triangle lie on the cloth (m): weft along x, warp along y, up the garment `[triangles]`; or
     /// empty, where no pattern says it.
     pub cloth: Box<[[Vec2; 3]]>,
@@ -39,7 +39,7 @@ pub struct MeshPicture {
 /// How far beyond its own width a trim casts a shadow (m).
 pub const TRIM_SHADOW_M: f32 = 0.006;
 
-impl Look {
+impl GarmentAppearance {
     /// Bytes that it takes, without the picture, which garments share.
     pub fn bytes(&self) -> usize {
         let corners = self.picture.as_ref().map_or(0, |p| size_of_val(&*p.corners));

@@ -1,9 +1,5 @@
 //! Small numerical tools that every crate shares, one of each: order statistics, random numbers, a hash, a dense solve,
 //! sines with the same bits on every platform.
-//!
-//! Reads: slices and seeds. Writes: numbers; nothing here keeps a state of its own.
-//! Budget: a sort or a small dense solve; inside the frame only the hash is used.
-//! Thread: any.
 
 pub mod hash;
 pub mod linear;

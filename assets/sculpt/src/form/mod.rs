@@ -1,9 +1,5 @@
 //! The form of a body: a drawing in sections, muscles and hollows, with its distance from any point.
 //!
-//! Reads: a drawing in `assets/sculpt/data`. Writes: distances (mm), negative inside.
-//! Budget: about a microsecond a distance.
-//! Thread: one.
-//!
 //! The trunk and the limbs are superellipse sections along an axis, so that breadth, depth and girth are what the table
 //! says; fillets join them (smooth minimum); ellipsoids and round cones add muscles, fingers and toes; Gaussian bumps
 //! finish the surface.

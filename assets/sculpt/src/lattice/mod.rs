@@ -1,9 +1,5 @@
 //! The cage's grid: rings of quads over trunk, head, limbs, fingers and toes, joined into one closed surface.
 //!
-//! Reads: a form, for where its surface lies. Writes: the cage's vertices, quads and regions.
-//! Budget: some seconds a body.
-//! Thread: one.
-//!
 //! The left half is laid out and mirrored. Rings of the trunk have 24 columns (13 in a half, both middles included).
 //! Three rows and three columns are left open for an arm of 12; half the lowest ring and three vertices along the
 //! crotch start a leg of 16. The hand's ring of 12 splits into four fingers of 6 (two between each pair), 8 around two

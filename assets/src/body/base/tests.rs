@@ -1,4 +1,4 @@
-//! Laws of the base bodies, and how they stand against the survey's means.
+//! Tests of the base bodies, and how they stand against the survey's means.
 
 use std::collections::BTreeMap;
 

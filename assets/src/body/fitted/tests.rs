@@ -1,4 +1,4 @@
-//! Laws that every body built to measure keeps.
+//! Tests that every body built to measure keeps.
 
 use super::super::sound;
 use super::*;
@@ -100,7 +100,7 @@ fn tape_outside_agrees_with_the_gauge() {
 fn gradients_are_those_of_the_readings() {
     for sex in SEXES {
         let model = model(sex);
-        let setting = model.calibrate(&[(Reading::ChestGirth, 1.05), (Reading::Stature, 1.7)]).setting;
+        let setting = model.calibrate(&[(MeshMeasure::ChestGirth, 1.05), (MeshMeasure::Stature, 1.7)]).setting;
         let positions = model.morphs.positions(&setting);
         let mut gradients = std::array::from_fn::<_, READINGS, _>(|_| Vec::new());
         let _ = model.gauge.read(&positions, Some(&mut gradients));

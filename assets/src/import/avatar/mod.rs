@@ -1,8 +1,4 @@
 //! Bodies that others made, as our [`Body`]: skinned glTF 2.0 meshes and VRM avatars.
-//!
-//! Reads: `.gltf`, `.glb` and `.vrm` files in their bind pose. Writes: a body with its report, or one clear sentence.
-//! Budget: at load only, about half a second for a body of 30,000 vertices.
-//! Thread: the loading thread.
 
 mod animation;
 mod carry;

@@ -1,4 +1,4 @@
-//! Laws of imports.
+//! Tests of imports.
 
 use std::sync::LazyLock;
 

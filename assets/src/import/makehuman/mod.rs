@@ -1,9 +1,4 @@
 //! MakeHuman's base mesh `hm08`, its targets, rigs and weights, as our [`Body`](toile_base::body::Body).
-//!
-//! Reads: a folder with `base.obj`, `rig.<name>.json`, `weights.<name>.json.gz` and `*.target.gz` files, which the user
-//! has; nothing of it is part of this program. Writes: a body with its report, and the girths that MakeHuman shows.
-//! Budget: at load only, about half a second.
-//! Thread: the loading thread.
 
 pub mod clothes;
 mod files;

@@ -5,15 +5,12 @@
 //! has no layer for sew lines: programs draw them among the internal lines (8), where the line that goes around most of
 //! the piece is one. An edge goes from a turn point or notch to the next; without turn points, from corner to corner.
 //! Nothing says what is sewn to what: that stands in a seam file.
-//!
-//! Reads: the text of a file. Writes: its pieces, in metres. Budget: at load; points and pieces are bounded.
-//! Thread: the loading thread.
 
 mod blocks;
 
 use glam::DVec2;
 
-use super::error::Fault;
+use super::error::PatternFault;
 use super::json::name;
 use super::piece::Piece;
 use crate::pattern::limits::{LEAST_EDGE_M, MAX_PANELS, MAX_POINTS};
@@ -56,11 +53,13 @@ pub fn looks_like(bytes: &[u8]) -> bool {
 }
 
 /// Reads the pieces of a file.
-pub fn pieces(text: &str) -> Result<Vec<Piece>, Fault> {
+pub fn pieces(text: &str) -> Result<Vec<Piece>, PatternFault> {
     let file = blocks::read(text)?;
     let cloth: Vec<&Block> = file.blocks.iter().filter(|b| b.lines.iter().any(|l| l.layer == BOUNDARY)).collect();
     if cloth.is_empty() {
-        return Err(Fault::Content("no BLOCK has a boundary on layer 1; export it as DXF-AAMA or ASTM D6673".into()));
+        return Err(PatternFault::Content(
+            "no BLOCK has a boundary on layer 1; export it as DXF-AAMA or ASTM D6673".into(),
+        ));
     }
     if cloth.len() > MAX_PANELS {
         let (place, what, limit) = ("the file".to_owned(), "pieces", "MAX_PANELS");
@@ -80,7 +79,7 @@ pub fn pieces(text: &str) -> Result<Vec<Piece>, Fault> {
         let what = format!(
             "it names no unit and its largest piece would be {mm:.0} mm; write the text \"Units: ENGLISH\" or scale it"
         );
-        return Err(Fault::Content(what));
+        return Err(PatternFault::Content(what));
     }
     Ok(pieces)
 }
@@ -98,8 +97,8 @@ fn names(cloth: &[&Block]) -> Vec<String> {
     given.iter().enumerate().map(numbered).collect()
 }
 
-fn piece(block: &Block, name: &str, unit: f64) -> Result<Piece, Fault> {
-    let wrong = |what: &str| Fault::Content(format!("piece {name}: {what}"));
+fn piece(block: &Block, name: &str, unit: f64) -> Result<Piece, PatternFault> {
+    let wrong = |what: &str| PatternFault::Content(format!("piece {name}: {what}"));
     let on = |layer: u32| block.lines.iter().filter(move |l| l.layer == layer);
     let size = |l: &&Line| {
         let ring = l.points.iter().zip(l.points.iter().cycle().skip(1));

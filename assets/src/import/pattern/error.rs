@@ -32,14 +32,14 @@ pub enum PatternError {
 
 /// What a reader finds before it knows the file's name.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Fault {
+pub(super) enum PatternFault {
     /// A sentence with its cure.
     Content(String),
     /// A flaw of the pattern itself.
     Flaw(PatternFlaw),
 }
 
-impl Fault {
+impl PatternFault {
     /// The error in a file.
     pub fn of(self, file: &str) -> PatternError {
         match self {
@@ -49,13 +49,13 @@ impl Fault {
     }
 }
 
-impl From<String> for Fault {
+impl From<String> for PatternFault {
     fn from(reason: String) -> Self {
         Self::Content(reason)
     }
 }
 
-impl From<PatternFlaw> for Fault {
+impl From<PatternFlaw> for PatternFault {
     fn from(flaw: PatternFlaw) -> Self {
         Self::Flaw(flaw)
     }

@@ -6,7 +6,7 @@
 use glam::DVec2;
 use serde_json::Value;
 
-use super::error::Fault;
+use super::error::PatternFault;
 use super::json::{list, name, pair};
 use super::piece::Piece;
 use crate::pattern::Curve;
@@ -20,17 +20,17 @@ const OUTLINE: &str = "seam";
 
 /// Reads the pieces of a file that holds `parts`; parts without an outline are notes, and hidden ones were only drafted for
 /// others to build on.
-pub fn pieces(file: &Value) -> Result<Vec<Piece>, Fault> {
+pub fn pieces(file: &Value) -> Result<Vec<Piece>, PatternFault> {
     let parts =
         file["parts"].as_object().ok_or("parts is no table of drafted parts; export the draft again".to_owned())?;
     let drawn: Vec<_> = parts.iter().filter(|(_, part)| is_drawn(part)).collect();
     if drawn.is_empty() {
-        return Err(Fault::Content(format!(
+        return Err(PatternFault::Content(format!(
             "no part has a path named {OUTLINE}; draft the pattern before exporting it"
         )));
     }
     if drawn.len() > MAX_PANELS {
-        return Err(Fault::Content(format!(
+        return Err(PatternFault::Content(format!(
             "it has {} parts, more than the {MAX_PANELS} of MAX_PANELS; split it",
             drawn.len()
         )));
@@ -43,7 +43,7 @@ fn is_drawn(part: &Value) -> bool {
     outline.is_object() && part["hidden"] != true && outline["hidden"] != true
 }
 
-fn piece(own: &str, path: &Value) -> Result<Piece, Fault> {
+fn piece(own: &str, path: &Value) -> Result<Piece, PatternFault> {
     let mut steps = Vec::new();
     let mut at: Option<DVec2> = None;
     let mut start = DVec2::ZERO;

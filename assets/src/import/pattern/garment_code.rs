@@ -6,11 +6,11 @@
 use glam::{DQuat, DVec2, DVec3, EulerRot};
 use serde_json::{Map, Value};
 
-use super::error::{Fault, meant};
+use super::error::{PatternFault, meant};
 use super::json::{index, list, name, pair, text, triple};
 use super::trims;
 use crate::pattern::limits::{MAX_PANEL_EDGES, MAX_PANELS, MAX_SEAMS};
-use crate::pattern::{Curve, Panel, PanelEdge, Pattern, PatternFlaw, Placement, Seam, SeamSide};
+use crate::pattern::{Curve, Panel, PanelEdge, PanelPlacement, Pattern, PatternFlaw, Seam, SeamSide};
 use toile_base::garment::trim::MAX_TRIMS;
 
 /// What a stitch says whose outside meets an inside: it is sewn from both beginnings.
@@ -25,7 +25,7 @@ struct Dialect {
 }
 
 /// Reads a file that holds a `pattern`.
-pub fn parse(file: &Value) -> Result<Pattern, Fault> {
+pub fn parse(file: &Value) -> Result<Pattern, PatternFault> {
     let properties = &file["properties"];
     let units = properties["units_in_meter"].as_f64().filter(|u| *u >= 1e-3 && *u <= 1e6);
     let units = units.ok_or_else(|| {
@@ -42,7 +42,7 @@ pub fn parse(file: &Value) -> Result<Pattern, Fault> {
     if panels.is_empty() {
         return Err(PatternFlaw::Empty.into());
     }
-    let read: Result<Vec<Panel>, Fault> =
+    let read: Result<Vec<Panel>, PatternFault> =
         panels.iter().map(|(key, value)| panel(&name(key), value, &dialect)).collect();
     let read = read?;
     let count = read.iter().map(|p| p.trims.len()).sum();
@@ -52,11 +52,11 @@ pub fn parse(file: &Value) -> Result<Pattern, Fault> {
     Ok(Pattern::checked(read, stitches(&pattern["stitches"], panels)?)?)
 }
 
-fn too_many(place: &str, what: &'static str, count: usize, most: usize, limit: &'static str) -> Fault {
-    Fault::Flaw(PatternFlaw::TooMany { place: place.into(), what, count, most, limit })
+fn too_many(place: &str, what: &'static str, count: usize, most: usize, limit: &'static str) -> PatternFault {
+    PatternFault::Flaw(PatternFlaw::TooMany { place: place.into(), what, count, most, limit })
 }
 
-fn panel(own: &str, value: &Value, dialect: &Dialect) -> Result<Panel, Fault> {
+fn panel(own: &str, value: &Value, dialect: &Dialect) -> Result<Panel, PatternFault> {
     let vertices = list(&value["vertices"]).iter().enumerate().map(|(i, v)| {
         let point = pair(v).map(|p| p * dialect.unit);
         point.ok_or_else(|| format!("panel {own}: vertex {i} is no pair of numbers; export it again"))
@@ -70,7 +70,7 @@ fn panel(own: &str, value: &Value, dialect: &Dialect) -> Result<Panel, Fault> {
         let curve = curve(own, number, edge, &vertices, dialect)?;
         Ok(PanelEdge { curve, number, label: text(&edge["label"]).map(|l| name(&l)) })
     });
-    let edges = edges.collect::<Result<Vec<PanelEdge>, Fault>>()?;
+    let edges = edges.collect::<Result<Vec<PanelEdge>, PatternFault>>()?;
     let panel = Panel {
         name: own.to_owned(),
         label: text(&value["label"]),
@@ -84,8 +84,14 @@ fn panel(own: &str, value: &Value, dialect: &Dialect) -> Result<Panel, Fault> {
     Ok(Panel { behind: panel.signed_area() < 0.0, ..panel })
 }
 
-fn curve(panel: &str, number: usize, edge: &Value, vertices: &[DVec2], dialect: &Dialect) -> Result<Curve, Fault> {
-    let wrong = |what: &str| Fault::Content(format!("panel {panel}, edge {number}: {what}; export it again"));
+fn curve(
+    panel: &str,
+    number: usize,
+    edge: &Value,
+    vertices: &[DVec2],
+    dialect: &Dialect,
+) -> Result<Curve, PatternFault> {
+    let wrong = |what: &str| PatternFault::Content(format!("panel {panel}, edge {number}: {what}; export it again"));
     let [from, to] = list(&edge["endpoints"]) else { return Err(wrong("endpoints is no pair of vertices")) };
     let vertex = |v: &Value| {
         let found = index(v).and_then(|i| vertices.get(i)).copied();
@@ -95,7 +101,11 @@ fn curve(panel: &str, number: usize, edge: &Value, vertices: &[DVec2], dialect: 
     let along = end - start;
     let control = |value: &Value| {
         let p = pair(value).ok_or_else(|| wrong("a control point is no pair of numbers"))?;
-        Ok::<DVec2, Fault>(if dialect.absolute { p * dialect.unit } else { start + along * p.x + along.perp() * p.y })
+        Ok::<DVec2, PatternFault>(if dialect.absolute {
+            p * dialect.unit
+        } else {
+            start + along * p.x + along.perp() * p.y
+        })
     };
     let bend = &edge["curvature"];
     if bend.is_null() {
@@ -121,7 +131,7 @@ fn curve(panel: &str, number: usize, edge: &Value, vertices: &[DVec2], dialect: 
     }
 }
 
-fn placement(panel: &str, value: &Value, dialect: &Dialect) -> Result<Option<Placement>, Fault> {
+fn placement(panel: &str, value: &Value, dialect: &Dialect) -> Result<Option<PanelPlacement>, PatternFault> {
     let vector = |key: &str| match &value[key] {
         Value::Null => Ok(None),
         v => {
@@ -134,10 +144,10 @@ fn placement(panel: &str, value: &Value, dialect: &Dialect) -> Result<Option<Pla
     let [x, y, z] = rotation.to_array().map(f64::to_radians);
     // About x first, then y, then z, all of them fixed axes.
     let rotation = DQuat::from_euler(EulerRot::ZYX, z, y, x);
-    Ok(Some(Placement { translation: translation * dialect.unit, rotation }))
+    Ok(Some(PanelPlacement { translation: translation * dialect.unit, rotation }))
 }
 
-fn stitches(value: &Value, panels: &Map<String, Value>) -> Result<Vec<Seam>, Fault> {
+fn stitches(value: &Value, panels: &Map<String, Value>) -> Result<Vec<Seam>, PatternFault> {
     let stitches = list(value);
     if stitches.len() > MAX_SEAMS {
         return Err(too_many("the pattern", "stitches", stitches.len(), MAX_SEAMS, "MAX_SEAMS"));
@@ -146,7 +156,11 @@ fn stitches(value: &Value, panels: &Map<String, Value>) -> Result<Vec<Seam>, Fau
         let (a, b, word) = match list(stitch) {
             [a, b] => (a, b, None),
             [a, b, word] => (a, b, word.as_str()),
-            _ => return Err(Fault::Content(format!("stitch {i} is no pair of edges; sew one edge to one other"))),
+            _ => {
+                return Err(PatternFault::Content(format!(
+                    "stitch {i} is no pair of edges; sew one edge to one other"
+                )));
+            }
         };
         let stitch = format!("stitch {i}");
         let start = side(&stitch, a, panels)?;
@@ -157,9 +171,9 @@ fn stitches(value: &Value, panels: &Map<String, Value>) -> Result<Vec<Seam>, Fau
     stitches.iter().enumerate().map(seam).collect()
 }
 
-fn side(seam: &str, value: &Value, panels: &Map<String, Value>) -> Result<SeamSide, Fault> {
+fn side(seam: &str, value: &Value, panels: &Map<String, Value>) -> Result<SeamSide, PatternFault> {
     let (Some(key), Some(edge)) = (value["panel"].as_str(), index(&value["edge"])) else {
-        return Err(Fault::Content(format!("{seam} has a side without panel and edge; export it again")));
+        return Err(PatternFault::Content(format!("{seam} has a side without panel and edge; export it again")));
     };
     let Some(panel) = panels.keys().position(|k| k == key) else {
         let names: Vec<String> = panels.keys().map(|k| name(k)).collect();

@@ -3,13 +3,13 @@
 use glam::{DVec2, DVec3};
 use serde_json::Value;
 
-use super::error::Fault;
+use super::error::PatternFault;
 
 /// Reads JSON in which `//` and `/* */` may comment.
-pub fn read(text: &str) -> Result<Value, Fault> {
+pub fn read(text: &str) -> Result<Value, PatternFault> {
     serde_json::from_str(&without_comments(text)).map_err(|e| {
         let reason = e.to_string();
-        Fault::Content(format!("it is no complete JSON ({reason}); export the pattern again"))
+        PatternFault::Content(format!("it is no complete JSON ({reason}); export the pattern again"))
     })
 }
 

@@ -1,8 +1,4 @@
 //! Sewn patterns from files: GarmentCode and Garment-Pattern-Generator JSON, FreeSewing drafts, DXF-AAMA and ASTM.
-//!
-//! Reads: a file of bounded size, and for formats without sewing a seam file beside it. Writes: a checked
-//! [`Pattern`]. Budget: at load; the limits of [`crate::pattern::limits`] bound time and memory.
-//! Thread: the loading thread.
 
 mod dxf;
 mod error;
@@ -20,7 +16,7 @@ pub use error::PatternError;
 use crate::file::{self, FileError, FileKind};
 use crate::pattern::Pattern;
 use crate::pattern::limits::MAX_PATTERN_BYTES;
-use error::Fault;
+use error::PatternFault;
 use piece::Piece;
 use seam_file::SeamFile;
 
@@ -67,14 +63,14 @@ pub fn decode(bytes: Vec<u8>) -> Option<String> {
 /// # Errors
 /// As [`read`].
 pub fn parse(name: &str, text: &str, seams: Option<(&str, &str)>) -> Result<Pattern, PatternError> {
-    let here = |fault: Fault| fault.of(name);
+    let here = |fault: PatternFault| fault.of(name);
     let pieces = if text.trim_start().starts_with(['{', '/']) {
         let file = json::read(text).map_err(here)?;
         if file["pattern"].is_object() {
             return garment_code::parse(&file).map_err(here);
         }
         if !file["parts"].is_object() {
-            return Err(here(Fault::Content(
+            return Err(here(PatternFault::Content(
                 "it holds neither a pattern nor parts; give GarmentCode's specification or FreeSewing's draft".into(),
             )));
         }

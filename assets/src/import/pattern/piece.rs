@@ -2,7 +2,7 @@
 
 use glam::{DMat2, DVec2};
 
-use super::error::Fault;
+use super::error::PatternFault;
 use crate::pattern::curve::{ArcLength, Curve};
 use crate::pattern::limits::{LEAST_EDGE_M, MAX_PANEL_EDGES};
 use crate::pattern::{PanelEdge, PatternFlaw};
@@ -22,7 +22,7 @@ pub struct Piece {
 
 impl Piece {
     /// A piece of a source that numbers every step of its outline, among which some have no length.
-    pub fn of_steps(name: &str, steps: &[Curve], grain: Option<DVec2>) -> Result<Self, Fault> {
+    pub fn of_steps(name: &str, steps: &[Curve], grain: Option<DVec2>) -> Result<Self, PatternFault> {
         let most = MAX_PANEL_EDGES;
         if steps.len() > most {
             let (place, what, limit) = (format!("piece {name}"), "edges", "MAX_PANEL_EDGES");

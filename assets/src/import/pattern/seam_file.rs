@@ -10,11 +10,11 @@ use glam::{DQuat, DVec2, DVec3};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
-use super::error::{Fault, meant};
+use super::error::{PatternFault, meant};
 use super::json::name;
 use super::piece::{EdgeRange, Half, Piece, UnfoldedPiece};
 use crate::pattern::limits::{MAX_PANELS, MAX_SEAMS};
-use crate::pattern::{Panel, Pattern, PatternFlaw, Placement, Seam, SeamSide};
+use crate::pattern::{Panel, PanelPlacement, Pattern, PatternFlaw, Seam, SeamSide};
 use crate::toml_keys::place;
 
 /// A seam file as it stands.
@@ -59,14 +59,14 @@ enum PanelSide {
 
 impl PanelSide {
     /// The placement of a panel that is drawn as seen from outside, upright; how high it hangs, its seams say.
-    fn placement(self) -> Placement {
+    fn placement(self) -> PanelPlacement {
         let turn = match self {
             Self::Front => 0.0,
             Self::Back => PI,
             Self::Left => FRAC_PI_2,
             Self::Right => -FRAC_PI_2,
         };
-        Placement { translation: DVec3::ZERO, rotation: DQuat::from_rotation_y(turn) }
+        PanelPlacement { translation: DVec3::ZERO, rotation: DQuat::from_rotation_y(turn) }
     }
 }
 
@@ -91,7 +91,7 @@ struct RunEntry {
 
 impl SeamFile {
     /// Reads a seam file.
-    pub fn parse(text: &str) -> Result<Self, Fault> {
+    pub fn parse(text: &str) -> Result<Self, PatternFault> {
         let mut file: Self = from_toml(text)?;
         for panel in &mut file.panel {
             panel.name = name(&panel.name);
@@ -105,7 +105,7 @@ impl SeamFile {
     }
 
     /// The panels and seams of a draft.
-    pub fn sew(&self, pieces: &[Piece]) -> Result<Pattern, Fault> {
+    pub fn sew(&self, pieces: &[Piece]) -> Result<Pattern, PatternFault> {
         let too_many =
             |what, count, most, limit| PatternFlaw::TooMany { place: "the seam file".into(), what, count, most, limit };
         if self.panel.len() > MAX_PANELS {
@@ -114,9 +114,10 @@ impl SeamFile {
         if self.seam.len() > MAX_SEAMS {
             return Err(too_many("seams", self.seam.len(), MAX_SEAMS, "MAX_SEAMS").into());
         }
-        let mut unfolded = self.panel.iter().map(|entry| unfold(entry, pieces)).collect::<Result<Vec<_>, Fault>>()?;
+        let mut unfolded =
+            self.panel.iter().map(|entry| unfold(entry, pieces)).collect::<Result<Vec<_>, PatternFault>>()?;
         let runs = self.seam.iter().flat_map(|seam| [(&seam.name, &seam.sew), (&seam.name, &seam.to)]);
-        let runs = runs.map(|(seam, run)| self.run(seam, run)).collect::<Result<Vec<_>, Fault>>()?;
+        let runs = runs.map(|(seam, run)| self.run(seam, run)).collect::<Result<Vec<_>, PatternFault>>()?;
         for (panel, range) in &runs {
             unfolded[*panel].1.divide(range);
         }
@@ -125,13 +126,13 @@ impl SeamFile {
                 .1
                 .find(&range)
                 .map_err(|reason| format!("seam {seam}: of panel {}, {reason}", self.panel[panel].name))?;
-            Ok::<SeamSide, Fault>(SeamSide { panel, first, count, reversed })
+            Ok::<SeamSide, PatternFault>(SeamSide { panel, first, count, reversed })
         };
         let seams = self.seam.iter().zip(runs.chunks_exact(2)).map(|(seam, runs)| {
             let sides = [side(runs[0], &seam.name)?, side(runs[1], &seam.name)?];
             Ok(Seam { name: format!("seam {}", seam.name), sides })
         });
-        let seams = seams.collect::<Result<Vec<Seam>, Fault>>()?;
+        let seams = seams.collect::<Result<Vec<Seam>, PatternFault>>()?;
         let panels = self.panel.iter().zip(unfolded).map(|(entry, (grain, unfolded))| Panel {
             name: entry.name.clone(),
             label: entry.label.clone(),
@@ -145,10 +146,10 @@ impl SeamFile {
     }
 
     /// The panel of a run and its range.
-    fn run(&self, seam: &str, run: &RunEntry) -> Result<(usize, EdgeRange), Fault> {
+    fn run(&self, seam: &str, run: &RunEntry) -> Result<(usize, EdgeRange), PatternFault> {
         let [from, to] = run.edges;
         if !(from.is_finite() && to.is_finite() && from >= 0.0 && to >= 0.0 && (from - to).abs() > 1e-3) {
-            return Err(Fault::Content(format!(
+            return Err(PatternFault::Content(format!(
                 "seam {seam}: edges = [{from}, {to}] is no run of edges; give two different positions from 0"
             )));
         }
@@ -162,10 +163,10 @@ impl SeamFile {
 }
 
 /// A panel's grain and its edges before they are divided.
-fn unfold(entry: &PanelEntry, pieces: &[Piece]) -> Result<(DVec2, UnfoldedPiece), Fault> {
+fn unfold(entry: &PanelEntry, pieces: &[Piece]) -> Result<(DVec2, UnfoldedPiece), PatternFault> {
     let Some(piece) = pieces.iter().find(|p| p.name == entry.piece) else {
         let known: Vec<&str> = pieces.iter().map(|p| p.name.as_str()).collect();
-        return Err(Fault::Content(format!(
+        return Err(PatternFault::Content(format!(
             "panel {} is cut from piece {}, which the draft has not; name one of {}",
             entry.name,
             entry.piece,
@@ -181,7 +182,7 @@ fn unfold(entry: &PanelEntry, pieces: &[Piece]) -> Result<(DVec2, UnfoldedPiece)
 }
 
 /// A draft without a seam file: every piece is a panel, and nothing is sewn.
-pub fn unsewn(pieces: &[Piece]) -> Result<Pattern, Fault> {
+pub fn unsewn(pieces: &[Piece]) -> Result<Pattern, PatternFault> {
     let panel = |piece: &Piece| {
         let edges = UnfoldedPiece::new(piece, piece.fold, false);
         let edges = edges.map_err(|reason| format!("piece {}: {reason}", piece.name))?.into_edges();
@@ -196,16 +197,16 @@ pub fn unsewn(pieces: &[Piece]) -> Result<Pattern, Fault> {
             trims: Vec::new(),
         })
     };
-    let panels = pieces.iter().map(panel).collect::<Result<Vec<Panel>, Fault>>()?;
+    let panels = pieces.iter().map(panel).collect::<Result<Vec<Panel>, PatternFault>>()?;
     Ok(Pattern::checked(panels, Vec::new())?)
 }
 
 /// Reads a TOML text, an error with its line and column.
-fn from_toml<T: DeserializeOwned>(text: &str) -> Result<T, Fault> {
+fn from_toml<T: DeserializeOwned>(text: &str) -> Result<T, PatternFault> {
     toml::from_str(text).map_err(|e| {
         let (line, column) = place(text, e.span().map_or(0, |s| s.start));
         let reason = e.message().split_whitespace().collect::<Vec<_>>().join(" ");
-        Fault::Content(format!(
+        PatternFault::Content(format!(
             "line {line}, column {column}: {reason}; see docs/garments.md for what a seam file holds"
         ))
     })

@@ -3,7 +3,7 @@
 use glam::DVec2;
 use serde_json::Value;
 
-use super::error::{Fault, meant};
+use super::error::{PatternFault, meant};
 use super::json::{list, name, pair};
 use crate::pattern::Trim;
 use crate::pattern::limits::MAX_REACH_M;
@@ -26,17 +26,17 @@ const fn usual_half(kind: TrimKind) -> f64 {
 const USUAL_COLOUR: [f32; 3] = [0.86, 0.84, 0.8];
 
 /// Reads the trims of a panel; without the key there are none.
-pub fn read(panel: &str, value: &Value, unit: f64) -> Result<Vec<Trim>, Fault> {
+pub fn read(panel: &str, value: &Value, unit: f64) -> Result<Vec<Trim>, PatternFault> {
     if !value.is_null() && !value.is_array() {
-        return Err(Fault::Content(format!(
+        return Err(PatternFault::Content(format!(
             "panel {panel}: its trims are no list; write [{{\"kind\": \"button\", ...}}]"
         )));
     }
     list(value).iter().enumerate().map(|(i, trim)| one(&format!("panel {panel}, trim {i}"), trim, unit)).collect()
 }
 
-fn one(place: &str, value: &Value, unit: f64) -> Result<Trim, Fault> {
-    let wrong = |what: String| Fault::Content(format!("{place}: {what}"));
+fn one(place: &str, value: &Value, unit: f64) -> Result<Trim, PatternFault> {
+    let wrong = |what: String| PatternFault::Content(format!("{place}: {what}"));
     let names = TrimKind::ALL.map(TrimKind::name);
     let said = value["kind"].as_str().unwrap_or_default();
     let kind = TrimKind::ALL.into_iter().find(|k| k.name() == said).ok_or_else(|| {

@@ -70,7 +70,7 @@ const BOB_M: f64 = 0.02;
 toile_base::named! {
     /// Motion of the body.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-    pub enum Motion {
+    pub enum SkirtMotion {
         /// Walks on the spot: 1 Hz, legs 30 degrees to and fro, 0.05 m of sway, 10 degrees of yaw.
         Walk = "walk",
         /// The same in a hurry: 2 Hz, 50 degrees, 0.10 m, 45 degrees.
@@ -80,7 +80,7 @@ toile_base::named! {
     }
 }
 
-impl Motion {
+impl SkirtMotion {
     /// Frequency (Hz), leg (rad), sway (m), yaw (rad), bob (m).
     fn amplitudes(self) -> [f64; 5] {
         match self {
@@ -99,7 +99,7 @@ struct MotionPhase {
 }
 
 impl MotionPhase {
-    fn new(motion: Motion, time: f64) -> Self {
+    fn new(motion: SkirtMotion, time: f64) -> Self {
         let [frequency, leg, sway, yaw, bob] = motion.amplitudes();
         let ramp = (time / RAMP_S).clamp(0.0, 1.0);
         let phase = std::f64::consts::TAU * frequency * time;
@@ -125,13 +125,13 @@ impl MotionPhase {
 }
 
 /// How the root, and with it the pinned ring, is moved at a time (s).
-pub fn root(motion: Motion, time: f64) -> Affine3A {
+pub fn root(motion: SkirtMotion, time: f64) -> Affine3A {
     let root = MotionPhase::new(motion, time).root;
     Affine3A::from_mat3_translation(root.matrix3.as_mat3(), root.translation.as_vec3())
 }
 
 /// The body's spheres at a time (s): centre and radius, world (m).
-pub fn spheres(motion: Motion, time: f64) -> [Vec4; SPHERES] {
+pub fn spheres(motion: SkirtMotion, time: f64) -> [Vec4; SPHERES] {
     let at = MotionPhase::new(motion, time).joints();
     std::array::from_fn(|i| at[i].extend(JOINTS[i].1).as_vec4())
 }
@@ -148,7 +148,7 @@ mod tests {
 
     #[test]
     fn it_starts_at_rest_and_a_settled_body_stays_there() {
-        for (motion, time) in [(Motion::Walk, 0.0), (Motion::Fast, 0.0), (Motion::Settled, 7.3)] {
+        for (motion, time) in [(SkirtMotion::Walk, 0.0), (SkirtMotion::Fast, 0.0), (SkirtMotion::Settled, 7.3)] {
             assert_eq!(root(motion, time), Affine3A::IDENTITY);
             for (s, (p, r)) in spheres(motion, time).iter().zip(JOINTS) {
                 assert_eq!(*s, DVec3::from_array(p).extend(r).as_vec4());
@@ -160,7 +160,7 @@ mod tests {
     fn a_quarter_into_a_walk_one_leg_is_forward_and_the_other_back() {
         // phi = pi/2: yaw 10 degrees, root (.05, -.02, -.05); left leg 30 degrees forward, its knee bent by 36, the
         // right leg 30 degrees back and straight.
-        let s = spheres(Motion::Walk, 2.25);
+        let s = spheres(SkirtMotion::Walk, 2.25);
         assert!(close(s[0], [0.05, 0.98, -0.05]));
         // Hip (.1, .95, 0); thigh (.01, -.43, 0) turned by -30 degrees about x: (.01, -.37239, .215); turned by yaw.
         let (yaw_sin, yaw_cos) = (0.173_648_18_f32, 0.984_807_7_f32);
@@ -179,10 +179,10 @@ mod tests {
     #[test]
     fn amplitudes_rise_within_the_first_second() {
         // phi = pi at 0.5 s of a walk: root (0, .01, -.05), no yaw; half the amplitude leaves z at -.05.
-        let at = Vec3::from(root(Motion::Walk, 0.5).translation);
+        let at = Vec3::from(root(SkirtMotion::Walk, 0.5).translation);
         assert!(at.distance(Vec3::new(0.0, 0.01, -0.05)) < 1e-6, "{at}");
         // phi = pi/2 at 1.125 s when fast: all of it.
-        let fast = root(Motion::Fast, 1.125);
+        let fast = root(SkirtMotion::Fast, 1.125);
         assert!(Vec3::from(fast.translation).distance(Vec3::new(0.10, -0.02, -0.10)) < 1e-6);
         let yaw = (-fast.matrix3.x_axis.z).atan2(fast.matrix3.x_axis.x).to_degrees();
         assert!((yaw - 45.0).abs() < 1e-4, "{yaw}");
@@ -191,7 +191,7 @@ mod tests {
     #[test]
     fn bones_keep_their_lengths() {
         for tick in 0..480 {
-            let s = spheres(Motion::Fast, f64::from(tick) / 120.0);
+            let s = spheres(SkirtMotion::Fast, f64::from(tick) / 120.0);
             for [a, b] in [[5, 7], [7, 9], [6, 8], [8, 10], [11, 13], [0, 5]] {
                 let rest = DVec3::from_array(JOINTS[a].0).distance(DVec3::from_array(JOINTS[b].0));
                 let length = s[a].xyz().distance(s[b].xyz());

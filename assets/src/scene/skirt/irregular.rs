@@ -27,15 +27,15 @@ const BORDER: f64 = 0.5;
 const CANDIDATES: usize = 8;
 
 /// A vertex of the cone: `u` (0 ring, 1 hem), angle around (rad).
-type Place = [f64; 2];
+type ConePlace = [f64; 2];
 
 /// The skirt of `n` x `n` vertices at least 3 x 3: first `n` on the pinned ring, last `n` on the hem, between them blue
 /// noise of equal density on the cone, joined by Delaunay triangles. The same seed gives the same mesh.
 pub fn irregular(n: usize, seed: u64) -> Shape {
     let n = n.max(3);
     let around = |u: f64| (0..n).map(move |j| [u, TAU * j as f64 / n as f64]);
-    let mut places: Vec<Place> = around(0.0).collect();
-    let hem: Vec<Place> = around(1.0).collect();
+    let mut places: Vec<ConePlace> = around(0.0).collect();
+    let hem: Vec<ConePlace> = around(1.0).collect();
     sample_points(&mut places, &hem, n * n - 2 * n, seed);
     places.extend(hem);
     let mut shape = Shape::default();
@@ -47,7 +47,7 @@ pub fn irregular(n: usize, seed: u64) -> Shape {
 }
 
 /// A random place on the cone, each square metre as likely as any other.
-fn random_place(random: &mut SplitMix64) -> Place {
+fn random_place(random: &mut SplitMix64) -> ConePlace {
     let [top, more] = RADIUS;
     let hem2 = (top + more).powi(2);
     let r = (top * top + random.uniform_f64() * (hem2 - top * top)).sqrt();
@@ -61,7 +61,7 @@ fn slant() -> f64 {
 
 /// Poisson-disc sampling by dart throwing (Cook 1986): `count` points that keep a distance from each other and from the
 /// two rings, which shrinks as room runs out.
-fn sample_points(places: &mut Vec<Place>, hem: &[Place], count: usize, seed: u64) {
+fn sample_points(places: &mut Vec<ConePlace>, hem: &[ConePlace], count: usize, seed: u64) {
     let area = std::f64::consts::PI * (2.0 * RADIUS[0] + RADIUS[1]) * slant();
     // In the densest packing each point has an area of spacing^2 sqrt(3) / 2.
     let mut spacing = FIRST_SPACING * (area / (count + hem.len()) as f64 * 2.0 / 3f64.sqrt()).sqrt();
@@ -98,17 +98,17 @@ impl SpacingGrid {
         Self { rows, columns, cells: vec![Vec::new(); rows * columns] }
     }
 
-    fn cell(&self, [u, angle]: Place) -> [usize; 2] {
+    fn cell(&self, [u, angle]: ConePlace) -> [usize; 2] {
         let part = |x: f64, count: usize| ((x * count as f64) as usize).min(count - 1);
         [part(u, self.rows), part(angle / TAU, self.columns)]
     }
 
-    fn add(&mut self, place: Place) {
+    fn add(&mut self, place: ConePlace) {
         let [row, column] = self.cell(place);
         self.cells[row * self.columns + column].push(point(place[0], place[1]));
     }
 
-    fn is_free(&self, place: Place, spacing: f64) -> bool {
+    fn is_free(&self, place: ConePlace, spacing: f64) -> bool {
         let ([row, column], p) = (self.cell(place), point(place[0], place[1]));
         let rows = row.saturating_sub(1)..=(row + 1).min(self.rows - 1);
         rows.flat_map(|r| [self.columns - 1, 0, 1].map(|c| r * self.columns + (column + c) % self.columns))
@@ -117,10 +117,10 @@ impl SpacingGrid {
 }
 
 /// Delaunay triangles of the unrolled cone, which close around, seen from outside counter-clockwise.
-fn triangles(places: &[Place], n: usize) -> Vec<[u32; 3]> {
+fn triangles(places: &[ConePlace], n: usize) -> Vec<[u32; 3]> {
     // Distance from the apex, and the angle by which the unrolled cone turns while the cone goes once around.
     let shrink = RADIUS[1] / slant();
-    let unrolled = |[u, angle]: Place, turn: f64| {
+    let unrolled = |[u, angle]: ConePlace, turn: f64| {
         let (r, angle) = ((RADIUS[0] + RADIUS[1] * u) / shrink, (angle + TAU * turn) * shrink);
         Point { x: r * angle.cos(), y: r * angle.sin() }
     };
@@ -140,7 +140,7 @@ fn triangles(places: &[Place], n: usize) -> Vec<[u32; 3]> {
     found
 }
 
-fn outwards(places: &[Place], corners: impl Iterator<Item = u32>) -> [u32; 3] {
+fn outwards(places: &[ConePlace], corners: impl Iterator<Item = u32>) -> [u32; 3] {
     let mut t = [0; 3];
     corners.zip(&mut t).for_each(|(v, corner)| *corner = v);
     let [a, b, c] = t.map(|v| point(places[v as usize][0], places[v as usize][1]));

@@ -1,9 +1,5 @@
 //! The skirt: the scene on which Toile and its peers are timed, with the same geometry, motion and fabric for each.
 //!
-//! Reads: the number of vertices a side. Writes: the shape, its fabric, the body's spheres and the root at any time.
-//! Budget: at load; the body at one time costs about a microsecond.
-//! Thread: any.
-//!
 //! A cone hangs from a ring around the waist: radius 0.18 m at 1.08 m above the floor, 0.42 m at 0.30 m. Its ring is
 //! pinned and follows the root; a body of 16 spheres and 28 tapered capsules walks in it.
 
@@ -20,7 +16,7 @@ use toile_base::fabric::loop_widths::LoopWidths;
 use toile_base::fabric::stretch_curve::{ShearLock, StretchCurve, StretchCurves};
 use toile_base::fabric::{Fabric, USUAL_SHEEN, USUAL_THREADS, Weave};
 
-pub use body::{CAPSULES, JOINTS, Motion, SPHERES, root, spheres};
+pub use body::{CAPSULES, JOINTS, SPHERES, SkirtMotion, root, spheres};
 pub use irregular::irregular;
 pub use surface::hem;
 use surface::{point, push};

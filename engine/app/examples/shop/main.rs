@@ -44,11 +44,11 @@ fn photograph(garment: &ShopGarment, pose: &Joints) -> Result<Vec<u8>, String> {
     let request = TryOn::of_shopper(&[name], None, ShopperFacts::default());
     let mut dressed = request.on_mannequin(pose).map_err(|e| e.to_string())?;
     for _ in 0..SETTLING {
-        dressed.frame.step(pose);
+        dressed.world.step(pose);
     }
     let snapshot = dressed.reader.latest().clone();
-    let colours = vec![garment.colours[0].2.map(linear); dressed.frame.garments().len()];
-    let drawn = DrawnFrame::new(&dressed.frame, Appearance::default()).coloured(&colours);
+    let colours = vec![garment.colours[0].2.map(linear); dressed.world.garments().len()];
+    let drawn = DrawnFrame::new(&dressed.world, Appearance::default()).coloured(&colours);
     let image = drawn_frame::still(drawn, &snapshot, 0.35, PHOTOGRAPH);
     let mut png = Vec::new();
     image.write_png(&mut png).map_err(|e| e.to_string())?;

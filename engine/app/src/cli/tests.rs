@@ -1,4 +1,4 @@
-//! Laws of the command line.
+//! Tests of the command line.
 
 use std::path::PathBuf;
 

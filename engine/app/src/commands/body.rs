@@ -18,12 +18,12 @@ use toile_cli::output::{Inputs, OutputFolder};
 use toile_cli::picture::write_png;
 use toile_cli::terminal::{self, Paint};
 use toile_engine::body::{JointFrames, Poser, palette};
-use toile_engine::frame::BLEND;
 use toile_engine::skin::SkinningJob;
+use toile_engine::world::BLEND;
 use toile_view::contact_sheet;
 use toile_view::figure::SkinTone;
 use toile_view::image::Size;
-use toile_view::scene::{Camera, Colours, Material, Scene, Surface};
+use toile_view::scene::{Colours, Material, OrbitCamera, PictureScene, PictureSurface};
 use toile_view::trace::{TraceQuality, TracedScene};
 
 use crate::arguments::SkinArg;
@@ -220,7 +220,7 @@ fn draw(
     title: &str,
     mut done: impl FnMut(),
 ) -> Result<(), AppError> {
-    let surfaces = [Surface {
+    let surfaces = [PictureSurface {
         positions: &body.mesh.positions,
         normals: &body.normals,
         triangles: &body.mesh.triangles,
@@ -228,10 +228,10 @@ fn draw(
         material: Material::Skin,
         look: None,
     }];
-    let stage = TracedScene::build(Scene { surfaces: &surfaces, floor: true });
+    let stage = TracedScene::build(PictureScene { surfaces: &surfaces, floor: true });
     let aspect = STILL.width as f32 / STILL.height as f32;
     let [front, side, back] = VIEWS.map(|turn| {
-        let image = stage.render(&Camera::framing(&stage.bounds(), turn, aspect), STILL, TraceQuality::Still);
+        let image = stage.render(&OrbitCamera::framing(&stage.bounds(), turn, aspect), STILL, TraceQuality::Still);
         done();
         image
     });

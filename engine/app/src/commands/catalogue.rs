@@ -1,7 +1,4 @@
 //! `toile catalogue`: a shop's garments are packed, checked, and shown on one sheet.
-//!
-//! Reads: a folder of garment packages, or of what one is made from. Writes: a package, a picture, a report.
-//! Budget: 1 ms a package to check, 10 s a garment to draw. Thread: the main thread.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -277,12 +274,12 @@ fn draw(
     let request = TryOn { garments: vec![RequestedGarment::of(source.clone(), None)], ..TryOn::default() };
     let mut dressed = request.on_mannequin(pose)?;
     for _ in 0..SETTLING {
-        dressed.frame.step(pose);
+        dressed.world.step(pose);
     }
     let snapshot = dressed.reader.latest().clone();
     let colour = manifest.colours.first().map_or(source.fabric()?.colour, |c| c.srgb).map(linear);
-    let colours = vec![colour; dressed.frame.garments().len()];
-    let drawn = DrawnFrame::new(&dressed.frame, appearance).coloured(&colours);
+    let colours = vec![colour; dressed.world.garments().len()];
+    let drawn = DrawnFrame::new(&dressed.world, appearance).coloured(&colours);
     Ok(drawn_frame::still(drawn, &snapshot, 0.0, PICTURE))
 }
 

@@ -18,7 +18,7 @@ use toile_cli::picture::write_png;
 use toile_cli::terminal::{self, Paint, Tone, Words};
 use toile_view::contact_sheet;
 use toile_view::image::Size;
-use toile_view::scene::{Camera, Colours, Material, Scene, Surface};
+use toile_view::scene::{Colours, Material, OrbitCamera, PictureScene, PictureSurface};
 use toile_view::trace::{TraceQuality, TracedScene};
 
 use crate::commands::body::{self, BodyArgs};
@@ -239,7 +239,7 @@ fn drawn(body: &Body) -> toile_view::image::Image {
     let shell = toile_assets::rig::shell(&rig, body);
     let painted: Vec<Vec3> = shell.capsules.iter().map(|c| CAPSULES[usize::from(*c) / 2 % CAPSULES.len()]).collect();
     let surfaces = [
-        Surface {
+        PictureSurface {
             positions: &body.mesh.positions,
             normals: &body.normals,
             triangles: &body.mesh.triangles,
@@ -247,7 +247,7 @@ fn drawn(body: &Body) -> toile_view::image::Image {
             material: Material::Skin,
             look: None,
         },
-        Surface {
+        PictureSurface {
             positions: &shell.positions,
             normals: &shell.normals,
             triangles: &shell.triangles,
@@ -256,13 +256,13 @@ fn drawn(body: &Body) -> toile_view::image::Image {
             look: None,
         },
     ];
-    let stages = [0, 1].map(|i| TracedScene::build(Scene { surfaces: &surfaces[i..=i], floor: true }));
+    let stages = [0, 1].map(|i| TracedScene::build(PictureScene { surfaces: &surfaces[i..=i], floor: true }));
     let bounds = stages[0].bounds();
     let aspect = STILL.width as f32 / STILL.height as f32;
     let images: Vec<_> = stages
         .iter()
         .flat_map(|stage| {
-            VIEWS.map(|turn| stage.render(&Camera::framing(&bounds, turn, aspect), STILL, TraceQuality::Still))
+            VIEWS.map(|turn| stage.render(&OrbitCamera::framing(&bounds, turn, aspect), STILL, TraceQuality::Still))
         })
         .collect();
     let captions = ["skin: red stands out by 20 mm", "blue lies below by 20 mm", "", "capsules", "", ""];

@@ -1,8 +1,4 @@
 //! `toile doctor`: what this machine has, and the exact cure for what is missing.
-//!
-//! Reads: the kernel's files, the environment, the adapters. Writes: a table or one JSON object on stdout; it leaves no trace.
-//! Budget: well below a second, but for a graphics driver that takes its time.
-//! Thread: the main thread.
 
 mod cameras;
 mod check;

@@ -1,7 +1,4 @@
 //! `toile fabric`: what fabrics there are, what one is, and a laboratory's sheet made into one.
-//!
-//! Reads: built-in fabrics, a fabric's file, a sheet of measured values. Writes: a report, a picture of loops, a fabric's file.
-//! Budget: milliseconds. Thread: the main thread.
 
 mod loops;
 

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use toile_fitting::dress::measured::{self, Measured, ShopperFacts};
+use toile_fitting::dress::measured::{self, MeasuredSubject, ShopperFacts};
 use toile_fitting::dress::session;
 use toile_track::estimate::Estimate;
 use toile_track::fit::measuring::{FittedMeasures, MEASURES};
@@ -92,13 +92,13 @@ pub fn run(args: &MeasureArgs) -> Result<(), AppError> {
     terminal::print(&summary::measure(&report, Paint::for_stdout()))
 }
 
-fn draw(out: &mut OutputFolder, measured: &Measured, fitted: &FittedMeasures) -> Result<(), AppError> {
+fn draw(out: &mut OutputFolder, measured: &MeasuredSubject, fitted: &FittedMeasures) -> Result<(), AppError> {
     let Some((frame, only)) = measured.surface.frames.last() else { return Ok(()) };
     let image = overlay(&Fit { frame, alone: only, body: &fitted.body.body, pose: &fitted.pose });
     write_png(out, "fitted.png", &image)
 }
 
-fn methods(measured: &Measured) -> Vec<MethodMeasures> {
+fn methods(measured: &MeasuredSubject) -> Vec<MethodMeasures> {
     let sections = measured.sections.measures.named();
     let sections = sections.into_iter().filter_map(|(name, e)| Some(defined(name, e?))).collect();
     let mut all = vec![MethodMeasures { method: "sections and proportions", measures: sections }];

@@ -1,8 +1,4 @@
 //! `toile plan`: what a scene needs and takes, before it runs.
-//!
-//! Reads: a scene file or a session. Writes: tables or one JSON object on stdout.
-//! Budget: some seconds to learn what this machine takes, and ten seconds of the scene played with each model and without.
-//! Thread: the main thread; the scene's own workers while it plays.
 
 mod table;
 
@@ -16,8 +12,8 @@ use toile_cli::heap::counted;
 use toile_cli::terminal::{self, Paint};
 use toile_engine::cloth::{Cloth, Settings};
 use toile_engine::colliders::Colliders;
-use toile_engine::frame::Frame;
 use toile_engine::meter::CLOTH;
+use toile_engine::world::World;
 use toile_fitting::dress::measured;
 use toile_fitting::dress::session;
 use toile_fitting::dress::try_on::{DressedBody, TryOn};
@@ -26,8 +22,8 @@ use toile_fitting::plan::calibrate;
 use toile_fitting::plan::cost::Costs;
 use toile_fitting::plan::reach::reach;
 use toile_fitting::plan::report::{self, GarmentPlan, Held, Memory, Plan};
-use toile_fitting::plan::scene::Scene;
-use toile_fitting::plan::verdict::{Priced, Verdict, judge};
+use toile_fitting::plan::scene::PlannedScene;
+use toile_fitting::plan::verdict::{PlanVerdict, Priced, judge};
 use toile_fitting::plan::weigh;
 use toile_fitting::plan::work::STAGES;
 
@@ -142,7 +138,7 @@ pub fn run(args: &PlanArgs) -> Result<(), AppError> {
 }
 
 /// Why a scene is refused, and the cure.
-fn refusal(scene: &str, verdict: &Verdict) -> String {
+fn refusal(scene: &str, verdict: &PlanVerdict) -> String {
     let cure = match &verdict.cures[..] {
         [] => "no one change brings it within; take a coarser mesh and fewer garments".to_owned(),
         cures => cures.join(", or "),
@@ -155,8 +151,8 @@ fn refusal(scene: &str, verdict: &Verdict) -> String {
 }
 
 /// Plans a scene file.
-fn file(scene: &RunScene, workers: usize) -> Result<(Scene, Costs, Vec<Memory>), AppError> {
-    let scene = Scene::file(scene.read()?).map_err(AppError::input)?;
+fn file(scene: &RunScene, workers: usize) -> Result<(PlannedScene, Costs, Vec<Memory>), AppError> {
+    let scene = PlannedScene::file(scene.read()?).map_err(AppError::input)?;
     let costs = calibrate::measure(None, workers).map_err(AppError::internal)?;
     let mut memory = vec![part("colliders", size_of::<Colliders>())];
     memory.extend(cloth_memory(&scene));
@@ -168,7 +164,7 @@ fn worn(
     session: Option<&std::path::Path>,
     request: &TryOn,
     workers: usize,
-) -> Result<(Scene, Costs, Vec<Memory>), AppError> {
+) -> Result<(PlannedScene, Costs, Vec<Memory>), AppError> {
     let mut session = session::open(session, None)?;
     let measured = measured::measure(&session, request.facts())?;
     measured::add_joints(&mut session, &measured)?;
@@ -184,7 +180,7 @@ fn worn(
     let frame = frame_bytes(&dressed, &request, &probe)?;
     let DressedBody { body: shape, rig, garments, .. } = dressed;
     let settings = Settings { workers: 1, ..request.settings() };
-    let mut scene = Scene::worn(&shape, &rig, garments, settings, &track).map_err(AppError::input)?;
+    let mut scene = PlannedScene::worn(&shape, &rig, garments, settings, &track).map_err(AppError::input)?;
     scene.name = request.words();
     let mut memory = vec![part("body", body as usize)];
     memory.extend(cloth_memory(&scene));
@@ -203,14 +199,14 @@ fn frame_bytes(dressed: &DressedBody, request: &TryOn, probe: &HeapProbe) -> Res
     let cloths: usize = made.0.cloths().iter().map(Cloth::bytes).sum();
     // Body and garments were there before and are the frame's now.
     let grown = before.zip(after).map_or(0, |(a, b)| b.live_bytes - a.live_bytes);
-    Ok((grown - cloths as i64).max(0) as usize + size_of::<Frame>())
+    Ok((grown - cloths as i64).max(0) as usize + size_of::<World>())
 }
 
 fn part(name: &str, bytes: usize) -> Memory {
     Memory { part: name.to_owned(), bytes: bytes as u64 }
 }
 
-fn cloth_memory(scene: &Scene) -> Vec<Memory> {
+fn cloth_memory(scene: &PlannedScene) -> Vec<Memory> {
     let both = scene.garments.iter().zip(scene.cloths());
     let rows = both.flat_map(|(garment, cloth)| {
         [
@@ -221,7 +217,7 @@ fn cloth_memory(scene: &Scene) -> Vec<Memory> {
     rows.collect()
 }
 
-fn garments(scene: &Scene, priced: &Priced) -> Vec<GarmentPlan> {
+fn garments(scene: &PlannedScene, priced: &Priced) -> Vec<GarmentPlan> {
     let all = scene.garments.iter().zip(&priced.first).zip(&priced.times);
     let plan = all.map(|((garment, first), time)| GarmentPlan {
         name: garment.name.clone(),

@@ -1,8 +1,4 @@
 //! `toile run`: any scene of the user's own, headless.
-//!
-//! Reads: a scene file and the files that it names. Writes: a report on stdout, positions of every vertex where asked for.
-//! Budget: that of the scene's steps; a dump has at most a million files.
-//! Thread: the main thread.
 
 mod dump;
 
@@ -12,7 +8,7 @@ use std::path::{Path, PathBuf};
 use toile_assets::scene_file::examples;
 use toile_assets::scene_file::{SceneError, SceneFile};
 use toile_engine::cloth::Cloth;
-use toile_engine::cloth::program::METERED_STAGES;
+use toile_engine::cloth::step::program::METERED_STAGES;
 use toile_fitting::heap::HeapProbe;
 use toile_fitting::scene::Runner;
 use toile_fitting::scene::contact::ContactReport;

@@ -1,7 +1,4 @@
 //! `toile tailor`: a sewn pattern is laid around a body of a size, sewn up and let hang.
-//!
-//! Reads: a pattern, its seam file and sizes, a fabric, a body's measures. Writes: a garment package, pictures, a report.
-//! Budget: 5 s a garment of 5,000 particles, pictures aside. Thread: the main thread.
 
 mod drafts;
 mod pictures;

@@ -1,6 +1,4 @@
 //! `toile try-on`: one whole try-on, from a session to pictures and a report.
-//!
-//! Reads: a session, garments, measures. Writes: pictures, a film, a report. Budget: 20 s with pictures. Thread: the main thread.
 
 mod animated;
 mod physics;
@@ -28,11 +26,11 @@ use toile_cli::output::Inputs;
 use toile_cli::output::OutputFolder;
 use toile_cli::terminal::{self, Paint, Progress, Words};
 use toile_engine::body::palette;
-use toile_engine::frame::{Frame, Snapshot};
-use toile_engine::frame_loop::governor::LADDER;
+use toile_engine::frame_loop::quality_control::QUALITY_LEVELS;
 use toile_engine::lines::{CAPACITY, Kind, Lines};
 use toile_engine::triple_buffer::Reader;
-use toile_fitting::dress::measured::{self, Measured, ShopperFacts};
+use toile_engine::world::{Snapshot, World};
+use toile_fitting::dress::measured::{self, MeasuredSubject, ShopperFacts};
 use toile_fitting::dress::motion::{self, SessionMotion};
 use toile_fitting::dress::session;
 use toile_fitting::dress::try_on::TryOn;
@@ -45,7 +43,7 @@ use crate::arguments::{AppearanceArgs, ExportArgs};
 use crate::commands::crossings::CrossingCount;
 use crate::pictures::{FinalState, Pictures, ROWS, STILL_ROWS, WorstMoment};
 use crate::renderer::{PictureRenderer, RendererChoice};
-use crate::report::{self, Recommendation, ZoneFitReport};
+use crate::report::{self, RecommendationReport, ZoneFitReport};
 use crate::session_export::DressedExport;
 use crate::summary;
 use crate::video::Video;
@@ -87,9 +85,9 @@ pub struct TryOnArgs {
     /// Tested settings of the cloth: draft, shop or fine
     #[arg(long, value_name = "Q", value_parser = quality(), default_value = Quality::default().name())]
     pub quality: Quality,
-    /// Hold the quality on a rung of the governor's ladder, to see its error: 0 is all of it
-    #[arg(long, value_name = "R", value_parser = value_parser!(u8).range(0..LADDER.len() as i64), default_value = "0")]
-    pub rung: u8,
+    /// Hold the quality on a level, to see its error: 0 is all of it
+    #[arg(long, alias = "rung", value_name = "L", value_parser = value_parser!(u8).range(0..QUALITY_LEVELS.len() as i64), default_value = "0")]
+    pub level: u8,
     /// Folder for the files; it is made if missing
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
@@ -222,16 +220,16 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     let (recommendations, judged) = (worn::recommendations(&dressed.fitted), dressed.tightness());
     let meshes: Vec<MeshReport> = dressed.fitted.iter().filter_map(|fitted| fitted.mesh.clone()).collect();
     meshes.iter().flat_map(MeshReport::lines).for_each(|line| words.print_line(&line));
-    let settings = LADDER[usize::from(args.rung)].of(&request.settings());
+    let settings = QUALITY_LEVELS[usize::from(args.level)].of(&request.settings());
     let poses = if args.poses { wearing::in_poses(&dressed, &settings)? } else { Vec::new() };
-    let (mut frame, mut reader) = dressed.build(settings).map_err(AppError::internal)?;
+    let (mut world, mut reader) = dressed.build(settings).map_err(AppError::internal)?;
     let title = title(&recommendations);
     let motion =
         moving.as_ref().map_or_else(|| SessionMotion::of_joints(&track), |m| SessionMotion::of_poses(&m.poses));
-    let played = play((args, &words, &title, &judged), &mut out, &mut renderer, (&mut frame, &mut reader), motion)?;
+    let played = play((args, &words, &title, &judged), &mut out, &mut renderer, (&mut world, &mut reader), motion)?;
 
     if args.glb {
-        out.write("dressed.glb", &dressed_glb(&frame, reader.latest()))?;
+        out.write("dressed.glb", &dressed_glb(&world, reader.latest()))?;
     }
     // The report names itself as well.
     out.stage("report.json")?;
@@ -244,15 +242,15 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
             measurements: report::measures::measurements(&measured.best, measured.population),
             recommendation: recommendations.next().unwrap_or_default(),
             others: recommendations.collect(),
-            physics: physics::physics(&frame),
+            physics: physics::physics(&world),
             crossings: played.crossings,
-            contact: physics::contact(&frame),
+            contact: physics::contact(&world),
             meshes,
             hidden_mm: played.hidden_mm.map(|max| report::Penetration { max }),
             poses,
             animation: moving.as_ref().map(animated::report).transpose()?,
             export: played.export,
-            state_hash: hash_text(frame.state_hash()),
+            state_hash: hash_text(world.state_hash()),
             renderer: played.renderer,
             files,
         },
@@ -277,7 +275,7 @@ fn request(args: &TryOnArgs) -> Result<TryOn, AppError> {
 /// The body to dress, and a sentence about it where there is one: the body of a file, whose measures then count, or the shopper's.
 fn worn_body(
     args: &TryOnArgs,
-    measured: &mut Measured,
+    measured: &mut MeasuredSubject,
     request: &TryOn,
     moving: Option<&MovingBody>,
 ) -> Result<(Body, Option<String>), AppError> {
@@ -310,43 +308,43 @@ fn play(
     (args, words, title, judged): (&TryOnArgs, &Words, &str, &[JudgedTightness]),
     out: &mut OutputFolder,
     renderer: &mut PictureRenderer,
-    (frame, reader): (&mut Frame, &mut Reader<Snapshot>),
+    (world, reader): (&mut World, &mut Reader<Snapshot>),
     mut motion: SessionMotion<'_>,
 ) -> Result<Played, AppError> {
     let steps = motion.steps();
     let appearance = args.appearance()?;
-    renderer.prepare(&Figure::of(frame.body(), appearance), frame.garments());
+    renderer.prepare(&Figure::of(world.body(), appearance), world.garments());
     let mut pictures = None;
     if args.pictures {
         let bar = words.bar(Pictures::work(steps), "drawing");
-        pictures = Some(Pictures::begin(out, DrawnFrame::new(frame, appearance), (steps, args.rows), bar)?);
+        pictures = Some(Pictures::begin(out, DrawnFrame::new(world, appearance), (steps, args.rows), bar)?);
     }
     let film = |path: &PathBuf| {
         let bar = words.bar(Video::work(steps), "filming");
-        Video::begin(path, DrawnFrame::new(frame, appearance), steps, bar)
+        Video::begin(path, DrawnFrame::new(world, appearance), steps, bar)
     };
     let mut video = args.video.as_ref().map(film).transpose()?;
-    let mut export = export(args, out, frame, steps)?;
+    let mut export = export(args, out, world, steps)?;
     let playing = (pictures.is_none() && video.is_none()).then(|| words.bar(steps, "playing"));
     let mut lines = Lines::new(if args.lines.is_empty() { 0 } else { CAPACITY });
-    let mut crossings = CrossingCount::new(frame.garments(), f64::from(STEP_SECONDS));
+    let mut crossings = CrossingCount::new(world.garments(), f64::from(STEP_SECONDS));
     let mut worst = None;
-    motion.dress(frame);
+    motion.dress(world);
     for tick in 0..steps {
-        motion.step(frame);
+        motion.step(world);
         playing.iter().for_each(|bar| bar.inc(1));
-        if crossings.after(tick, frame.cloths()) && args.pictures {
-            worst = Some(worst_moment(frame, reader.latest(), &crossings.report()));
+        if crossings.after(tick, world.cloths()) && args.pictures {
+            worst = Some(worst_moment(world, reader.latest(), &crossings.report()));
         }
         if let Some(export) = &mut export {
-            export.after(tick, frame, reader.latest(), out)?;
+            export.after(tick, world, reader.latest(), out)?;
         }
         if let Some(pictures) = pictures.as_mut().filter(|p| p.wants(tick)) {
-            draw_lines(&mut lines, &args.lines, frame);
+            draw_lines(&mut lines, &args.lines, world);
             pictures.add(renderer, reader.latest(), lines.as_slice())?;
         }
         if let Some(video) = video.as_mut().filter(|_| Video::wants(tick)) {
-            draw_lines(&mut lines, &args.lines, frame);
+            draw_lines(&mut lines, &args.lines, world);
             video.add(renderer, reader.latest(), lines.as_slice())?;
         }
     }
@@ -354,9 +352,9 @@ fn play(
     let drew = pictures.is_some() || video.is_some();
     let mut hidden_m = 0.0f32;
     if let Some(pictures) = pictures {
-        let tightness = fit_map::of_frame(frame, judged);
-        draw_lines(&mut lines, &args.lines, frame);
-        let (facing, worst) = (facing(frame), worst.as_ref());
+        let tightness = fit_map::of_frame(world, judged);
+        draw_lines(&mut lines, &args.lines, world);
+        let (facing, worst) = (facing(world), worst.as_ref());
         let ending = FinalState { tightness: &tightness, facing, title, lines: lines.as_slice(), worst };
         hidden_m = pictures.finish(out, renderer, reader.latest(), &ending)?;
     }
@@ -381,7 +379,7 @@ fn play(
 fn export(
     args: &TryOnArgs,
     out: &mut OutputFolder,
-    frame: &Frame,
+    world: &World,
     steps: u64,
 ) -> Result<Option<DressedExport>, AppError> {
     let ExportArgs { formats, rate_hz } = &args.export;
@@ -390,56 +388,56 @@ fn export(
     }
     let timing = (steps, args.export.stride(), f64::from(*rate_hz));
     let skin = args.appearance()?.skin.colour().to_array();
-    DressedExport::begin(out, frame, skin, formats, timing).map(Some)
+    DressedExport::begin(out, world, skin, formats, timing).map(Some)
 }
 
 /// The direction in which the shopper looks (rad from +z towards +x).
-fn facing(frame: &Frame) -> f32 {
-    let ahead = frame.pose().local[Joint::Pelvis.index()] * glam::Vec3::Z;
+fn facing(world: &World) -> f32 {
+    let ahead = world.pose().local[Joint::Pelvis.index()] * glam::Vec3::Z;
     ahead.x.atan2(ahead.z)
 }
 
 /// A frame as it is, with what was just seen to cross.
-fn worst_moment(frame: &Frame, snapshot: &Snapshot, seen: &report::CrossingReport) -> WorstMoment {
+fn worst_moment(world: &World, snapshot: &Snapshot, seen: &report::CrossingReport) -> WorstMoment {
     WorstMoment {
         seconds: seen.worst_s.unwrap_or_default(),
         crossings: seen.max,
         garments: snapshot.garments.clone(),
         skin: snapshot.skin.clone(),
-        facing: facing(frame),
+        facing: facing(world),
     }
 }
 
 /// Fills in the lines that were asked for, of the frame as it is.
-fn draw_lines(lines: &mut Lines, kinds: &[Kind], frame: &Frame) {
+fn draw_lines(lines: &mut Lines, kinds: &[Kind], world: &World) {
     lines.clear();
     for &kind in kinds {
         if kind == Kind::Colliders {
-            lines.add_colliders(frame.colliders());
+            lines.add_colliders(world.colliders());
         }
-        for (cloth, garment) in frame.cloths().iter().zip(frame.garments()) {
-            lines.add_garment(kind, cloth, garment, frame.colliders());
+        for (cloth, garment) in world.cloths().iter().zip(world.garments()) {
+            lines.add_garment(kind, cloth, garment, world.colliders());
         }
     }
 }
 
 /// The dressed body as it is drawn last: the body on its skeleton in that pose, the garments as they lie.
-fn dressed_glb(frame: &Frame, snapshot: &Snapshot) -> Vec<u8> {
+fn dressed_glb(world: &World, snapshot: &Snapshot) -> Vec<u8> {
     let mut bones = [Affine3A::IDENTITY; BONES];
-    palette(&frame.body().skeleton, frame.pose(), &mut bones);
-    let worn = frame.garments().iter().zip(&snapshot.garments).map(|(garment, positions)| export::WornGarment {
+    palette(&world.body().skeleton, world.pose(), &mut bones);
+    let worn = world.garments().iter().zip(&snapshot.garments).map(|(garment, positions)| export::WornGarment {
         name: &garment.name,
         positions,
         triangles: &garment.triangles,
         srgb: garment.fabric.colour,
     });
     let worn: Vec<export::WornGarment<'_>> = worn.collect();
-    glb(&export::DressedBody { body: frame.body(), palette: Some(&bones), worn: &worn })
+    glb(&export::DressedBody { body: world.body(), palette: Some(&bones), worn: &worn })
 }
 
 /// Words over the stills: the first garment and its size, then each zone.
-fn title(recommendations: &[Recommendation]) -> String {
-    let line = |r: &Recommendation| {
+fn title(recommendations: &[RecommendationReport]) -> String {
+    let line = |r: &RecommendationReport| {
         let zone = |z: &ZoneFitReport| {
             format!("{} {} ({:+.0} mm)", z.zone, z.feel.as_deref().unwrap_or(&z.verdict), z.ease_mm)
         };

@@ -8,7 +8,7 @@ use toile_view::image::{Image, Size};
 use toile_view::raster::{
     AdapterChoice, Backdrop, Gpu, GpuError, Model, ModelError, Offscreen, RenderQuality, Renderer,
 };
-use toile_view::scene::{Camera, Colours, Surface};
+use toile_view::scene::{Colours, OrbitCamera, PictureSurface};
 use toile_view::trace::TraceQuality;
 
 /// A device, and what draws stills and frames on it; each is made when it is first asked for.
@@ -48,7 +48,12 @@ impl GpuRenderer {
     }
 
     /// Updates the surfaces, in the model's order.
-    pub fn update(&mut self, surfaces: &[Surface<'_>], lines: &[Line], quality: TraceQuality) -> Result<(), AppError> {
+    pub fn update(
+        &mut self,
+        surfaces: &[PictureSurface<'_>],
+        lines: &[Line],
+        quality: TraceQuality,
+    ) -> Result<(), AppError> {
         let renderer = self.renderer(quality)?;
         for (i, surface) in surfaces.iter().enumerate() {
             dress(renderer, i, surface).map_err(AppError::internal)?;
@@ -58,7 +63,7 @@ impl GpuRenderer {
     }
 
     /// Draws one picture of the surfaces as they were last updated.
-    pub fn picture(&mut self, camera: &Camera, size: Size, quality: TraceQuality) -> Result<Image, AppError> {
+    pub fn picture(&mut self, camera: &OrbitCamera, size: Size, quality: TraceQuality) -> Result<Image, AppError> {
         let at = match self.targets.iter().position(|t| t.size() == size) {
             Some(at) => at,
             None => {
@@ -91,7 +96,7 @@ impl GpuRenderer {
 }
 
 /// Brings one surface up to date.
-fn dress(renderer: &mut Renderer, at: usize, surface: &Surface<'_>) -> Result<(), ModelError> {
+fn dress(renderer: &mut Renderer, at: usize, surface: &PictureSurface<'_>) -> Result<(), ModelError> {
     renderer.update(at, surface.positions, surface.normals)?;
     renderer.set_triangles(at, surface.triangles)?;
     match surface.colours {

@@ -1,6 +1,5 @@
 //! Scenes in motion.
 //!
-//! Reads: bodies, garments, scene files, joints, meshes of C's. Writes: arrays where C has room, snapshots, pictures.
 //! Budget: below 5 us a call beside the scene's own work.
 //! Thread: the caller's, one call at a time on a scene; a second one meanwhile is refused.
 

@@ -17,7 +17,7 @@ use toile_track::fit::{
 
 use super::joint_point::JointPoint;
 use super::rim::{DrawnSurface, RimMatch, matches, overlap, rim};
-use super::view::View;
+use super::view::CameraSilhouette;
 use toile_pose::depth_buffer::DepthBuffer;
 
 /// Stages of the fit, coarse to fine: largest distance of a match (m), distance at which it has a quarter of its weight (m), steps.
@@ -50,7 +50,7 @@ const SKIN: f64 = 0.03;
 
 /// Views and joints, and one sex's body between them.
 pub(super) struct BodyFitter {
-    pub views: Arc<[View]>,
+    pub views: Arc<[CameraSilhouette]>,
     pub joints: Vec<JointPoint>,
     /// The state of the frame before, where somebody is followed.
     pub before: Option<FitState>,
@@ -69,7 +69,7 @@ pub(super) struct BodyFitter {
 }
 
 impl BodyFitter {
-    pub(super) fn new(sex: Sex, views: Arc<[View]>, joints: Vec<JointPoint>) -> Self {
+    pub(super) fn new(sex: Sex, views: Arc<[CameraSilhouette]>, joints: Vec<JointPoint>) -> Self {
         let shapes = Shapes::of(sex);
         let model = BodyModel::new(shapes, 0.0);
         let faces: Vec<[u32; 4]> = model.samples.iter().map(|s| s.corners).collect();
@@ -251,7 +251,7 @@ impl BodyFitter {
     }
 
     /// Other silhouettes of the same body: those of the next frame.
-    pub(super) fn look(&mut self, views: Arc<[View]>, joints: Vec<JointPoint>) {
+    pub(super) fn look(&mut self, views: Arc<[CameraSilhouette]>, joints: Vec<JointPoint>) {
         self.buffers = views.iter().map(|v| DepthBuffer::new(v.camera.size, v.scale)).collect();
         (self.views, self.joints) = (views, joints);
     }

@@ -14,7 +14,7 @@ use super::fit::BodyFitter;
 use super::joint_point::JointPoint;
 use super::measured::{FEWEST, LEAST_AGREEMENT, SilhouetteBody, SilhouetteView};
 use super::start::{ARM_JOINTS, other_forearm, with_arms};
-use super::view::View;
+use super::view::CameraSilhouette;
 
 /// Stages of a frame: largest distance of a match (m), distance at which it has a quarter of its weight (m), steps.
 const STAGES: [(f64, f64, usize); 3] = [(0.20, 0.12, 4), (0.10, 0.05, 4), (0.06, 0.03, 4)];
@@ -61,7 +61,8 @@ impl BodyFollower {
 
     /// Follows into the next frame: what cameras see the person, two of them at least, and joints in the cameras' world if there are any.
     pub fn next(&mut self, seen: &[SilhouetteView], joints: &[JointPoint]) -> FollowedFrame {
-        let views: Arc<[View]> = seen.iter().map(|s| View::new(s.mask, s.camera, self.upright)).collect();
+        let views: Arc<[CameraSilhouette]> =
+            seen.iter().map(|s| CameraSilhouette::new(s.mask, s.camera, self.upright)).collect();
         let joints = joints.iter().map(|p| JointPoint { place: self.upright * p.place, ..*p }).collect();
         self.fitter.look(views, joints);
         if seen.len() < FEWEST {

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::view::View;
+use super::view::CameraSilhouette;
 use crate::error::CaptureError;
 
 /// Side of the cube in which the person is looked for (m), and how often it is halved: to 16 mm.
@@ -35,7 +35,7 @@ pub(super) struct HullShape {
 ///
 /// # Errors
 /// One sentence where the silhouettes meet in no place.
-pub(super) fn carve(views: &[View]) -> Result<HullShape, CaptureError> {
+pub(super) fn carve(views: &[CameraSilhouette]) -> Result<HullShape, CaptureError> {
     let nowhere = || {
         CaptureError::unfit(
             "the silhouettes",
@@ -72,7 +72,7 @@ fn side(bit: usize) -> f64 {
 }
 
 /// The place nearest to the rays through the middles of all silhouettes.
-fn meeting(views: &[View]) -> Option<DVec3> {
+fn meeting(views: &[CameraSilhouette]) -> Option<DVec3> {
     let (mut a, mut b) = (DMat3::ZERO, DVec3::ZERO);
     for view in views {
         let width = (f64::from(view.camera.size[0]) * view.scale).ceil().max(1.0) as usize;
@@ -97,7 +97,7 @@ fn meeting(views: &[View]) -> Option<DVec3> {
 }
 
 /// Whether a cube may reach into a silhouette.
-fn may_hold(view: &View, at: DVec3, half: f64) -> bool {
+fn may_hold(view: &CameraSilhouette, at: DVec3, half: f64) -> bool {
     let seen = view.small(at);
     let radius = half * 3f64.sqrt();
     if seen.z < radius + 0.05 {
@@ -107,7 +107,7 @@ fn may_hold(view: &View, at: DVec3, half: f64) -> bool {
     view.field.at(seen.x, seen.y) <= reach + 1.0
 }
 
-fn is_covered(view: &View, at: DVec3) -> bool {
+fn is_covered(view: &CameraSilhouette, at: DVec3) -> bool {
     let seen = view.small(at);
     seen.z > 0.05 && view.field.at(seen.x, seen.y) < 0.5
 }

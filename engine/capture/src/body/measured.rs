@@ -19,7 +19,7 @@ use super::fit::{BodyFitter, COARSE, FINE};
 use super::hull::{HullShape, carve};
 use super::joint_point::JointPoint;
 use super::start::{ARM_JOINTS, other_forearm, start, turned};
-use super::view::View;
+use super::view::CameraSilhouette;
 use crate::error::CaptureError;
 
 /// Fewest cameras: one outline leaves the depth of a body open.
@@ -121,7 +121,8 @@ pub fn measure(seen: &[SilhouetteView], options: &SilhouetteOptions) -> Result<S
         return Err(CaptureError::unfit("the cameras", problem, "film from the front and from one side at least"));
     }
     let upright = upright(seen, options.up);
-    let views: Arc<[View]> = seen.iter().map(|s| View::new(s.mask, s.camera, upright)).collect();
+    let views: Arc<[CameraSilhouette]> =
+        seen.iter().map(|s| CameraSilhouette::new(s.mask, s.camera, upright)).collect();
     let hull = carve(&views)?;
     check(&hull)?;
     let turned = |p: &JointPoint| JointPoint { place: upright * p.place, ..*p };
@@ -200,7 +201,7 @@ struct SexMeasures {
 }
 
 impl SexFit {
-    fn new(sex: Sex, views: &Arc<[View]>, joints: &[JointPoint], hull: &HullShape) -> Self {
+    fn new(sex: Sex, views: &Arc<[CameraSilhouette]>, joints: &[JointPoint], hull: &HullShape) -> Self {
         let mut fitter = BodyFitter::new(sex, Arc::clone(views), joints.to_vec());
         let from = start(&mut fitter, hull);
         let (agreement, state) = fine(&mut fitter, &from);
@@ -294,7 +295,7 @@ fn with_forearms(fitter: &mut BodyFitter, found: (f64, FitState)) -> (f64, FitSt
     best
 }
 
-fn together(parts: Vec<SexMeasures>, views: &[View], upright: DMat3, hull: &HullShape) -> SilhouetteBody {
+fn together(parts: Vec<SexMeasures>, views: &[CameraSilhouette], upright: DMat3, hull: &HullShape) -> SilhouetteBody {
     let mixture: Vec<_> = parts.iter().map(|p| (p.share, p.measures)).collect();
     let own = Correlated::mixed(&mixture);
     let all = with_model_error(own);
@@ -337,7 +338,7 @@ fn with_model_error(mut measured: Correlated<{ MEASURES.len() }>) -> Correlated<
     measured
 }
 
-fn notes(views: &[View]) -> Vec<String> {
+fn notes(views: &[CameraSilhouette]) -> Vec<String> {
     let mut notes = Vec::new();
     for view in views.iter().filter(|v| v.cut) {
         let name = &view.camera.name;
@@ -362,8 +363,8 @@ const OPPOSITE: f64 = -0.966;
 const WAYS: usize = 4;
 
 /// Says which cameras stand opposite each other, where they leave few ways of looking: they see the same outline.
-pub(super) fn opposite(views: &[View]) -> Option<String> {
-    let axis = |v: &View| v.camera.rotation().row(2).with_y(0.0).normalize_or_zero();
+pub(super) fn opposite(views: &[CameraSilhouette]) -> Option<String> {
+    let axis = |v: &CameraSilhouette| v.camera.rotation().row(2).with_y(0.0).normalize_or_zero();
     let mut pairs = Vec::new();
     for (i, a) in views.iter().enumerate() {
         pairs.extend(views[i + 1..].iter().filter(|b| axis(a).dot(axis(b)) < OPPOSITE).map(|b| (a, b)));

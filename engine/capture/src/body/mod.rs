@@ -1,9 +1,4 @@
 //! A body from its silhouettes: the parametric body posed and shaped until its outlines are those that calibrated cameras saw.
-//!
-//! Reads: masks with their cameras, joints where there are some. Writes: measures with their errors, a body, a pose; in later frames
-//! the pose alone.
-//! Budget: offline; some seconds a person and sex, some tenths of a second for each later frame.
-//! Thread: the caller's.
 
 mod distance_field;
 mod fit;

@@ -3,7 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::view::{TangentPlane, View};
+use super::view::{CameraSilhouette, TangentPlane};
 use toile_pose::depth_buffer::DepthBuffer;
 
 /// Least cosine between the ways out of a body's rim and of an outline that belong together.
@@ -55,7 +55,7 @@ const BEYOND: f64 = 1.6;
 
 /// Draws a body and collects its rim: for each face on which the surface turns away from the camera the place where it does
 /// (Hertzmann 1999), where nothing of the drawing lies beyond it.
-pub(super) fn rim(view: &View, surface: &DrawnSurface, buffer: &mut DepthBuffer) -> Vec<RimPoint> {
+pub(super) fn rim(view: &CameraSilhouette, surface: &DrawnSurface, buffer: &mut DepthBuffer) -> Vec<RimPoint> {
     buffer.draw(&view.camera, surface.positions, surface.triangles);
     let away: Vec<f64> = surface.positions.iter().zip(surface.normals).map(|(p, n)| n.dot(*p - view.from)).collect();
     let mut found = Vec::new();
@@ -69,7 +69,7 @@ pub(super) fn rim(view: &View, surface: &DrawnSurface, buffer: &mut DepthBuffer)
 }
 
 /// The middle of the line on a face along which the surface turns away.
-fn turning_place(view: &View, surface: &DrawnSurface, away: &[f64], face: usize) -> Option<RimPoint> {
+fn turning_place(view: &CameraSilhouette, surface: &DrawnSurface, away: &[f64], face: usize) -> Option<RimPoint> {
     let corners = surface.faces[face];
     let (mut place, mut normal, mut count) = (DVec3::ZERO, DVec3::ZERO, 0.0);
     for k in 0..4 {
@@ -89,7 +89,7 @@ fn turning_place(view: &View, surface: &DrawnSurface, away: &[f64], face: usize)
 }
 
 /// Whether the drawing ends at a place of its rim.
-fn is_outermost(view: &View, buffer: &DepthBuffer, point: &RimPoint) -> bool {
+fn is_outermost(view: &CameraSilhouette, buffer: &DepthBuffer, point: &RimPoint) -> bool {
     let at = (point.at + 0.5) * view.scale - 0.5 + point.out * BEYOND;
     let (x, y) = (at.x.round(), at.y.round());
     let inside = x >= 0.0 && y >= 0.0 && x < buffer.width as f64 && y < buffer.height as f64;
@@ -98,7 +98,7 @@ fn is_outermost(view: &View, buffer: &DepthBuffer, point: &RimPoint) -> bool {
 
 /// Which outlines belong to which places of the rim: for each outline the nearest place that faces its way, and for each place that
 /// no outline has, the nearest outline. `gate` is the largest distance (m).
-pub(super) fn matches(view: &View, rim: &[RimPoint], gate: f64) -> Vec<RimMatch> {
+pub(super) fn matches(view: &CameraSilhouette, rim: &[RimPoint], gate: f64) -> Vec<RimMatch> {
     let focal = view.camera.focal().x;
     let mut found = Vec::new();
     let mut taken = vec![false; rim.len()];
@@ -141,7 +141,7 @@ pub(super) fn matches(view: &View, rim: &[RimPoint], gate: f64) -> Vec<RimMatch>
 }
 
 /// Pixels that drawing and silhouette share, and that either has.
-pub(super) fn overlap(view: &View, buffer: &DepthBuffer) -> [usize; 2] {
+pub(super) fn overlap(view: &CameraSilhouette, buffer: &DepthBuffer) -> [usize; 2] {
     let pairs = view.covered.iter().zip(&buffer.triangle);
     pairs.fold([0, 0], |[both, either], (seen, t)| {
         let drawn = *t != u32::MAX;

@@ -7,7 +7,7 @@ use toile_sensors::masks::Mask;
 use toile_track::fit::measuring::MEASURES;
 
 use super::measured::opposite;
-use super::view::View;
+use super::view::CameraSilhouette;
 use super::*;
 use crate::render::look_at;
 use toile_pose::depth_buffer::DepthBuffer;
@@ -123,7 +123,8 @@ fn a_body_of_the_own_family_comes_back_from_four_silhouettes() {
 fn cameras_that_stand_opposite_each_other_are_named_where_they_leave_few_ways_of_looking() {
     let said = |angles: &[f64]| {
         let mask = Mask { width: 64, height: 64, coverage: vec![0.0; 64 * 64] };
-        let seen: Vec<View> = cameras(angles).iter().map(|c| View::new(&mask, c, DMat3::IDENTITY)).collect();
+        let seen: Vec<CameraSilhouette> =
+            cameras(angles).iter().map(|c| CameraSilhouette::new(&mask, c, DMat3::IDENTITY)).collect();
         opposite(&seen)
     };
     assert!(said(&[0.0, 90.0, 180.0]).is_some_and(|n| n.contains("60 degrees apart")));

@@ -26,7 +26,7 @@ pub(super) struct TangentPlane {
 
 /// One camera's silhouette.
 #[derive(Debug, Clone)]
-pub(super) struct View {
+pub(super) struct CameraSilhouette {
     /// The camera, with a lens that bends nothing, in a world whose y is up.
     pub camera: CalibratedCamera,
     /// Where it stands (m).
@@ -45,7 +45,7 @@ pub(super) struct View {
     pub cut: bool,
 }
 
-impl View {
+impl CameraSilhouette {
     /// The view of a mask by its camera, in a world that is turned by `upright`.
     pub(super) fn new(mask: &Mask, camera: &CalibratedCamera, upright: DMat3) -> Self {
         let bent = camera.in_turned_world(upright);
@@ -116,7 +116,7 @@ mod tests {
             hits.count() as f32 / 16.0
         };
         let mask = Mask { width: 400, height: 400, coverage: (0..160_000).map(coverage).collect() };
-        let view = View::new(&mask, &camera, DMat3::IDENTITY);
+        let view = CameraSilhouette::new(&mask, &camera, DMat3::IDENTITY);
         assert!(view.planes.len() > 60 && !view.cut);
         for plane in &view.planes {
             let off = plane.normal.dot(centre - from) + radius;

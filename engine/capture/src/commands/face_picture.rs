@@ -14,7 +14,7 @@ use toile_view::cloth_look::{GarmentLook, TileLevels};
 use toile_view::contact_sheet;
 use toile_view::figure::{Hair, HairMesh};
 use toile_view::image::{Image, Size, linear};
-use toile_view::scene::{Bounds, Camera, Colours, MANNEQUIN, Material, Scene, Surface};
+use toile_view::scene::{Bounds, Colours, MANNEQUIN, Material, OrbitCamera, PictureScene, PictureSurface};
 use toile_view::trace::{TraceQuality, TracedScene};
 
 /// A picture of one side.
@@ -74,7 +74,7 @@ fn look(base: &BaseBody, texture: &HeadTexture) -> GarmentLook {
 fn sides(base: &BaseBody, shown: &ShownHead<'_>) -> Vec<Image> {
     let mut normals = vec![Vec3::ZERO; shown.positions.len()];
     vertex_normals(&shown.positions, &base.triangles, &mut normals);
-    let mut surfaces = vec![Surface {
+    let mut surfaces = vec![PictureSurface {
         positions: &shown.positions,
         normals: &normals,
         triangles: &base.triangles,
@@ -82,7 +82,7 @@ fn sides(base: &BaseBody, shown: &ShownHead<'_>) -> Vec<Image> {
         material: Material::Skin,
         look: shown.look.map(GarmentLook::shown),
     }];
-    surfaces.extend(shown.hair.as_ref().map(|hair| Surface {
+    surfaces.extend(shown.hair.as_ref().map(|hair| PictureSurface {
         positions: &hair.positions,
         normals: &hair.normals,
         triangles: &hair.triangles,
@@ -90,7 +90,7 @@ fn sides(base: &BaseBody, shown: &ShownHead<'_>) -> Vec<Image> {
         material: Material::Skin,
         look: None,
     }));
-    let scene = TracedScene::build(Scene { surfaces: &surfaces, floor: false });
+    let scene = TracedScene::build(PictureScene { surfaces: &surfaces, floor: false });
     let of_head = shown.positions.iter().zip(&base.regions).filter(|(_, r)| **r == Region::Head);
     let hair = shown.hair.iter().flat_map(|hair| &hair.positions);
     let points: Vec<Vec3> = of_head.map(|(p, _)| *p).chain(hair.copied()).collect();
@@ -98,6 +98,6 @@ fn sides(base: &BaseBody, shown: &ShownHead<'_>) -> Vec<Image> {
     let bounds = Bounds { min: bounds.min - Vec3::Y * NECK, ..bounds };
     let aspect = STILL.width as f32 / STILL.height as f32;
     // The camera stands at the height of the head's middle, as one before whom a face stands does.
-    let camera = |yaw: f32| Camera { height: 0.0, ..Camera::framing(&bounds, yaw, aspect) };
+    let camera = |yaw: f32| OrbitCamera { height: 0.0, ..OrbitCamera::framing(&bounds, yaw, aspect) };
     VIEWS.iter().map(|yaw| scene.render(&camera(*yaw), STILL, TraceQuality::Still)).collect()
 }

@@ -1,8 +1,4 @@
 //! The commands of `toile-capture`: what several calibrated cameras saw becomes a surface that moves, a pose or a body.
-//!
-//! Reads: calibrations, pictures, meshes, keypoints. Writes: meshes, joints, reports into an output folder; figures on stdout.
-//! Budget: offline: about a second a frame.
-//! Thread: the main thread, and those that a capture starts.
 
 use clap::{Parser, Subcommand};
 use toile_cli::exit::AppError;

@@ -16,7 +16,7 @@ use glam::{DMat3, DVec3};
 
 use super::settings::{FlowSettings, Springs};
 use crate::sparse::BlockSystem;
-use crate::surface::Surface;
+use crate::surface::CapturedSurface;
 
 /// Least stiffness of a cubic spring at its rest length, as a part of the linear one's: keeps the system regular.
 const AT_REST: f64 = 1e-3;
@@ -30,7 +30,7 @@ pub(super) struct Energy {
 }
 
 impl Energy {
-    pub fn new(surface: &Surface, system: &BlockSystem) -> Self {
+    pub fn new(surface: &CapturedSurface, system: &BlockSystem) -> Self {
         let spring = |e: &[u32; 2]| {
             let [a, b] = *e;
             let length = surface.rest[a as usize].distance(surface.rest[b as usize]);
@@ -109,7 +109,7 @@ mod tests {
     #[test]
     fn forces_are_the_change_of_the_energy() {
         let rest = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::new(1.0, 1.0, 0.2)];
-        let surface = Surface::new("m", rest.clone(), Vec::new(), vec![[0, 1, 3], [0, 3, 2]]).unwrap();
+        let surface = CapturedSurface::new("m", rest.clone(), Vec::new(), vec![[0, 1, 3], [0, 3, 2]]).unwrap();
         let groups = surface.folds.iter().map(|f| &f.corners[..]).chain(surface.edges.iter().map(|e| &e[..]));
         let mut system = BlockSystem::new(4, groups);
         let energy = Energy::new(&surface, &system);
@@ -147,7 +147,7 @@ mod tests {
     #[test]
     fn a_cubic_spring_is_softer_below_its_threshold_and_stiffer_above() {
         let rest = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
-        let surface = Surface::new("m", rest.clone(), Vec::new(), vec![[0, 1, 2]]).unwrap();
+        let surface = CapturedSurface::new("m", rest.clone(), Vec::new(), vec![[0, 1, 2]]).unwrap();
         let mut system = BlockSystem::new(3, surface.edges.iter().map(|e| &e[..]));
         let energy = Energy::new(&surface, &system);
         let mut pull = |springs: Springs, strain: f64| {

@@ -1,10 +1,6 @@
 //! Model flowing: a mesh known in the first frame is deformed so that each next frame's pictures, warped back a triangle at a time,
 //! make those before (Reuterswaerd 2005, "Model Flowing", chapter 5).
 //!
-//! Reads: a surface, calibrated cameras, their pictures. Writes: the surface in each frame, with what it was seen by.
-//! Budget: 30 ms an iteration for 900 vertices and four cameras on two cores; memory for the pictures of one frame.
-//! Thread: the caller's and a second one.
-//!
 //! Beyond his: triangles are hidden by a depth buffer and weighted by the angle at which they are seen; one that fewer than two
 //! cameras see is carried by its springs, its folds and its inertia, the terms of an implicit step of cloth; the print of the
 //! first frame is the reference of all, so that errors do not add up; each triangle has a brightness of its own in each camera.

@@ -85,7 +85,7 @@ impl FlowState {
     ) -> Pass {
         let views: Vec<LevelView> = pyramids.iter().enumerate().map(|(c, p)| self.view(c, p, level)).collect();
         let count = self.surface.triangles.len();
-        let (mut terms, mut sums) = std::mem::take(&mut self.room);
+        let (mut terms, mut sums) = std::mem::take(&mut self.scratch);
         terms.clear();
         terms.resize(count, TriangleTerm::NONE);
         // What is in them is of the iteration before, and written over.
@@ -102,7 +102,7 @@ impl FlowState {
             width.run(TriangleRange { state: this, work, first: 0, terms: left, sums: sums_left });
         });
         let pass = self.gather(&terms, &sums, carried);
-        self.room = (terms, sums);
+        self.scratch = (terms, sums);
         pass
     }
 

@@ -14,7 +14,7 @@ use super::visibility::Visibility;
 use crate::error::CaptureError;
 use crate::plane::{Pyramid, Window, level_map};
 use crate::sparse::BlockSystem;
-use crate::surface::Surface;
+use crate::surface::CapturedSurface;
 
 /// Pixels around the surface that are read besides it: a step of it, and what smoothing reaches.
 const MARGIN: f64 = 48.0;
@@ -27,7 +27,7 @@ pub(super) const SEEN: f32 = 0.35;
 
 /// A surface that is followed, and what is known of it.
 pub(super) struct FlowState {
-    pub surface: Surface,
+    pub surface: CapturedSurface,
     pub cameras: Vec<CalibratedCamera>,
     /// The same with lenses that bend nothing.
     pub straight: Vec<CalibratedCamera>,
@@ -54,12 +54,16 @@ pub(super) struct FlowState {
     /// Frames one after the other in which cameras placed next to nothing.
     pub unseen: u32,
     /// Room for an iteration's terms and sums `[triangles]`, `[triangles][cameras]`.
-    pub room: (Vec<TriangleTerm>, Vec<PatchSums>),
+    pub scratch: (Vec<TriangleTerm>, Vec<PatchSums>),
 }
 
 impl FlowState {
     /// A state before the first frame.
-    pub fn new(surface: Surface, cameras: Vec<CalibratedCamera>, settings: FlowSettings) -> Result<Self, CaptureError> {
+    pub fn new(
+        surface: CapturedSurface,
+        cameras: Vec<CalibratedCamera>,
+        settings: FlowSettings,
+    ) -> Result<Self, CaptureError> {
         if cameras.len() < 2 {
             let problem = format!("{} camera, where depth comes from two or more", cameras.len());
             return Err(CaptureError::unfit("the calibration", problem, "calibrate at least two cameras together"));
@@ -88,7 +92,7 @@ impl FlowState {
             before: written(&surface.rest),
             frame: 0,
             unseen: 0,
-            room: Default::default(),
+            scratch: Default::default(),
             surface,
             cameras,
             straight,
@@ -202,7 +206,7 @@ pub(super) fn written(positions: &[DVec3]) -> Vec<DVec3> {
 }
 
 /// Whether a camera sees any of the surface.
-fn check_view(camera: &CalibratedCamera, surface: &Surface) -> Result<(), CaptureError> {
+fn check_view(camera: &CalibratedCamera, surface: &CapturedSurface) -> Result<(), CaptureError> {
     let [w, h] = camera.size.map(f64::from);
     let inside = |p: DVec2| p.x >= 0.0 && p.y >= 0.0 && p.x < w && p.y < h;
     if surface.rest.iter().filter_map(|p| camera.pixel(*p)).any(inside) {
@@ -217,7 +221,7 @@ fn check_view(camera: &CalibratedCamera, surface: &Surface) -> Result<(), Captur
 }
 
 /// The longest side of a triangle in any camera (px).
-fn longest_side(cameras: &[CalibratedCamera], surface: &Surface, t: &[u32; 3]) -> f64 {
+fn longest_side(cameras: &[CalibratedCamera], surface: &CapturedSurface, t: &[u32; 3]) -> f64 {
     let side = |camera: &CalibratedCamera| {
         let seen = t.map(|v| camera.pixel(surface.rest[v as usize]).unwrap_or_default());
         (0..3).map(|k| seen[k].distance(seen[(k + 1) % 3])).fold(0.0, f64::max)

@@ -4,7 +4,7 @@ use toile_sensors::calibration::CalibratedCamera;
 
 use super::*;
 use crate::render::{Bar, Lighting, Print, PrintedSurface, Sensor, look_at, take};
-use crate::surface::Surface;
+use crate::surface::CapturedSurface;
 
 /// Vertices along a side of the cloth, and its side (m).
 const ALONG: usize = 13;
@@ -62,7 +62,8 @@ impl Waving {
     }
 
     fn tracker(&self, settings: FlowSettings) -> FlowTracker {
-        let surface = Surface::new("cloth", self.positions(0), self.uvs.clone(), self.triangles.clone()).unwrap();
+        let surface =
+            CapturedSurface::new("cloth", self.positions(0), self.uvs.clone(), self.triangles.clone()).unwrap();
         FlowTracker::new(surface, self.cameras.clone(), settings).unwrap()
     }
 
@@ -108,7 +109,7 @@ fn an_arm_that_passes_before_it_moves_it_by_less_than_a_millimetre() {
 fn a_mesh_beside_its_place_is_refused_with_its_residual() {
     let cloth = Waving::new(3);
     let beside = cloth.positions(0).iter().map(|p| *p + DVec3::Z * 0.02).collect();
-    let surface = Surface::new("cloth", beside, cloth.uvs.clone(), cloth.triangles.clone()).unwrap();
+    let surface = CapturedSurface::new("cloth", beside, cloth.uvs.clone(), cloth.triangles.clone()).unwrap();
     let mut tracker = FlowTracker::new(surface, cloth.cameras.clone(), FlowSettings::default()).unwrap();
     let error = tracker.start(&cloth.pictures(0, &Lighting::default(), &[])).unwrap_err().to_string();
     assert!(error.contains("does not fit the first frame") && error.contains("correlate"), "{error}");
@@ -142,8 +143,9 @@ fn a_run_that_stopped_goes_on_with_the_same_bits() {
 fn a_camera_that_does_not_see_the_mesh_is_named() {
     let mut cloth = Waving::new(2);
     cloth.cameras[1] = look_at("away", PICTURE, 1_500.0, [DVec3::Z, DVec3::Z * 2.0], DVec3::Y);
-    let surface = Surface::new("cloth", cloth.positions(0), cloth.uvs.clone(), cloth.triangles.clone()).unwrap();
-    let said = |s: Surface, c: Vec<CalibratedCamera>| {
+    let surface =
+        CapturedSurface::new("cloth", cloth.positions(0), cloth.uvs.clone(), cloth.triangles.clone()).unwrap();
+    let said = |s: CapturedSurface, c: Vec<CalibratedCamera>| {
         FlowTracker::new(s, c, FlowSettings::default()).err().unwrap().to_string()
     };
     assert!(said(surface.clone(), cloth.cameras.clone()).contains("camera away: has the mesh behind it"));

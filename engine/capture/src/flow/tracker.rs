@@ -13,7 +13,7 @@ use super::settings::FlowSettings;
 use super::state::{FlowState, written};
 use crate::error::CaptureError;
 use crate::plane::Pyramid;
-use crate::surface::Surface;
+use crate::surface::CapturedSurface;
 
 /// Mean step below which a level is done (px of the level).
 const STILL: f64 = 0.01;
@@ -63,12 +63,16 @@ impl FlowTracker {
     ///
     /// # Errors
     /// One sentence where there are fewer than two cameras, or one does not see the surface.
-    pub fn new(surface: Surface, cameras: Vec<CalibratedCamera>, settings: FlowSettings) -> Result<Self, CaptureError> {
+    pub fn new(
+        surface: CapturedSurface,
+        cameras: Vec<CalibratedCamera>,
+        settings: FlowSettings,
+    ) -> Result<Self, CaptureError> {
         Ok(Self { state: FlowState::new(surface, cameras, settings)? })
     }
 
     /// The surface that is followed.
-    pub const fn surface(&self) -> &Surface {
+    pub const fn surface(&self) -> &CapturedSurface {
         &self.state.surface
     }
 

@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 use toile_sensors::calibration::CalibratedCamera;
 
 use super::patches::LevelSamples;
-use crate::surface::Surface;
+use crate::surface::CapturedSurface;
 use toile_pose::depth_buffer::DepthBuffer;
 
 /// Pixels of the depth buffer a pixel of the picture: half is enough to find what is hidden.
@@ -37,7 +37,7 @@ impl Visibility {
     }
 
     /// Looks at the surface at `x`; without `occlusion`, nothing is hidden.
-    pub fn look(&mut self, camera: &CalibratedCamera, surface: &Surface, x: &[DVec3], occlusion: bool) {
+    pub fn look(&mut self, camera: &CalibratedCamera, surface: &CapturedSurface, x: &[DVec3], occlusion: bool) {
         let from = camera.position();
         for (facing, t) in self.facing.iter_mut().zip(&surface.triangles) {
             let [a, b, c] = t.map(|v| x[v as usize]);
@@ -57,7 +57,7 @@ impl Visibility {
         &self,
         size: f64,
         camera: &CalibratedCamera,
-        surface: &Surface,
+        surface: &CapturedSurface,
         x: &[DVec3],
         level: &LevelSamples,
         mask: &mut [f32],

@@ -1,8 +1,4 @@
 //! A pose from keypoints of several cameras: a skeleton whose bones keep their lengths, found without a start by hand and followed.
-//!
-//! Reads: keypoints of calibrated cameras. Writes: joints in each frame, lengths of bones, a TRC file.
-//! Budget: offline; a millisecond a frame.
-//! Thread: the caller's.
 
 mod bones;
 mod fit;

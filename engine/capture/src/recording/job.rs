@@ -13,7 +13,7 @@ use super::store::{RunFolder, RunState};
 use super::timing::{change, in_step};
 use crate::error::CaptureError;
 use crate::flow::{FirstFrame, FlowSettings, FlowTracker, FrameOutcome};
-use crate::surface::Surface;
+use crate::surface::CapturedSurface;
 
 /// Frames that are looked at before any is followed, to see whether cameras are in step.
 const LOOKED_AT: usize = 64;
@@ -22,7 +22,7 @@ const LOOKED_AT: usize = 64;
 #[derive(Debug, Clone)]
 pub struct FlowJob {
     /// The mesh of the first frame.
-    pub surface: Surface,
+    pub surface: CapturedSurface,
     /// The cameras.
     pub rig: Rig,
     /// Their pictures.

@@ -8,7 +8,7 @@ use toile_assets::import::plain::parse_obj;
 use toile_bake::check::corners;
 
 use crate::error::CaptureError;
-use crate::surface::Surface;
+use crate::surface::CapturedSurface;
 
 /// Largest file of a mesh.
 const MESH: FileKind = FileKind { name: "a mesh as OBJ", max_bytes: 256 << 20, cure: "give a coarser mesh" };
@@ -17,7 +17,7 @@ const MESH: FileKind = FileKind { name: "a mesh as OBJ", max_bytes: 256 << 20, c
 ///
 /// # Errors
 /// One sentence with the path, the line and the cure.
-pub fn read_mesh(path: &Path) -> Result<Surface, CaptureError> {
+pub fn read_mesh(path: &Path) -> Result<CapturedSurface, CaptureError> {
     let shown = path.display().to_string();
     let unfit = |problem: String| CaptureError::unfit(&shown, problem, "give the mesh as OBJ, in metres");
     let text = file::read_text(path, &MESH).map_err(|e| CaptureError::Source(e.into()))?;
@@ -30,5 +30,5 @@ pub fn read_mesh(path: &Path) -> Result<Surface, CaptureError> {
         }
     }
     let positions = mesh.positions.iter().map(|p| p.as_dvec3()).collect();
-    Surface::new(&shown, positions, Vec::<Vec2>::new(), triangles)
+    CapturedSurface::new(&shown, positions, Vec::<Vec2>::new(), triangles)
 }

@@ -8,7 +8,7 @@ use super::*;
 use crate::flow::FlowSettings;
 use crate::flow::tests::Waving;
 use crate::render::{Lighting, look_at};
-use crate::surface::Surface;
+use crate::surface::CapturedSurface;
 
 /// A folder that is removed when it is dropped.
 struct Folder(PathBuf);
@@ -42,7 +42,7 @@ fn record(cloth: &Waving, folder: &Path, frames: usize, pace: impl Fn(usize) -> 
 
 fn job(cloth: &Waving, folder: &Folder, out: &str, frames: Option<usize>) -> FlowJob {
     FlowJob {
-        surface: Surface::new("cloth", cloth.positions(0), Vec::new(), cloth.triangles.clone()).unwrap(),
+        surface: CapturedSurface::new("cloth", cloth.positions(0), Vec::new(), cloth.triangles.clone()).unwrap(),
         rig: Rig { cameras: cloth.cameras.clone(), frame_rate: Some(50.0) },
         sequence: PictureSequence::open(&folder.0.join("pictures"), cloth.cameras.len()).unwrap(),
         out: folder.0.join(out),

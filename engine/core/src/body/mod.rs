@@ -1,6 +1,5 @@
 //! Pose: the latest joints become joint rotations of a body of other proportions.
 //!
-//! Reads: filtered joints with confidence; the measured body's skeleton. Writes: a pose within human limits, a palette.
 //! Budget: 20 us a step (16 measured, 10 of them for arms kept clear of the body); nothing allocated.
 //! Thread: physics, 120 Hz.
 

@@ -1,4 +1,4 @@
-//! Laws of the pose on recordings of real sensors, found through `TOILE_DATA`: drops, bursts, inferred joints, wobbling
+//! Tests of the pose on recordings of real sensors, found through `TOILE_DATA`: drops, bursts, inferred joints, wobbling
 //! bones and wrong feet are all in them, and none of it may show as a jump.
 
 use glam::Vec3;

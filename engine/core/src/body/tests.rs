@@ -1,4 +1,4 @@
-//! Laws of the pose: what joints show, the skeleton does, whatever its proportions, and never by a jump.
+//! Tests of the pose: what joints show, the skeleton does, whatever its proportions, and never by a jump.
 
 use glam::{EulerRot, Quat, Vec3};
 use proptest::prelude::*;

@@ -1,39 +1,13 @@
 //! Cloth: one garment as particles, stepped at 120 Hz.
 //!
-//! Reads: a baked `Garment`, the bone palette, the placed colliders. Writes: particle positions and velocities.
 //! Budget: 3 ms a step for 6,000 particles on one core ([`STEP_BUDGET_US`]); no allocation after [`Cloth::new`].
 //! Thread: physics; two workers may share a step.
 
-pub mod bend_friction;
-pub mod bending;
-pub mod bending_matrix;
 pub mod contact;
-pub mod diagonals;
-pub mod fibers;
-pub mod friction_rows;
-pub mod guard;
-pub mod layers;
-pub mod link_gain;
-pub mod link_laws;
+pub mod forces;
 pub mod links;
-pub mod lists;
-pub mod measure;
-pub mod pins;
-pub mod predict;
-pub mod prepared;
-pub mod program;
-pub mod record_links;
-pub mod records;
-pub mod root;
-pub mod settings;
-pub mod settle;
 pub mod state;
-mod step;
-pub mod stiff_bending;
-pub mod tethers;
-pub mod wind;
-#[expect(unsafe_code, reason = "the workers of a step share its columns")]
-mod work;
+pub mod step;
 
 use glam::{Affine3A, Vec3A};
 use toile_base::garment::Garment;
@@ -42,12 +16,12 @@ use toile_base::skeleton::BONES;
 
 use crate::colliders::Colliders;
 use crate::lanes::{RECORD, Store};
-use program::METERED_STAGES;
-use root::RootMotion;
-pub use root::{RootSettings, Teleport};
-pub use settings::{ContactRates, Quality, Settings};
+use forces::root::RootMotion;
+pub use forces::root::{RootSettings, Teleport};
+pub use forces::wind::Wind;
 use state::State;
-pub use wind::Wind;
+use step::program::METERED_STAGES;
+pub use step::settings::{ContactRates, Quality, Settings};
 
 /// What a step of one garment may cost (us): a third of the 8,333 us that 120 Hz leaves, so that two garments and the
 /// rest of the frame fit beside it.
@@ -72,35 +46,35 @@ pub struct Cloth {
     /// The particles as the kernels have them.
     pub(crate) state: State,
     /// Where the skinned particles are to be.
-    pins: pins::Pins,
+    pins: state::pins::Pins,
     /// What contact keeps from step to step.
-    contacts: contact::Contacts,
+    contacts: contact::body::Contacts,
     /// Room of each worker for a fiber's factors.
     scratch: [Store; OWNERS],
     /// Records of the particles; none where nothing reads any.
     records: Store,
     /// Room for bending that is stiffer than a substep; none where it cannot be.
-    room: stiff_bending::StiffBendingScratch,
+    bending_scratch: forces::stiff_bending::StiffBendingScratch,
     /// What bending remembers by friction; empty where nothing rubs.
-    friction: bend_friction::FrictionState,
-    /// What links are by their laws; empty where one slope is all.
-    laws: link_laws::LawState,
+    friction: forces::bend_friction::FrictionState,
+    /// Stretch curves of links; empty where one slope is all.
+    link_curves: links::link_curves::CurveState,
     /// Room for what is solved along the bias.
-    leaning: diagonals::DiagonalScratch,
+    bias_scratch: links::diagonals::DiagonalScratch,
     /// Tensions of weft links, of fibers, of crossing fibers within a substep; empty where they have no compliance.
     tension: [Store; 3],
     /// Room to sort strains in (1).
     pub(crate) strains: Box<[f32]>,
-    prepared: prepared::Prepared,
+    prepared: step::prepared::Prepared,
     /// The root's motion, and the point of the garment at rest that it is taken at (m).
     root: RootMotion,
     origin: Vec3A,
     /// Accelerations of the particles besides gravity (m/s2).
-    pushed: wind::Accelerations,
+    acceleration: forces::wind::Accelerations,
     /// The triangles as the wind has them, where there is wind.
-    faces: Option<wind::Faces>,
+    faces: Option<forces::wind::Faces>,
     /// What happened that should not have.
-    pub events: guard::GuardEvents,
+    pub events: step::guard::GuardEvents,
     /// Time spent in each of [`METERED_STAGES`] during the last step that was metered (ns).
     pub stage_ns: [u64; METERED_STAGES.len()],
     /// Of these the greater share of each phase (ns): what two workers cannot go below.
@@ -116,28 +90,32 @@ impl Cloth {
     pub fn new(garment: &Garment, colliders: &Colliders) -> Self {
         let start: Box<[Vec3A]> = garment.start.iter().map(|&p| p.into()).collect();
         let layout = garment.layout();
-        let needs = [fibers::scratch_len(&layout.fibers), lists::scratch_len(&layout.crossing)];
-        let prepared = prepared::Prepared::new(garment);
+        let needs = [links::fibers::scratch_len(&layout.fibers), links::lists::scratch_len(&layout.crossing)];
+        let prepared = step::prepared::Prepared::new(garment);
         let tension = prepared.tensions(layout).map(Store::zeros);
         let scratch = || Store::zeros(needs.into_iter().max().unwrap_or(0));
         Self {
             state: State::new(&garment.start, &garment.inverse_mass),
-            pins: pins::Pins::new(garment),
-            contacts: contact::Contacts::new(&layout.spans, &garment.parts, &garment.start, colliders),
+            pins: state::pins::Pins::new(garment),
+            contacts: contact::body::Contacts::new(&layout.spans, &garment.parts, &garment.start, colliders),
             scratch: [scratch(), scratch()],
             records: Store::zeros(if prepared.reads_records() { RECORD * (start.len() + OWNERS) } else { 0 }),
-            room: stiff_bending::StiffBendingScratch::new(if prepared.stiff() { start.len() } else { 0 }),
-            friction: bend_friction::FrictionState::new(&prepared.friction, start.len()),
-            laws: link_laws::LawState::new(layout),
-            leaning: diagonals::DiagonalScratch::new(&garment.layout().diagonals, garment.start.len()),
+            bending_scratch: forces::stiff_bending::StiffBendingScratch::new(if prepared.stiff() {
+                start.len()
+            } else {
+                0
+            }),
+            friction: forces::bend_friction::FrictionState::new(&prepared.friction, start.len()),
+            link_curves: links::link_curves::CurveState::new(layout),
+            bias_scratch: links::diagonals::DiagonalScratch::new(&garment.layout().diagonals, garment.start.len()),
             strains: vec![0.0; garment.strain_edges.len()].into(),
             prepared,
             tension,
             root: RootMotion::new(RootSettings::default()),
             origin: centre(garment),
-            pushed: wind::Accelerations::new(start.len()),
+            acceleration: forces::wind::Accelerations::new(start.len()),
             faces: None,
-            events: guard::GuardEvents::default(),
+            events: step::guard::GuardEvents::default(),
             stage_ns: [0; METERED_STAGES.len()],
             greater_share_ns: [0; METERED_STAGES.len()],
             rolled: 0,
@@ -149,7 +127,7 @@ impl Cloth {
     /// Makes the garment ready for wind. At load.
     pub fn in_wind(mut self, garment: &Garment) -> Self {
         let owner = &garment.layout().owner;
-        self.faces = Some(wind::Faces::new(&garment.triangles, &garment.start, &garment.inverse_mass, owner));
+        self.faces = Some(forces::wind::Faces::new(&garment.triangles, &garment.start, &garment.inverse_mass, owner));
         self
     }
 
@@ -175,7 +153,7 @@ impl Cloth {
         self.state.forget_the_body();
     }
 
-    /// Spoils the state between two steps, as a fault of the memory or of the solver itself would: what [`guard::spoil`] picks
+    /// Spoils the state between two steps, as a fault of the memory or of the solver itself would: what [`step::guard::spoil`] picks
     /// by `seed`. How a soak tries the guard; what was published stays.
     pub fn inject_fault(&mut self, seed: u64) {
         if self.positions.is_empty() {
@@ -183,10 +161,10 @@ impl Cloth {
         }
         self.checked = false;
         let columns = self.state.columns();
-        for (i, what) in guard::spoil(seed, self.positions.len()) {
+        for (i, what) in step::guard::spoil(seed, self.positions.len()) {
             match what {
-                guard::Fault::Place(x) => state::set(columns.x, i, x),
-                guard::Fault::Velocity(v) => state::set(columns.v, i, v),
+                step::guard::InjectedFault::Place(x) => state::set(columns.x, i, x),
+                step::guard::InjectedFault::Velocity(v) => state::set(columns.v, i, v),
             }
         }
     }
@@ -201,12 +179,12 @@ impl Cloth {
         if self.sticks().len() == other.sticks().len() {
             self.friction.sticks_mut().copy_from_slice(other.sticks());
         }
-        self.laws.remember(&other.laws);
+        self.link_curves.remember(&other.link_curves);
     }
 
     /// Where links stick by friction, kind after kind (1); empty where one slope is all.
     pub fn link_sticks(&self) -> impl Iterator<Item = &[f32]> {
-        self.laws.sticks().filter(|s| !s.is_empty())
+        self.link_curves.sticks().filter(|s| !s.is_empty())
     }
 
     /// Where bending sticks by friction, in the order of its slots (sqrt(N/m) m); empty where nothing rubs.
@@ -215,7 +193,7 @@ impl Cloth {
     }
 
     /// Takes over what somebody else has made of a step: positions and velocities `[particles]` (m, m/s), and the events so far.
-    pub fn take_over(&mut self, positions: &[Vec3A], velocities: &[Vec3A], events: guard::GuardEvents) {
+    pub fn take_over(&mut self, positions: &[Vec3A], velocities: &[Vec3A], events: step::guard::GuardEvents) {
         self.checked = false;
         let columns = self.state.columns();
         for (i, (&x, &v)) in positions.iter().zip(velocities).enumerate().take(self.positions.len()) {
@@ -229,12 +207,12 @@ impl Cloth {
 
     /// Where the skinned particles and the root were in the last step, and how the root moved: from where whoever steps it
     /// elsewhere goes on.
-    pub fn course(&self) -> (&pins::Pins, &RootMotion) {
+    pub fn course(&self) -> (&state::pins::Pins, &RootMotion) {
         (&self.pins, &self.root)
     }
 
     /// Takes over the same of a step that was made elsewhere. Allocates nothing.
-    pub fn follow(&mut self, pins: &pins::Pins, root: &RootMotion) {
+    pub fn follow(&mut self, pins: &state::pins::Pins, root: &RootMotion) {
         self.pins.copy(pins);
         self.root = *root;
     }
@@ -261,13 +239,13 @@ impl Cloth {
             + size_of_val(&*self.positions)
             + self.pins.bytes()
             + self.contacts.bytes()
-            + self.pushed.bytes()
-            + self.faces.as_ref().map_or(0, wind::Faces::bytes)
+            + self.acceleration.bytes()
+            + self.faces.as_ref().map_or(0, forces::wind::Faces::bytes)
             + self.records.bytes()
-            + self.room.bytes()
+            + self.bending_scratch.bytes()
             + self.friction.bytes()
-            + self.laws.bytes()
-            + self.leaning.bytes()
+            + self.link_curves.bytes()
+            + self.bias_scratch.bytes()
             + self.scratch.iter().map(Store::bytes).sum::<usize>()
             + self.tension.iter().map(Store::bytes).sum::<usize>()
             + self.prepared.bytes()
@@ -279,12 +257,12 @@ impl Cloth {
     }
 
     /// What contact did since the garment was made.
-    pub fn contact_counts(&self) -> contact::ContactCounts {
+    pub fn contact_counts(&self) -> contact::body::ContactCounts {
         self.contacts.tally()
     }
 
     /// How bending went on in the last step.
-    pub fn bend_pace(&self) -> bending::BendingPace {
+    pub fn bend_pace(&self) -> forces::bending::BendingPace {
         self.prepared.bend_pace()
     }
 

@@ -1,6 +1,6 @@
 //! Events: what happened that somebody may want to know, handed out of the loop through a bounded queue.
 
-use super::governor::QualityChange;
+use super::quality_control::QualityChange;
 
 /// Events that wait to be read: half a second in which every step has four.
 pub const EVENTS: usize = 256;
@@ -25,7 +25,7 @@ pub struct Event {
 /// Kinds of event.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum EventKind {
-    /// The governor gave up quality, or gave it back.
+    /// quality control gave up quality, or gave it back.
     Quality(QualityChange),
     /// So many steps were given up before this one, because the thread woke too late.
     Dropped(u64),

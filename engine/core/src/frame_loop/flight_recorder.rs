@@ -28,7 +28,7 @@ const RETRY: Duration = Duration::from_micros(500);
 
 /// What is known of the visit under way.
 #[derive(Debug, Default)]
-struct Visit {
+struct RecordedSession {
     /// When its first step was due (ns).
     from_ns: Option<u64>,
     /// Number of the scene that it began with.
@@ -42,7 +42,7 @@ struct RecorderState {
     entries: Receiver<Entry>,
     /// How scenes that are kept or come next are made, as encoded notes, with their numbers.
     notes: VecDeque<(u64, Vec<u8>)>,
-    visits: VecDeque<Visit>,
+    visits: VecDeque<RecordedSession>,
     newest_ns: u64,
     /// Storage of visits that were forgotten, for those to come.
     spare: Vec<Vec<u8>>,
@@ -130,7 +130,7 @@ impl RecorderState {
         };
         if let Some(first) = begins {
             let bytes = self.spare.pop().unwrap_or_default();
-            self.visits.push_back(Visit { from_ns: None, first, bytes });
+            self.visits.push_back(RecordedSession { from_ns: None, first, bytes });
         }
         let Some(visit) = self.visits.back_mut() else { return };
         if visit.bytes.len() < MOST_BYTES {
@@ -168,12 +168,12 @@ mod tests {
     use crate::frame_loop::queue::bounded;
 
     fn step(tick: u64) -> Entry {
-        Entry::Step { tick, scheduled_ns: ticks_to_ns(tick), rung: 0, fingerprint: tick }
+        Entry::Step { tick, scheduled_ns: ticks_to_ns(tick), level: 0, fingerprint: tick }
     }
 
     /// The first and the last step of the file.
     fn kept(file: &[u8]) -> (Entry, u64, u64) {
-        let recording::Recording { text, notes, entries } = recording::read(file).unwrap();
+        let recording::LoopRecording { text, notes, entries } = recording::read(file).unwrap();
         assert_eq!(text, "a scene");
         let Entry::Changed { number: first, .. } = entries[0] else { panic!("{:?}", entries[0]) };
         let described: Vec<u64> = notes.iter().map(|note| note.number).collect();

@@ -1,16 +1,15 @@
 //! Frame loop: the loop of sensor, physics and render threads, and what keeps it in time.
 //!
-//! Reads: frames of joints as they arrive. Writes: 120 snapshots a second, events, a recording.
 //! Budget: 20 us a step beside the frame's own stages; nothing is allocated after the start.
 //! Thread: each of the three is a [`ThreadLoop`] on a thread of its own, or all of them one after the other against a simulated
 //! clock. Between them there is only a [`crate::triple_buffer`] or a bounded queue ([`queue`]).
 
 pub mod event;
 pub mod flight_recorder;
-pub mod governor;
 pub mod handover;
 pub mod motion_input;
 pub mod physics_thread;
+pub mod quality_control;
 pub mod queue;
 pub mod recording;
 pub mod render_thread;

@@ -5,18 +5,18 @@ use toile_base::limits::STEP_HZ;
 
 use super::ThreadLoop;
 use super::event::{CounterSource, Counters, Event, EventKind, Miss, SENSOR_LOST_NS};
-use super::governor::{Governor, LADDER, Rung};
 use super::handover::HandoverReceiver;
 use super::motion_input::MotionInput;
+use super::quality_control::{QUALITY_LEVELS, QualityControl, QualityLevel};
 use super::queue::Sender;
 use super::recording::Entry;
 use super::schedule::{Due, Schedule, Tick};
 use super::sensor_thread::SensorFrame;
 use crate::clock::Clock;
 use crate::cloth::Settings;
-use crate::frame::{Frame, SnapshotTimes};
 use crate::meter::{Meter, PERIOD_NS};
 use crate::triple_buffer::Reader;
+use crate::world::{SnapshotTimes, World};
 
 /// Steps between two measurements of the error: ten a second, for they take as long as some substeps.
 pub const MEASURE_EVERY: u64 = 12;
@@ -25,12 +25,12 @@ pub const MEASURE_EVERY: u64 = 12;
 const MOST_TOLD: u64 = 10 * STEP_HZ as u64;
 
 /// What is stepped: the frame, or what stands for it in a test.
-pub trait Scene {
+pub trait LoopScene {
     /// One step to where the joints are; publishes a snapshot with these times.
     fn step(&mut self, joints: &Joints, times: SnapshotTimes, clock: &impl Clock);
 
     /// The quality from the next step on.
-    fn set_rung(&mut self, rung: &Rung);
+    fn set_level(&mut self, level: &QualityLevel);
 
     /// What is measured behind a step, when there is time.
     fn measure(&mut self);
@@ -45,63 +45,63 @@ pub trait Scene {
     fn inject_fault(&mut self, _seed: u64) {}
 
     /// Takes over what does not go with the scene before it: who works on the steps.
-    fn succeed(&mut self, _before: &mut Self) {}
+    fn take_workers_from(&mut self, _before: &mut Self) {}
 
     /// Steps that a worker broke off, and steps that a garment rolled back, so far.
-    fn troubles(&self) -> [u64; 2];
+    fn fault_counts(&self) -> [u64; 2];
 }
 
-/// The frame as the loop steps it.
+/// The world as the loop steps it.
 #[derive(Debug)]
-pub struct FrameScene {
-    /// The frame that is stepped.
-    pub frame: Frame,
+pub struct WorldScene {
+    /// The world that is stepped.
+    pub world: World,
     /// The settings of whole quality.
     whole: Settings,
 }
 
-impl FrameScene {
+impl WorldScene {
     /// At load, when the shopper is dressed.
-    pub fn new(mut frame: Frame) -> Self {
-        frame.measure_every(MEASURE_EVERY);
-        Self { whole: *frame.settings(), frame }
+    pub fn new(mut world: World) -> Self {
+        world.measure_every(MEASURE_EVERY);
+        Self { whole: *world.settings(), world }
     }
 }
 
-impl Scene for FrameScene {
+impl LoopScene for WorldScene {
     fn step(&mut self, joints: &Joints, times: SnapshotTimes, clock: &impl Clock) {
-        self.frame.step_at(joints, times, clock);
+        self.world.step_at(joints, times, clock);
     }
 
-    fn set_rung(&mut self, rung: &Rung) {
-        let Self { frame, whole } = self;
-        let settings = rung.of(whole);
-        frame.set_quality(settings.substep_share, settings.wind);
-        frame.set_contact(settings.contact);
+    fn set_level(&mut self, level: &QualityLevel) {
+        let Self { world, whole } = self;
+        let settings = level.of(whole);
+        world.set_quality(settings.substep_share, settings.wind);
+        world.set_contact(settings.contact);
     }
 
     fn measure(&mut self) {
-        self.frame.measure();
+        self.world.measure();
     }
 
     fn clear_meters(&mut self) {
-        self.frame.clear_meters();
+        self.world.clear_meters();
     }
 
     fn fingerprint(&self) -> u64 {
-        self.frame.fingerprint()
+        self.world.fingerprint()
     }
 
     fn inject_fault(&mut self, seed: u64) {
-        self.frame.inject_fault(seed);
+        self.world.inject_fault(seed);
     }
 
-    fn succeed(&mut self, before: &mut Self) {
-        self.frame.swap_workers(&mut before.frame);
+    fn take_workers_from(&mut self, before: &mut Self) {
+        self.world.swap_workers(&mut before.world);
     }
 
-    fn troubles(&self) -> [u64; 2] {
-        [self.frame.broken(), self.frame.cloths().iter().map(|c| c.events.rolled_back).sum()]
+    fn fault_counts(&self) -> [u64; 2] {
+        [self.world.broken(), self.world.cloths().iter().map(|c| c.events.rolled_back).sum()]
     }
 }
 
@@ -113,20 +113,20 @@ pub struct SceneStepper<S> {
     intake: MotionInput,
     /// The newest sensor frame.
     newest: (u64, u64),
-    rung: u8,
+    level: u8,
 }
 
-impl<S: Scene> SceneStepper<S> {
+impl<S: LoopScene> SceneStepper<S> {
     /// A scene that has not seen anybody move yet.
     pub fn new(scene: S) -> Self {
-        Self { scene, intake: MotionInput::default(), newest: (0, 0), rung: 0 }
+        Self { scene, intake: MotionInput::default(), newest: (0, 0), level: 0 }
     }
 
-    /// From the next step on. A rung that there is not is the last.
-    pub fn set_rung(&mut self, rung: u8) {
-        if rung != self.rung {
-            self.rung = rung;
-            self.scene.set_rung(&LADDER[usize::from(rung).min(LADDER.len() - 1)]);
+    /// From the next step on. A level that there is not is the last.
+    pub fn set_level(&mut self, level: u8) {
+        if level != self.level {
+            self.level = level;
+            self.scene.set_level(&QUALITY_LEVELS[usize::from(level).min(QUALITY_LEVELS.len() - 1)]);
         }
     }
 
@@ -137,12 +137,12 @@ impl<S: Scene> SceneStepper<S> {
         }
     }
 
-    /// Changes the scene for another, which is set to the rung as it is; where somebody else comes with it nobody's motion
+    /// Changes the scene for another, which is set to the level as it is; where somebody else comes with it nobody's motion
     /// is carried on.
     pub fn change(&mut self, scene: &mut S, afresh: bool) {
-        scene.succeed(&mut self.scene);
+        scene.take_workers_from(&mut self.scene);
         std::mem::swap(&mut self.scene, scene);
-        self.scene.set_rung(&LADDER[usize::from(self.rung).min(LADDER.len() - 1)]);
+        self.scene.set_level(&QUALITY_LEVELS[usize::from(self.level).min(QUALITY_LEVELS.len() - 1)]);
         if afresh {
             (self.intake, self.newest) = (MotionInput::default(), (0, 0));
         }
@@ -197,8 +197,8 @@ pub struct LoopMeters {
     pub dropped: u64,
     /// Steps that were published after their period.
     pub missed: u64,
-    /// Steps on each rung of the ladder.
-    pub rungs: [u64; LADDER.len()],
+    /// Steps on each quality level.
+    pub level_steps: [u64; QUALITY_LEVELS.len()],
     /// Sensor frames that were overwritten before a step looked.
     pub skipped: u64,
 }
@@ -209,7 +209,7 @@ impl LoopMeters {
         let Self { late, intake, step, response, wait, reaction, .. } = self;
         [late, intake, step, response, wait, reaction].into_iter().for_each(Meter::clear);
         (self.steps, self.dropped, self.missed, self.skipped) = (0, 0, 0, 0);
-        self.rungs = [0; LADDER.len()];
+        self.level_steps = [0; QUALITY_LEVELS.len()];
     }
 }
 
@@ -242,14 +242,14 @@ pub struct PhysicsThread<S, C, A> {
     pub gauges: LoopMeters,
     clock: C,
     schedule: Schedule,
-    governor: Governor,
+    quality_control: QualityControl,
     seen: Reader<SensorFrame>,
     outlets: PhysicsOutputs,
     changes: Option<HandoverReceiver<S>>,
     taken: StepTimes,
     account: A,
     counters: Counters,
-    troubles: [u64; 2],
+    fault_counts: [u64; 2],
     /// Steps taken, and after how many the meters begin.
     tick: u64,
     warm_up: u64,
@@ -259,7 +259,7 @@ pub struct PhysicsThread<S, C, A> {
     lost: bool,
 }
 
-impl<S: Scene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
+impl<S: LoopScene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
     /// At load; the first step is due at `origin_ns`.
     pub fn new(
         scene: S,
@@ -270,12 +270,12 @@ impl<S: Scene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
         account: A,
     ) -> Self {
         Self {
-            troubles: scene.troubles(),
+            fault_counts: scene.fault_counts(),
             stepper: SceneStepper::new(scene),
             gauges: LoopMeters::default(),
             clock,
             schedule: Schedule::new(origin_ns, STEP_HZ),
-            governor: Governor::default(),
+            quality_control: QualityControl::default(),
             seen,
             outlets,
             changes: None,
@@ -296,11 +296,11 @@ impl<S: Scene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
         Self { warm_up: steps, ..self }
     }
 
-    /// The same, held on a rung of the ladder whatever happens.
+    /// The same, held on a quality level whatever happens.
     #[must_use]
-    pub fn held_on(mut self, rung: u8) -> Self {
-        self.governor = Governor::held_on(rung);
-        self.stepper.set_rung(self.governor.place());
+    pub fn held_on(mut self, level: u8) -> Self {
+        self.quality_control = QualityControl::held_on(level);
+        self.stepper.set_level(self.quality_control.place());
         self
     }
 
@@ -334,8 +334,8 @@ impl<S: Scene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
     }
 
     /// The place in the ladder.
-    pub fn rung(&self) -> u8 {
-        self.governor.place()
+    pub fn level(&self) -> u8 {
+        self.quality_control.place()
     }
 
     /// One step that is due.
@@ -399,7 +399,7 @@ impl<S: Scene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
         let stepper = &mut self.stepper;
         let taken = changes.take(|change| stepper.change(&mut change.scene, change.afresh));
         let Some((number, afresh)) = taken else { return };
-        self.troubles = self.stepper.scene.troubles();
+        self.fault_counts = self.stepper.scene.fault_counts();
         if let Some(recording) = &mut self.outlets.recording {
             recording.push(Entry::Changed { number, afresh });
         }
@@ -430,7 +430,7 @@ impl<S: Scene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
         let gauges = &mut self.gauges;
         gauges.step.add(ended - begun);
         gauges.response.add(ended - due.scheduled_ns);
-        gauges.rungs[usize::from(self.governor.place())] += 1;
+        gauges.level_steps[usize::from(self.quality_control.place())] += 1;
         if let Some(arrived_ns) = news {
             gauges.wait.add(begun.saturating_sub(arrived_ns));
             gauges.reaction.add(ended.saturating_sub(arrived_ns));
@@ -446,21 +446,21 @@ impl<S: Scene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
     fn record(&mut self, scheduled_ns: u64) {
         if let Some(recording) = &mut self.outlets.recording {
             let fingerprint = self.stepper.scene.fingerprint();
-            let (tick, rung) = (self.tick, self.governor.place());
-            recording.push(Entry::Step { tick, scheduled_ns, rung, fingerprint });
+            let (tick, level) = (self.tick, self.quality_control.place());
+            recording.push(Entry::Step { tick, scheduled_ns, level, fingerprint });
         }
     }
 
     fn govern(&mut self, scheduled_ns: u64, step_ns: u64) {
-        if let Some(change) = self.governor.after(step_ns) {
-            self.stepper.set_rung(change.to);
+        if let Some(change) = self.quality_control.after(step_ns) {
+            self.stepper.set_level(change.to);
             self.send_event(scheduled_ns, EventKind::Quality(change));
         }
     }
 
     fn look_for_trouble(&mut self, scheduled_ns: u64) {
-        let now = self.stepper.scene.troubles();
-        let before = std::mem::replace(&mut self.troubles, now);
+        let now = self.stepper.scene.fault_counts();
+        let before = std::mem::replace(&mut self.fault_counts, now);
         for (k, what) in [EventKind::Broken, EventKind::RolledBack].into_iter().enumerate() {
             if now[k] > before[k] {
                 self.send_event(scheduled_ns, what);
@@ -474,7 +474,7 @@ impl<S: Scene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
     }
 }
 
-impl<S: Scene, C: Clock, A: CounterSource> ThreadLoop for PhysicsThread<S, C, A> {
+impl<S: LoopScene, C: Clock, A: CounterSource> ThreadLoop for PhysicsThread<S, C, A> {
     fn run_due(&mut self) -> Option<u64> {
         match self.schedule.due(self.clock.now_ns()) {
             Due::At(ns) => Some(ns),

@@ -12,11 +12,11 @@ use toile_base::skeleton::JOINTS;
 
 use super::sensor_thread::SensorFrame;
 
-/// First bytes of a file. The number changes where old files would mean something else: with the ladder's rungs, which steps name.
+/// First bytes of a file. The number changes where old files would mean something else: with the quality levels, which steps name.
 pub const MAGIC: &[u8] = b"toile-tape/3\n";
 
-/// First bytes of files whose rungs are those of ladders of seven and of eleven.
-const OLD_RUNGS: [&[u8]; 2] = [b"toile-tape/1\n", b"toile-tape/2\n"];
+/// First bytes of files of seven and of eleven quality levels.
+const OLD_LEVELS: [&[u8]; 2] = [b"toile-tape/1\n", b"toile-tape/2\n"];
 
 /// Entries that wait to be written: six seconds at 150 a second.
 pub const ENTRIES: usize = 1024;
@@ -52,8 +52,8 @@ pub enum Entry {
         tick: u64,
         /// When it was due (ns).
         scheduled_ns: u64,
-        /// Place in the governor's ladder.
-        rung: u8,
+        /// Place in the quality levels.
+        level: u8,
         /// Hash of the state that it ended in.
         fingerprint: u64,
     },
@@ -72,7 +72,7 @@ pub struct SceneNote {
 
 /// Everything in a file.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Recording {
+pub struct LoopRecording {
     /// The text about the scene.
     pub text: String,
     /// What was noted of scenes, in order.
@@ -89,12 +89,12 @@ pub enum RecordingError {
         "this is not a recording of a run (it does not begin with `toile-tape/3`); make one with `toile latency --record F` or `toile soak --record F`"
     )]
     Magic,
-    /// Written by a version whose ladder of quality had other rungs.
+    /// Written by a version whose list of quality levels had other levels.
     #[error(
-        "this recording names rungs of a ladder that is no longer used (it begins with `toile-tape/1` or `/2`); replay it with the version \
+        "this recording names quality levels that are no longer used (it begins with `toile-tape/1` or `/2`); replay it with the version \
          of the program that made it, or record the run again"
     )]
-    OldRungs,
+    OldLevels,
     /// Cut off before the first step, or no text.
     #[error("the recording ends before its first step; record the run again")]
     Short,
@@ -132,8 +132,8 @@ pub fn write(entry: &Entry, out: &mut Vec<u8>) {
             body.extend(seed.to_le_bytes());
             b'u'
         }
-        Entry::Step { tick, scheduled_ns, rung, fingerprint } => {
-            [*tick, *scheduled_ns, u64::from(*rung), *fingerprint].iter().for_each(|n| body.extend(n.to_le_bytes()));
+        Entry::Step { tick, scheduled_ns, level, fingerprint } => {
+            [*tick, *scheduled_ns, u64::from(*level), *fingerprint].iter().for_each(|n| body.extend(n.to_le_bytes()));
             b's'
         }
     };
@@ -175,9 +175,9 @@ fn check(bytes: &[u8]) -> u32 {
 ///
 /// # Errors
 /// [`RecordingError`].
-pub fn read(bytes: &[u8]) -> Result<Recording, RecordingError> {
-    if OLD_RUNGS.iter().any(|old| bytes.starts_with(old)) {
-        return Err(RecordingError::OldRungs);
+pub fn read(bytes: &[u8]) -> Result<LoopRecording, RecordingError> {
+    if OLD_LEVELS.iter().any(|old| bytes.starts_with(old)) {
+        return Err(RecordingError::OldLevels);
     }
     let rest = bytes.strip_prefix(MAGIC).ok_or(RecordingError::Magic)?;
     let (len, rest) = rest.split_first_chunk::<4>().ok_or(RecordingError::Short)?;
@@ -202,7 +202,7 @@ pub fn read(bytes: &[u8]) -> Result<Recording, RecordingError> {
         rest = after;
     }
     let steps = entries.iter().any(|e| matches!(e, Entry::Step { .. }));
-    if steps { Ok(Recording { text, notes, entries }) } else { Err(RecordingError::Short) }
+    if steps { Ok(LoopRecording { text, notes, entries }) } else { Err(RecordingError::Short) }
 }
 
 fn entry(kind: u8, body: &[u8]) -> Option<Entry> {
@@ -219,7 +219,7 @@ fn entry(kind: u8, body: &[u8]) -> Option<Entry> {
         b's' if words.len() == 4 => Some(Entry::Step {
             tick: word(0)?,
             scheduled_ns: word(1)?,
-            rung: word(2)?.try_into().ok()?,
+            level: word(2)?.try_into().ok()?,
             fingerprint: word(3)?,
         }),
         _ => None,
@@ -260,8 +260,8 @@ mod tests {
             Entry::SensorFrame(SensorFrame { joints, arrived_ns: u64::MAX, number: 1 }),
             Entry::Changed { number: 5, afresh: true },
             Entry::Fault(u64::MAX / 3),
-            Entry::Step { tick: 0, scheduled_ns: 9, rung: 2, fingerprint: u64::MAX - 1 },
-            Entry::Step { tick: 1, scheduled_ns: 10, rung: 0, fingerprint: 0 },
+            Entry::Step { tick: 0, scheduled_ns: 9, level: 2, fingerprint: u64::MAX - 1 },
+            Entry::Step { tick: 1, scheduled_ns: 10, level: 0, fingerprint: 0 },
         ]
     }
 
@@ -276,8 +276,8 @@ mod tests {
         bytes
     }
 
-    fn whole() -> Recording {
-        Recording { text: "a scene".to_owned(), notes: vec![noted()], entries: entries() }
+    fn whole() -> LoopRecording {
+        LoopRecording { text: "a scene".to_owned(), notes: vec![noted()], entries: entries() }
     }
 
     #[test]
@@ -291,9 +291,9 @@ mod tests {
         assert_eq!(read(&bytes[..bytes.len() - step - 1]), Err(RecordingError::Short), "no step is left");
         assert_eq!(read(&bytes[..20]), Err(RecordingError::Short));
         assert_eq!(read(b"toile"), Err(RecordingError::Magic));
-        for first in OLD_RUNGS {
+        for first in OLD_LEVELS {
             let old = [first, &bytes[MAGIC.len()..]].concat();
-            assert_eq!(read(&old), Err(RecordingError::OldRungs), "its rungs would be taken for others");
+            assert_eq!(read(&old), Err(RecordingError::OldLevels), "its rungs would be taken for others");
         }
     }
 

@@ -4,9 +4,9 @@ use super::ThreadLoop;
 use super::handover::HandoverReceiver;
 use super::schedule::{Due, Schedule};
 use crate::clock::Clock;
-use crate::frame::Snapshot;
 use crate::meter::Meter;
 use crate::triple_buffer::Reader;
+use crate::world::Snapshot;
 
 /// Pictures a second.
 pub const DISPLAY_HZ: u32 = 60;

@@ -1,6 +1,6 @@
 //! Replay: a recorded run taken again, step by step, by the same function, and compared bit for bit.
 
-use super::physics_thread::{Scene, SceneStepper};
+use super::physics_thread::{LoopScene, SceneStepper};
 use super::recording::Entry;
 use crate::clock::Clock;
 
@@ -19,13 +19,13 @@ pub struct Replayed {
 
 /// Takes the recorded steps again. The scene is dressed as the recording says already; nothing stops at a difference, so
 /// that the rest of the run can be looked at.
-pub fn replay<S: Scene>(stepper: &mut SceneStepper<S>, entries: &[Entry], clock: &impl Clock) -> Replayed {
+pub fn replay<S: LoopScene>(stepper: &mut SceneStepper<S>, entries: &[Entry], clock: &impl Clock) -> Replayed {
     replay_changing(stepper, entries, clock, |_| None)
 }
 
 /// The same where scenes were changed: `make` makes the one of a number. One that cannot be made changes nothing, and the
 /// next step ends in other bits.
-pub fn replay_changing<S: Scene>(
+pub fn replay_changing<S: LoopScene>(
     stepper: &mut SceneStepper<S>,
     entries: &[Entry],
     clock: &impl Clock,
@@ -46,12 +46,12 @@ pub fn replay_changing<S: Scene>(
             }
             Entry::SensorFrame(seen) => waiting = Some(seen),
             Entry::Fault(seed) => stepper.scene.inject_fault(*seed),
-            Entry::Step { tick, scheduled_ns, rung, fingerprint } => {
+            Entry::Step { tick, scheduled_ns, level, fingerprint } => {
                 if next.is_some_and(|next| next != *tick) {
                     out.gap_at = out.gap_at.or(Some(*tick));
                 }
                 next = Some(tick + 1);
-                stepper.set_rung(*rung);
+                stepper.set_level(*level);
                 if let Some(seen) = waiting.take() {
                     stepper.take(seen, *scheduled_ns);
                 }

@@ -47,7 +47,7 @@ impl ThreadRole {
 
 /// What a thread asked for and got.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Placement {
+pub struct RolePlacement {
     /// What the thread does.
     pub role: ThreadRole,
     /// The core that it is pinned to.
@@ -59,8 +59,8 @@ pub struct Placement {
 }
 
 /// Gives the calling thread the place of its role, as far as the system lets it. At the thread's start.
-pub fn apply(role: ThreadRole) -> Placement {
-    let mut placement = Placement { role, core: None, priority: None, refused: Vec::new() };
+pub fn apply(role: ThreadRole) -> RolePlacement {
+    let mut placement = RolePlacement { role, core: None, priority: None, refused: Vec::new() };
     pin(&mut placement);
     if let Some(priority) = role.priority() {
         // On a shared core a thread that waits for another of a lower priority would wait for ever.
@@ -77,7 +77,7 @@ pub fn apply(role: ThreadRole) -> Placement {
     placement
 }
 
-fn pin(placement: &mut Placement) {
+fn pin(placement: &mut RolePlacement) {
     let role = placement.role;
     let cores = core_affinity::get_core_ids().unwrap_or_default();
     if cores.len() < 2 {

@@ -10,7 +10,7 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use super::ThreadLoop;
-use super::thread_roles::{self, Placement, ThreadRole};
+use super::thread_roles::{self, RolePlacement, ThreadRole};
 use crate::clock::Clock;
 use crate::workers::{WorkerPool, WorkerPoolError};
 
@@ -44,7 +44,7 @@ pub struct LoopThread<T> {
     thread: JoinHandle<(T, bool)>,
     /// Turns taken so far: what a watchdog looks at.
     turns: Arc<AtomicU64>,
-    placement: mpsc::Receiver<Placement>,
+    placement: mpsc::Receiver<RolePlacement>,
 }
 
 impl<T> LoopThread<T> {
@@ -59,7 +59,7 @@ impl<T> LoopThread<T> {
     }
 
     /// The place that the thread got, once, as soon as it says so; none if it does not within seconds.
-    pub fn placement(&self) -> Option<Placement> {
+    pub fn placement(&self) -> Option<RolePlacement> {
         self.placement.recv_timeout(LONGEST_START).ok()
     }
 
@@ -108,7 +108,7 @@ where
 ///
 /// # Errors
 /// As [`WorkerPool::new`].
-pub fn worker_pool(workers: usize) -> Result<(WorkerPool, Option<Placement>), WorkerPoolError> {
+pub fn worker_pool(workers: usize) -> Result<(WorkerPool, Option<RolePlacement>), WorkerPoolError> {
     let (send_placement, placed) = mpsc::sync_channel(1);
     let pool =
         WorkerPool::beginning(workers, move || _ = send_placement.send(thread_roles::apply(ThreadRole::Worker)))?;

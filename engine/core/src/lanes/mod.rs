@@ -1,8 +1,5 @@
 //! Lanes: one kernel, run on 1, 4, 8 or 16 numbers at a time.
 //!
-//! Reads: numbers in columns. Writes: numbers in [`WriteColumn`]s. Every operation is one that IEEE 754 rounds exactly (no fused
-//! multiply-add, no estimate of the processor), so a kernel gives the same bits at every width and on every machine.
-//! Budget: nothing of its own; a kernel is compiled once a width and called through one branch.
 //! Thread: any. This is one of the few rooms with unsafe code: vector instructions, and columns that workers share.
 
 #[expect(unsafe_code, reason = "the workers of a step share its columns")]
@@ -56,7 +53,7 @@ toile_base::named! {
     /// How many lanes kernels run on, narrowest first.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
     pub enum Width {
-        /// Plain f32: the twin that the others are held against.
+        /// Plain f32: the reference that the others are held against.
         One,
         /// What every x86-64 and aarch64 has, and WebAssembly with SIMD128.
         Four,

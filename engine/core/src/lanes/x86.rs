@@ -2,9 +2,6 @@
 //!
 //! The types are private to `lanes`: only [`run8`] and [`run16`] hand the wide ones to a kernel, after the processor was
 //! asked. That is what makes the unsafe blocks below sound.
-//!
-//! Reads: numbers in columns. Writes: numbers in columns. Budget: one instruction an operation, one branch a kernel.
-//! Thread: any.
 
 mod records;
 mod widths;

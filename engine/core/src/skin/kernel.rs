@@ -231,11 +231,11 @@ impl<L: Lanes> QuaternionLanes<L> {
 /// normalisation of Kavan et al. 2008, equation 6, is in the factor.
 #[inline(always)]
 fn dual<L: Lanes>(surface: &SkinSurface<'_, impl SkinOutput>, at: VertexPlace, base: &DualQuat, apart: &[DualQuat]) {
-    let (mut real, mut twin) = (QuaternionLanes::<L>::splat(base.real), QuaternionLanes::<L>::splat(base.dual));
+    let (mut real, mut dual) = (QuaternionLanes::<L>::splat(base.real), QuaternionLanes::<L>::splat(base.dual));
     for (k, more) in apart.iter().enumerate().skip(1) {
         let weight = surface.weight::<L>(at, k);
         real = real.and(more.real, weight);
-        twin = twin.and(more.dual, weight);
+        dual = dual.and(more.dual, weight);
     }
     let (v, w) = (real.v, real.w);
     let squared = v.dot(v) + w * w;
@@ -243,7 +243,7 @@ fn dual<L: Lanes>(surface: &SkinSurface<'_, impl SkinOutput>, at: VertexPlace, b
     let factor = L::splat(2.0).div(squared.max(L::splat(COLLAPSED)));
     let p = surface.load::<L>(at, 0);
     let n = surface.load::<L>(at, 3);
-    let moved = v.cross(v.cross(p) + p * w + twin.v) + (twin.v * w - v * twin.w);
+    let moved = v.cross(v.cross(p) + p * w + dual.v) + (dual.v * w - v * dual.w);
     let turned = v.cross(v.cross(n) + n * w);
     surface.out.store(at.lane, p + moved * factor, n + turned * factor);
 }

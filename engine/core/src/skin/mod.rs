@@ -1,6 +1,5 @@
 //! Skinning: rest vertices, weights and a palette become a posed surface, by linear blending or dual quaternions.
 //!
-//! Reads: rest positions and normals, up to eight influences a vertex, the palette. Writes: positions and unit normals.
 //! Budget: 44 us for 15,000 vertices of four influences on one core of 16 lanes; nothing allocated. See docs/skinning.md.
 //! Thread: physics; two workers share a run, and give the same bits as one.
 

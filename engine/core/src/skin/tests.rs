@@ -1,9 +1,9 @@
-//! Laws of the skin: independent twins in f64 and in plain f32, the same bits at every width, and what is refused.
+//! Tests of the skin: independent twins in f64 and in plain f32, the same bits at every width, and what is refused.
 
 mod layout;
+mod references;
 mod shapes;
 mod sweep;
-mod twins;
 
 use glam::{Affine3A, Quat, Vec3};
 use toile_base::mesh::{Influences, SkinWeights, WideWeights};

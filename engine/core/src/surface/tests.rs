@@ -1,4 +1,4 @@
-//! Laws of surfaces: walking and looking find what a plain search in f64 finds, at every width the same.
+//! Tests of surfaces: walking and looking find what a plain search in f64 finds, at every width the same.
 
 use glam::{DVec3, Vec3, Vec3A};
 use toile_bake::Shape;

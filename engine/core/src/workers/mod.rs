@@ -1,9 +1,8 @@
 //! Worker pool: the workers of a step, the caller's thread and at most one helper.
 //!
-//! Reads: a job that borrows the caller's data. Writes: what the job writes; which shares were late.
 //! Budget: a phase costs one meeting of two cores, under 1 us; no lock, no allocation, no channel in a run.
-//! Thread: physics, and the helper that this room starts at load. One of the few rooms with unsafe code: a job that
-//! borrows the caller's stack is handed to another thread.
+//! Thread: physics, and the helper that this room starts at load. One of the few modules with unsafe code: a job that borrows
+//! the caller's stack is handed to another thread.
 //!
 //! A run is a list of phases, a phase is two shares. Both shares of a phase may run at once; all of a phase runs before
 //! any of the next. How the data falls into shares is the job's matter and never depends on the number of workers, so

@@ -1,8 +1,6 @@
 //! Crossings: which edges of triangle meshes pass through which triangles, by which the contact of cloth is judged.
 //!
-//! Reads: positions in f64 (m) of meshes whose triangles it was made with. Writes: a list of pairs of edge and triangle.
 //! Budget: three garments of 5,000 vertices within 50 ms, each also with itself; never inside the frame.
-//! Thread: the caller's; it shares no code with the engine.
 //!
 //! Signs are exact (Shewchuk's predicates), a uniform grid over the triangles finds the pairs that are asked for
 //! (`grid`), and a pair only touches where any of its five signs is 0 (`predicate`), which is no crossing.

@@ -101,7 +101,7 @@ pub(super) fn sex_of(name: &str) -> Result<Sex, String> {
 
 /// What was measured of a shopper.
 #[derive(Debug, Clone)]
-pub struct Measured {
+pub struct MeasuredSubject {
     /// The best that is known: every report, size and body follows from it.
     pub best: Measurements,
     /// The same by sections and proportions alone.
@@ -118,7 +118,7 @@ pub struct Measured {
     depth_alone: bool,
 }
 
-impl Measured {
+impl MeasuredSubject {
     /// The sex of the body to show: as given or measured, otherwise whom the garments are made for, women for all others.
     pub fn sex(&self, garments: Population) -> Sex {
         sex(self.population, garments)
@@ -148,7 +148,7 @@ pub fn sex(shopper: Population, garments: Population) -> Sex {
 ///
 /// # Errors
 /// A session that shows nobody who can be measured.
-pub fn measure(session: &Session, facts: ShopperFacts) -> Result<Measured, FittingError> {
+pub fn measure(session: &Session, facts: ShopperFacts) -> Result<MeasuredSubject, FittingError> {
     if facts.seated {
         return seated(session, facts);
     }
@@ -161,7 +161,7 @@ pub fn measure(session: &Session, facts: ShopperFacts) -> Result<Measured, Fitti
     let child = child(&best, facts);
     best.notes.extend(child.filter(|odds| *odds >= 0.5).map(child_note));
     let depth_alone = session.joints.is_empty() && facts.tape.is_empty();
-    Ok(Measured { best, sections, fitted, surface, population, child, depth_alone })
+    Ok(MeasuredSubject { best, sections, fitted, surface, population, child, depth_alone })
 }
 
 /// The filtered joints of a session from the moment on at which the shopper can be dressed. Without joints the fitted body is followed
@@ -169,7 +169,7 @@ pub fn measure(session: &Session, facts: ShopperFacts) -> Result<Measured, Fitti
 ///
 /// # Errors
 /// A session in which nobody can be followed.
-pub fn track(session: &Session, measured: &Measured) -> Result<Vec<Joints>, FittingError> {
+pub fn track(session: &Session, measured: &MeasuredSubject) -> Result<Vec<Joints>, FittingError> {
     if !session.joints.is_empty() {
         return session::standing(session);
     }
@@ -183,7 +183,7 @@ pub fn track(session: &Session, measured: &Measured) -> Result<Vec<Joints>, Fitt
 ///
 /// # Errors
 /// Depth that no body fits.
-pub fn add_joints(session: &mut Session, measured: &Measured) -> Result<(), FittingError> {
+pub fn add_joints(session: &mut Session, measured: &MeasuredSubject) -> Result<(), FittingError> {
     if !session.joints.is_empty() {
         return Ok(());
     }
@@ -199,14 +199,14 @@ pub fn add_joints(session: &mut Session, measured: &Measured) -> Result<(), Fitt
     Ok(())
 }
 
-fn seated(session: &Session, facts: ShopperFacts) -> Result<Measured, FittingError> {
+fn seated(session: &Session, facts: ShopperFacts) -> Result<MeasuredSubject, FittingError> {
     let population = Population::from(facts.sex);
     let above = session::of_joints(session.joints.iter().map(above_the_chair).collect());
     let mut sections = by_sections(&above, population)?;
     (sections.measures.hip_girth, sections.measures.inseam) = (None, None);
     let surface = DepthSurface { frames: Vec::new(), after: Vec::new(), ground: None };
     let best = with_tape(sections.clone(), None, population, &facts.tape);
-    Ok(Measured {
+    Ok(MeasuredSubject {
         best,
         sections,
         fitted: None,

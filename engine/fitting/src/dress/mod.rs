@@ -1,8 +1,6 @@
 //! From a session to a dressed world, in the order of the data: [`session`], [`depth`], [`measured`], [`offer`], [`garment_source`], [`try_on`].
 //!
-//! Reads: a session's joints and depth, the wardrobe. Writes: measures with their errors, a body, sizes with verdicts, a world.
 //! Budget: measuring 0.5 s, dressing 1 s.
-//! Thread: the caller's.
 //!
 //! Every command, the kiosk, the studies and an embedder take this way, so that the same session gives the same measures, sizes and bits
 //! everywhere.

@@ -7,8 +7,8 @@ use toile_base::limits::STEP_HZ;
 use toile_base::numeric::statistics;
 use toile_base::skeleton::{BONES, Pose};
 use toile_engine::body::{JointFrames, palette};
-use toile_engine::frame::{BLEND, Frame};
 use toile_engine::skin::SkinningJob;
+use toile_engine::world::{BLEND, World};
 use toile_sensors::source::Session;
 
 use super::player::Player;
@@ -56,20 +56,20 @@ impl<'a> SessionMotion<'a> {
     }
 
     /// Puts the garments on in the first pose.
-    pub fn dress(&self, frame: &mut Frame) {
+    pub fn dress(&self, world: &mut World) {
         match self {
-            Self::Joints { track, .. } => track.iter().take(1).for_each(|first| frame.dress(first)),
-            Self::Poses { poses, .. } => poses.iter().take(1).for_each(|first| frame.dress_in_pose(first)),
+            Self::Joints { track, .. } => track.iter().take(1).for_each(|first| world.dress(first)),
+            Self::Poses { poses, .. } => poses.iter().take(1).for_each(|first| world.dress_in_pose(first)),
         }
     }
 
     /// Takes the next step; behind the last pose the body stands.
-    pub fn step(&mut self, frame: &mut Frame) {
+    pub fn step(&mut self, world: &mut World) {
         match self {
-            Self::Joints { player, .. } => frame.step(&player.step()),
+            Self::Joints { player, .. } => world.step(&player.step()),
             Self::Poses { poses, next } => {
                 if let Some(pose) = poses.get(*next).or(poses.last()) {
-                    frame.step_in_pose(pose);
+                    world.step_in_pose(pose);
                 }
                 *next += 1;
             }

@@ -14,15 +14,15 @@ use toile_base::frame::Joints;
 use toile_base::garment::Garment;
 use toile_base::limits::MAX_GARMENTS;
 use toile_base::rig::Rig;
-use toile_engine::cloth::layers::tuck_in;
+use toile_engine::cloth::contact::garments::tuck_in;
 use toile_engine::cloth::{Quality, Settings};
-use toile_engine::frame::{Frame, FrameError, Snapshot};
 use toile_engine::triple_buffer::Reader;
+use toile_engine::world::{Snapshot, World, WorldError};
 use toile_sensors::source::Session;
 use toile_track::measure::Measurements;
 
 use super::garment_source::{self, FittedGarment, GarmentSource};
-use super::measured::{self, Measured, ShopperFacts};
+use super::measured::{self, MeasuredSubject, ShopperFacts};
 use crate::FittingError;
 
 /// A request to try garments on.
@@ -206,7 +206,7 @@ impl TryOn {
     ///
     /// # Errors
     /// As [`Self::open`]; a size that is not made, measures that no body has.
-    pub fn sized_for(&self, session: &str, measured: &Measured) -> Result<Self, FittingError> {
+    pub fn sized_for(&self, session: &str, measured: &MeasuredSubject) -> Result<Self, FittingError> {
         let request = self.clone().open()?;
         let sex = measured.sex(request.population()?);
         let (body, _) = measured::build_body(sex, &measured.best, Population::from(Some(sex)))?;
@@ -269,9 +269,9 @@ impl TryOn {
     /// As [`Self::dress`].
     pub fn build(self, first: &Joints) -> Result<DressedWorld, FittingError> {
         let settings = Settings { workers: 1, ..self.settings() };
-        let (mut frame, reader) = self.dress()?.build(settings).map_err(FittingError::input)?;
-        frame.dress(first);
-        Ok(DressedWorld { frame, reader, request: self, first: *first, still: false })
+        let (mut world, reader) = self.dress()?.build(settings).map_err(FittingError::input)?;
+        world.dress(first);
+        Ok(DressedWorld { world, reader, request: self, first: *first, still: false })
     }
 
     /// Measures the shopper of a session and dresses them as they stand. Without joints the body is followed through the depth.
@@ -384,8 +384,8 @@ impl DressedBody {
     ///
     /// # Errors
     /// Colliders or a skin that cannot be used, a thread that the system does not give.
-    pub fn build(self, settings: Settings) -> Result<(Frame, Reader<Snapshot>), FrameError> {
-        Frame::new(self.body, &self.rig, self.garments, settings)
+    pub fn build(self, settings: Settings) -> Result<(World, Reader<Snapshot>), WorldError> {
+        World::new(self.body, &self.rig, self.garments, settings)
     }
 }
 
@@ -393,7 +393,7 @@ impl DressedBody {
 #[derive(Debug)]
 pub struct DressedWorld {
     /// The world, with one worker.
-    pub frame: Frame,
+    pub world: World,
     /// Reads the snapshots of the world.
     pub reader: Reader<Snapshot>,
     /// The request that it was built from.

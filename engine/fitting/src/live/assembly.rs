@@ -6,10 +6,9 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use toile_engine::clock::Clock;
-use toile_engine::frame::Snapshot;
 use toile_engine::frame_loop::event::{CounterSource, EVENTS, EVENTS_NAME, Event};
 use toile_engine::frame_loop::handover::handover;
-use toile_engine::frame_loop::physics_thread::{PhysicsOutputs, PhysicsThread, Scene};
+use toile_engine::frame_loop::physics_thread::{LoopScene, PhysicsOutputs, PhysicsThread};
 use toile_engine::frame_loop::queue::{Capacity, Receiver, Sender, bounded};
 use toile_engine::frame_loop::recording::Entry;
 use toile_engine::frame_loop::render_thread::{RenderThread, Renderer};
@@ -17,6 +16,7 @@ use toile_engine::frame_loop::sensor_thread::{
     FrameSource, OBSERVED, OBSERVED_NAME, ObservedFrame, SensorFrame, SensorThread,
 };
 use toile_engine::triple_buffer::TripleBuffer;
+use toile_engine::world::Snapshot;
 use toile_sensors::filter::JointFilter;
 
 use super::live_scene::{LiveScene, STEP_REPORTS, STEP_REPORTS_NAME, SceneHandover, StepReport, WatchedRenderer};
@@ -47,8 +47,8 @@ pub struct LoopOptions {
     pub warm_up_steps: u64,
     /// When the meters of sensor and renderer begin (ns on the loop's clock).
     pub metered_from_ns: u64,
-    /// A rung of the governor's ladder that the run is held on; `None` lets it govern.
-    pub held_rung: Option<u8>,
+    /// A quality level that the run is held on; `None` lets it govern.
+    pub held_level: Option<u8>,
 }
 
 /// The sensor thread's loop.
@@ -96,14 +96,14 @@ pub struct Assembly<S, E: Renderer, F, A, C> {
 /// Joins the parts. All storage is allocated here.
 pub fn assemble<S, E, F, A, C>(parts: LoopParts<S, E, F, A>, clock: &C, options: LoopOptions) -> Assembly<S, E, F, A, C>
 where
-    S: Scene,
+    S: LoopScene,
     E: Renderer,
     F: FrameSource,
     A: CounterSource,
     C: Clock + Clone,
 {
     let LoopParts { first, renderer, source, account, recording } = parts;
-    let LoopOptions { begin_ns, warm_up_steps, metered_from_ns, held_rung } = options;
+    let LoopOptions { begin_ns, warm_up_steps, metered_from_ns, held_level } = options;
     let progress = Arc::new(Progress::default());
     let (event_sender, events) = bounded(EVENTS_NAME, EVENTS);
     let (report_sender, step_reports) = bounded(STEP_REPORTS_NAME, STEP_REPORTS);
@@ -118,8 +118,8 @@ where
     let physics = PhysicsThread::new(scene, clock.clone(), begin_ns, seen, outputs, account)
         .changing(next_scene)
         .warming_up(warm_up_steps);
-    let physics = match held_rung {
-        Some(rung) => physics.held_on(rung),
+    let physics = match held_level {
+        Some(level) => physics.held_on(level),
         None => physics,
     };
     let render = RenderThread::new(renderer, clock.clone(), begin_ns, first.reader)

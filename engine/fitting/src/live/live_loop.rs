@@ -3,7 +3,7 @@
 use std::io;
 
 use toile_engine::clock::{Clock, RealClock};
-use toile_engine::frame_loop::physics_thread::Scene;
+use toile_engine::frame_loop::physics_thread::LoopScene;
 use toile_engine::frame_loop::queue::Capacity;
 use toile_engine::frame_loop::render_thread::Renderer;
 use toile_engine::frame_loop::sensor_thread::FrameSource;
@@ -30,7 +30,7 @@ pub type EndedLive<S, E, F> =
     EndedLoops<SensorLoop<F, RealClock>, PhysicsLoop<S, RealClock, ThreadAccount>, RenderLoop<E, RealClock>>;
 
 /// The loop while it runs.
-pub struct LiveLoop<S: Scene, E: Renderer, F: FrameSource> {
+pub struct LiveLoop<S: LoopScene, E: Renderer, F: FrameSource> {
     /// The threads of sensor, physics and renderer.
     pub threads: LiveThreads<S, E, F>,
     /// Queues of what the threads report.
@@ -39,7 +39,7 @@ pub struct LiveLoop<S: Scene, E: Renderer, F: FrameSource> {
 
 impl<S, E, F> LiveLoop<S, E, F>
 where
-    S: Scene + Send + 'static,
+    S: LoopScene + Send + 'static,
     E: Renderer + 'static,
     F: FrameSource + 'static,
 {

@@ -5,14 +5,14 @@ use std::sync::Arc;
 
 use toile_base::frame::Joints;
 use toile_engine::clock::Clock;
-use toile_engine::frame::SnapshotTimes;
 use toile_engine::frame_loop::ThreadLoop;
-use toile_engine::frame_loop::governor::{LADDER, Rung};
 use toile_engine::frame_loop::handover::HandoverSender;
-use toile_engine::frame_loop::physics_thread::Scene;
+use toile_engine::frame_loop::physics_thread::LoopScene;
+use toile_engine::frame_loop::quality_control::{QUALITY_LEVELS, QualityLevel};
 use toile_engine::frame_loop::queue::Sender;
 use toile_engine::frame_loop::render_thread::{RenderThread, Renderer, SceneView};
 use toile_engine::meter::PERIOD_NS;
+use toile_engine::world::SnapshotTimes;
 
 use super::running::Restart;
 use super::watchdog::Progress;
@@ -30,8 +30,8 @@ pub struct StepReport {
     pub step_ns: u64,
     /// Whether it was published after its period.
     pub late: bool,
-    /// The place in the governor's ladder.
-    pub rung: u8,
+    /// The place in the quality levels.
+    pub level: u8,
     /// Steps so far that were rolled back, because of a NaN or an infinity.
     pub nonfinite: u64,
 }
@@ -58,7 +58,7 @@ pub struct LiveScene<S> {
     reporting: Option<Box<StepReporting>>,
 }
 
-impl<S: Scene> LiveScene<S> {
+impl<S: LoopScene> LiveScene<S> {
     /// A scene that waits for its turn, or that a replay steps. At load.
     pub fn new(scene: S, still: Option<Joints>) -> Self {
         Self { scene, still, place: 0, reporting: None }
@@ -81,22 +81,22 @@ impl<S: Scene> LiveScene<S> {
     }
 }
 
-impl<S: Scene> Scene for LiveScene<S> {
+impl<S: LoopScene> LoopScene for LiveScene<S> {
     fn step(&mut self, joints: &Joints, times: SnapshotTimes, clock: &impl Clock) {
         let joints = self.still.as_ref().unwrap_or(joints);
         self.scene.step(joints, times, clock);
         let Some(reporting) = &mut self.reporting else { return };
         let ended = clock.now_ns();
         reporting.progress.step();
-        let [_, nonfinite] = self.scene.troubles();
+        let [_, nonfinite] = self.scene.fault_counts();
         let step_ns = ended.saturating_sub(times.begun_ns);
         let late = ended.saturating_sub(times.scheduled_ns) > PERIOD_NS;
-        reporting.reports.push(StepReport { step_ns, late, rung: self.place, nonfinite: reporting.past + nonfinite });
+        reporting.reports.push(StepReport { step_ns, late, level: self.place, nonfinite: reporting.past + nonfinite });
     }
 
-    fn set_rung(&mut self, rung: &Rung) {
-        self.place = LADDER.iter().position(|r| r == rung).unwrap_or_default() as u8;
-        self.scene.set_rung(rung);
+    fn set_level(&mut self, level: &QualityLevel) {
+        self.place = QUALITY_LEVELS.iter().position(|r| r == level).unwrap_or_default() as u8;
+        self.scene.set_level(level);
     }
 
     fn measure(&mut self) {
@@ -115,17 +115,17 @@ impl<S: Scene> Scene for LiveScene<S> {
         self.scene.inject_fault(seed);
     }
 
-    fn succeed(&mut self, before: &mut Self) {
-        self.scene.succeed(&mut before.scene);
+    fn take_workers_from(&mut self, before: &mut Self) {
+        self.scene.take_workers_from(&mut before.scene);
         std::mem::swap(&mut self.reporting, &mut before.reporting);
-        let ([_, left], [_, came_with]) = (before.scene.troubles(), self.scene.troubles());
+        let ([_, left], [_, came_with]) = (before.scene.fault_counts(), self.scene.fault_counts());
         if let Some(reporting) = &mut self.reporting {
             reporting.past = (reporting.past + left).saturating_sub(came_with);
         }
     }
 
-    fn troubles(&self) -> [u64; 2] {
-        self.scene.troubles()
+    fn fault_counts(&self) -> [u64; 2] {
+        self.scene.fault_counts()
     }
 }
 
@@ -182,23 +182,23 @@ mod tests {
         seen_ns: Vec<u64>,
     }
 
-    impl Scene for Said {
+    impl LoopScene for Said {
         fn step(&mut self, joints: &Joints, _times: SnapshotTimes, _clock: &impl Clock) {
             self.seen_ns.push(joints.time_ns);
             self.rolled_back += 1;
         }
-        fn set_rung(&mut self, rung: &Rung) {
-            self.substeps = rung.substep_share;
+        fn set_level(&mut self, level: &QualityLevel) {
+            self.substeps = level.substep_share;
         }
         fn measure(&mut self) {}
         fn clear_meters(&mut self) {}
         fn fingerprint(&self) -> u64 {
             u64::from(self.name)
         }
-        fn succeed(&mut self, before: &mut Self) {
+        fn take_workers_from(&mut self, before: &mut Self) {
             std::mem::swap(&mut self.crew, &mut before.crew);
         }
-        fn troubles(&self) -> [u64; 2] {
+        fn fault_counts(&self) -> [u64; 2] {
             [0, self.rolled_back]
         }
     }
@@ -210,20 +210,20 @@ mod tests {
         let first = Said { name: 1, crew: 9, ..Said::default() };
         let stage = LiveScene::new(first, Some(Joints::absent(7))).reporting(reports, progress.clone());
         let (mut stepper, clock) = (SceneStepper::new(stage), SimClock::default());
-        stepper.set_rung(1);
+        stepper.set_level(1);
         stepper.step(0, 0, &clock);
         let mut other = LiveScene::new(Said { name: 2, ..Said::default() }, None);
         stepper.change(&mut other, true);
         stepper.step(0, 0, &clock);
         let now = stepper.scene.scene();
-        assert_eq!((now.name, now.crew, now.substeps), (2, 9, LADDER[1].substep_share));
+        assert_eq!((now.name, now.crew, now.substeps), (2, 9, QUALITY_LEVELS[1].substep_share));
         assert_ne!(now.seen_ns, [7], "it follows the sensor");
         let before = other.scene();
         assert_eq!((before.name, before.crew, &before.seen_ns[..]), (1, 0, &[7][..]), "it stood still");
         // Back on, with the counts that it left with.
         stepper.change(&mut other, true);
         stepper.step(0, 0, &clock);
-        let reports: Vec<(u8, u64)> = std::iter::from_fn(|| reported.pop()).map(|b| (b.rung, b.nonfinite)).collect();
+        let reports: Vec<(u8, u64)> = std::iter::from_fn(|| reported.pop()).map(|b| (b.level, b.nonfinite)).collect();
         assert_eq!(reports, [(1, 1), (1, 2), (1, 3)], "no count begins anew");
         assert_eq!(progress.count(), [3, 0]);
     }

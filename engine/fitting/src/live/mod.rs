@@ -1,7 +1,6 @@
 //! The loop that keeps a dressed body in motion: its threads, how they are joined, and what happens when one of them does not
 //! get on.
 //!
-//! Reads: frames of a sensor, dressed scenes that are handed over. Writes: snapshots to a renderer, step reports, events.
 //! Budget: ready within 5 s of its start; the loop's own budget in the frame.
 //! Thread: sensor, physics and render threads of its own; the caller's, which looks at the queues some fifty times a second.
 //!

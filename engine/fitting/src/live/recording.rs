@@ -6,13 +6,13 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use toile_engine::clock::SimClock;
-use toile_engine::frame::Frame;
 use toile_engine::frame_loop::flight_recorder::FlightRecorder;
-use toile_engine::frame_loop::physics_thread::{FrameScene, SceneStepper};
+use toile_engine::frame_loop::physics_thread::{SceneStepper, WorldScene};
 use toile_engine::frame_loop::queue::Sender;
 use toile_engine::frame_loop::recording::{self, Entry, SceneNote};
 use toile_engine::frame_loop::replay::{Replayed, replay_changing};
 use toile_engine::workers::WorkerPool;
+use toile_engine::world::World;
 
 use super::crash;
 use super::live_scene::LiveScene;
@@ -64,13 +64,13 @@ impl DressedWorld {
     }
 
     /// The world as the loop steps it; with one worker, until another scene's are taken over.
-    fn scene(self, crew: Option<WorkerPool>) -> LiveScene<FrameScene> {
+    fn scene(self, crew: Option<WorkerPool>) -> LiveScene<WorldScene> {
         let stands = self.stands();
-        let frame = match crew {
-            Some(crew) => self.frame.with_workers(crew),
-            None => self.frame,
+        let world = match crew {
+            Some(crew) => self.world.with_workers(crew),
+            None => self.world,
         };
-        LiveScene::new(FrameScene::new(frame), stands)
+        LiveScene::new(WorldScene::new(world), stands)
     }
 }
 
@@ -92,7 +92,7 @@ pub fn keep(first: &DressedWorld, path: PathBuf) -> Result<(Arc<FlightRecorder>,
 ///
 /// # Errors
 /// A recording that does not begin where somebody was dressed, or a scene that cannot be made.
-pub fn again(notes: &[SceneNote], entries: &[Entry], workers: usize) -> Result<(Frame, Replayed), FittingError> {
+pub fn again(notes: &[SceneNote], entries: &[Entry], workers: usize) -> Result<(World, Replayed), FittingError> {
     let Some((Entry::Changed { number, .. }, entries)) = entries.split_first() else {
         return Err(FittingError::Input("it does not begin where somebody was dressed; record it again".into()));
     };
@@ -109,6 +109,6 @@ pub fn again(notes: &[SceneNote], entries: &[Entry], workers: usize) -> Result<(
     });
     match refused {
         Some(error) => Err(error),
-        None => Ok((stepper.scene.into_scene().frame, out)),
+        None => Ok((stepper.scene.into_scene().world, out)),
     }
 }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use toile_engine::frame_loop::queue::Capacity;
-use toile_engine::frame_loop::thread_roles::Placement;
+use toile_engine::frame_loop::thread_roles::RolePlacement;
 use toile_engine::meter::Meter;
 
 /// A distribution of times (us).
@@ -82,8 +82,8 @@ pub struct ThreadPlacement {
     pub refused: Vec<String>,
 }
 
-impl From<Placement> for ThreadPlacement {
-    fn from(p: Placement) -> Self {
+impl From<RolePlacement> for ThreadPlacement {
+    fn from(p: RolePlacement) -> Self {
         Self { thread: p.role.name(), core: p.core, priority: p.priority, refused: p.refused }
     }
 }

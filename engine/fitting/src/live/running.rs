@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use toile_engine::clock::Clock;
 use toile_engine::frame_loop::ThreadLoop;
-use toile_engine::frame_loop::thread_roles::{Placement, ThreadRole};
+use toile_engine::frame_loop::thread_roles::{RolePlacement, ThreadRole};
 use toile_engine::frame_loop::threads::{self, LoopThread, Stop};
 
 /// Longest that threads are waited for when they are to end: a picture that a busy processor draws; the others take a fifth of a
@@ -58,7 +58,7 @@ pub struct RunningLoop<A, P, R, C> {
     physics: LoopThread<P>,
     /// `None` for the moment between a panic and the revival.
     render: Option<LoopThread<R>>,
-    placements: Vec<Placement>,
+    placements: Vec<RolePlacement>,
     revivals: Vec<Instant>,
     revived: u64,
 }
@@ -85,7 +85,7 @@ where
     }
 
     /// The places that the threads got.
-    pub fn placements(&self) -> &[Placement] {
+    pub fn placements(&self) -> &[RolePlacement] {
         &self.placements
     }
 

@@ -4,13 +4,13 @@
 use std::sync::Arc;
 
 use toile_base::frame::Joints;
-use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::frame_loop::flight_recorder::FlightRecorder;
 use toile_engine::frame_loop::handover::{HandoverSender, SceneChange};
-use toile_engine::frame_loop::physics_thread::Scene;
+use toile_engine::frame_loop::physics_thread::LoopScene;
 use toile_engine::frame_loop::recording::SceneNote;
 use toile_engine::frame_loop::render_thread::SceneView;
 use toile_engine::triple_buffer::Reader;
+use toile_engine::world::{Snapshot, World};
 
 use super::live_scene::{LiveScene, SceneHandover};
 use crate::dress::try_on::DressedWorld;
@@ -33,9 +33,9 @@ pub struct DressedScene<S, O> {
 
 impl<S, O> DressedScene<S, O> {
     /// Somebody dressed, as `stage` makes a scene of their frame.
-    pub fn new(dressed: DressedWorld, stage: impl FnOnce(Frame) -> (S, O)) -> Self {
+    pub fn new(dressed: DressedWorld, stage: impl FnOnce(World) -> (S, O)) -> Self {
         let (still, note) = (dressed.stands(), Some(dressed.note(0)));
-        let (scene, outfit) = stage(dressed.frame);
+        let (scene, outfit) = stage(dressed.world);
         Self { scene, reader: dressed.reader, outfit, still, note, number: None }
     }
 }
@@ -62,7 +62,7 @@ pub struct SceneChanger<S, O> {
     recorder: Option<Arc<FlightRecorder>>,
 }
 
-impl<S: Scene, O> SceneChanger<S, O> {
+impl<S: LoopScene, O> SceneChanger<S, O> {
     /// The loop began with the mannequin (`is_still`) or with a shopper; where a flight recorder is kept, it is given the note of each
     /// scene.
     pub fn new(handover: SceneHandover<S, O>, is_still: bool, recorder: Option<Arc<FlightRecorder>>) -> Self {
@@ -172,25 +172,25 @@ mod tests {
     use glam::{Quat, Vec3};
     use toile_base::skeleton::{JOINTS, Pose};
     use toile_engine::clock::Clock;
-    use toile_engine::frame::SnapshotTimes;
-    use toile_engine::frame_loop::governor::Rung;
     use toile_engine::frame_loop::handover::{HandoverReceiver, handover};
+    use toile_engine::frame_loop::quality_control::QualityLevel;
     use toile_engine::skin::SkinningJob;
     use toile_engine::triple_buffer::TripleBuffer;
+    use toile_engine::world::SnapshotTimes;
 
     /// A number on the stage.
     #[derive(Debug)]
     struct Nth(u64);
 
-    impl Scene for Nth {
+    impl LoopScene for Nth {
         fn step(&mut self, _joints: &Joints, _times: SnapshotTimes, _clock: &impl Clock) {}
-        fn set_rung(&mut self, _rung: &Rung) {}
+        fn set_level(&mut self, _level: &QualityLevel) {}
         fn measure(&mut self) {}
         fn clear_meters(&mut self) {}
         fn fingerprint(&self) -> u64 {
             self.0
         }
-        fn troubles(&self) -> [u64; 2] {
+        fn fault_counts(&self) -> [u64; 2] {
             [0; 2]
         }
     }

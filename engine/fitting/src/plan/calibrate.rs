@@ -16,14 +16,14 @@ use toile_base::mesh::SkinWeights;
 use toile_base::numeric::statistics::quantile;
 use toile_base::rig::Rig;
 use toile_base::skeleton::Joint;
-use toile_engine::cloth::{Settings, program};
+use toile_engine::cloth::{Settings, step::program};
 use toile_engine::meter::STAGES as STEP_STAGES;
 use toile_engine::workers::{SHARES, WorkerPool};
 
 use super::PlanError;
 use super::cost::Costs;
 use super::fit::fit;
-use super::scene::{Playing, Scene};
+use super::scene::{PlannedScene, Playing};
 use super::work::{FirstStep, STAGES, Work, beside};
 use crate::dress::try_on::DressedBody;
 use crate::timing;
@@ -95,7 +95,7 @@ struct Sample {
 pub fn measure(body: Option<(&Body, &Rig, &[Joints])>, workers: usize) -> Result<Costs, PlanError> {
     let mut scenes = Vec::new();
     for text in texts() {
-        scenes.push(Scene::file(SceneFile::parse("calibration", &text, SceneSource::Inside(&[]))?)?);
+        scenes.push(PlannedScene::file(SceneFile::parse("calibration", &text, SceneSource::Inside(&[]))?)?);
     }
     if let Some((body, rig, track)) = body {
         scenes.push(skirt_on(&scenes[0], body, rig, track)?);
@@ -117,16 +117,16 @@ pub fn measure(body: Option<(&Body, &Rig, &[Joints])>, workers: usize) -> Result
 }
 
 /// The skirt of another scene on a shopper, whose skin it then meets.
-fn skirt_on(other: &Scene, body: &Body, rig: &Rig, track: &[Joints]) -> Result<Scene, PlanError> {
+fn skirt_on(other: &PlannedScene, body: &Body, rig: &Rig, track: &[Joints]) -> Result<PlannedScene, PlanError> {
     let mut skirt = other.garments[0].clone();
     let (pelvis, _) = SkinWeights::strongest([(Joint::Pelvis.index() as u8, 1.0)]);
     skirt.fixed_weights.iter_mut().for_each(|w| *w = pelvis);
     let mut settings = other.settings[0];
     settings.contact.folds = 0;
-    Scene::worn(body, rig, vec![skirt], settings, track)
+    PlannedScene::worn(body, rig, vec![skirt], settings, track)
 }
 
-fn sample(scene: &Scene) -> Result<Sample, PlanError> {
+fn sample(scene: &PlannedScene) -> Result<Sample, PlanError> {
     let mut pool = WorkerPool::new(1)?;
     let settings: Vec<Settings> = scene.settings.iter().map(|s| Settings { timed: true, ..*s }).collect();
     let mut playing = Playing::new(scene);
@@ -160,7 +160,7 @@ fn sample(scene: &Scene) -> Result<Sample, PlanError> {
 }
 
 /// What it takes two workers to meet, from a cloth that they share (us).
-fn meeting_us(scene: &Scene, costs: &Costs) -> Result<f64, PlanError> {
+fn meeting_us(scene: &PlannedScene, costs: &Costs) -> Result<f64, PlanError> {
     let mut pool = WorkerPool::new(SHARES)?;
     let mut playing = Playing::new(scene);
     let (mut times, mut one) = (Vec::new(), Vec::new());

@@ -1,8 +1,5 @@
 //! Plan: what a scene needs and takes, predicted before it runs.
 //!
-//! Reads: a scene's baked garments, colliders and motion. Writes: who can touch what, memory, the time of each stage as
-//! it is predicted, what each model is worth, whether the scene fits.
-//! Budget: some seconds, to learn what this machine needs for a unit of work, and to weigh the models.
 //! Thread: the caller's; the engine's workers where their hand-off is timed.
 
 pub mod calibrate;
@@ -18,9 +15,9 @@ pub mod work;
 use thiserror::Error;
 use toile_assets::scene_file::SceneError;
 use toile_engine::colliders::ColliderError;
-use toile_engine::frame::FrameError;
 use toile_engine::skin::SkinError;
 use toile_engine::workers::WorkerPoolError;
+use toile_engine::world::WorldError;
 
 use crate::scene::RunError;
 
@@ -32,7 +29,7 @@ pub enum PlanError {
     Colliders(#[from] ColliderError),
     /// A frame that cannot be set up.
     #[error(transparent)]
-    Frame(#[from] FrameError),
+    World(#[from] WorldError),
     /// A scene file that cannot be run.
     #[error(transparent)]
     Run(#[from] RunError),

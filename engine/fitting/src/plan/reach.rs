@@ -15,7 +15,7 @@ use toile_engine::body::palette;
 use toile_engine::cloth::contact;
 use toile_engine::colliders::Colliders;
 
-use super::scene::{Motion, Scene};
+use super::scene::{PlannedMotion, PlannedScene};
 
 /// Poses that are drawn for a shopper, and most that are taken of a track.
 const POSES: usize = 2_048;
@@ -49,7 +49,7 @@ pub struct Reach {
 }
 
 /// The parts of all garments of a scene.
-pub fn reach(scene: &Scene) -> Vec<Reach> {
+pub fn reach(scene: &PlannedScene) -> Vec<Reach> {
     let poses = poses(scene);
     scene.garments.iter().flat_map(|g| of_garment(scene, g, &poses)).collect()
 }
@@ -57,7 +57,7 @@ pub fn reach(scene: &Scene) -> Vec<Reach> {
 /// Bones and colliders in one pose.
 type Posed = ([Affine3A; BONES], Colliders);
 
-fn poses(scene: &Scene) -> Vec<Posed> {
+fn poses(scene: &PlannedScene) -> Vec<Posed> {
     let posed = |bones: [Affine3A; BONES]| {
         let mut colliders = scene.colliders.clone();
         // The first placement sweeps nothing.
@@ -66,11 +66,11 @@ fn poses(scene: &Scene) -> Vec<Posed> {
         (bones, colliders)
     };
     match (&scene.motion, &scene.skeleton) {
-        (Motion::Shopper(_), Some(skeleton)) => {
+        (PlannedMotion::Shopper(_), Some(skeleton)) => {
             let mut rng = SplitMix64::new(SEED);
             (0..POSES).map(|_| posed(random_bones(skeleton, &mut rng))).collect()
         }
-        (Motion::File(file), _) => {
+        (PlannedMotion::File(file), _) => {
             let steps = file.steps() as usize;
             let one = |step: usize| {
                 let (mut bones, mut colliders) = ([Affine3A::IDENTITY; BONES], scene.colliders.clone());
@@ -80,7 +80,7 @@ fn poses(scene: &Scene) -> Vec<Posed> {
             };
             (0..steps).step_by(steps.div_ceil(POSES).max(1)).map(one).collect()
         }
-        (Motion::Shopper(bones), None) => bones.iter().map(|b| posed(*b)).collect(),
+        (PlannedMotion::Shopper(bones), None) => bones.iter().map(|b| posed(*b)).collect(),
     }
 }
 
@@ -110,14 +110,14 @@ fn random_bones(skeleton: &Skeleton, rng: &mut SplitMix64) -> [Affine3A; BONES] 
     bones
 }
 
-fn of_garment(scene: &Scene, garment: &Garment, poses: &[Posed]) -> Vec<Reach> {
+fn of_garment(scene: &PlannedScene, garment: &Garment, poses: &[Posed]) -> Vec<Reach> {
     let nearest = nearest(garment, poses);
     let capsules = scene.colliders.capsules().len();
     let offset = garment.fabric.contact_offset_mm * 1e-3;
     let tethers = &garment.layout().tethers;
-    let mut rows: Vec<(Part, Row)> = Vec::new();
+    let mut rows: Vec<(Part, ReachRow)> = Vec::new();
     for (i, &part) in garment.parts.iter().enumerate().filter(|(i, _)| garment.inverse_mass[*i] > 0.0) {
-        let allowed = contact::reach(part, &scene.colliders);
+        let allowed = contact::body::reach(part, &scene.colliders);
         let length = tethers.length[i] * GIVES + offset + BETWEEN_M;
         let within = |c: &usize| match &nearest[tethers.anchor[i] as usize] {
             // Cloth that is attached nowhere can be anywhere.
@@ -126,7 +126,7 @@ fn of_garment(scene: &Scene, garment: &Garment, poses: &[Posed]) -> Vec<Reach> {
         };
         let bits = (0..capsules).filter(within).fold(0u32, |bits, c| bits | 1 << c) & allowed;
         let known = rows.iter().position(|(p, _)| *p == part).unwrap_or_else(|| {
-            rows.push((part, Row { allowed, ..Row::default() }));
+            rows.push((part, ReachRow { allowed, ..ReachRow::default() }));
             rows.len() - 1
         });
         let row = &mut rows[known].1;
@@ -138,15 +138,15 @@ fn of_garment(scene: &Scene, garment: &Garment, poses: &[Posed]) -> Vec<Reach> {
 }
 
 #[derive(Default)]
-struct Row {
+struct ReachRow {
     particles: usize,
     allowed: u32,
     any: u32,
     sum: u64,
 }
 
-impl Row {
-    fn report(&self, garment: &Garment, part: Part, scene: &Scene) -> Reach {
+impl ReachRow {
+    fn report(&self, garment: &Garment, part: Part, scene: &PlannedScene) -> Reach {
         let part = match part {
             Part::All => "all",
             Part::Trunk => "trunk",
@@ -169,11 +169,11 @@ impl Row {
 }
 
 /// Limbs, or capsules by their numbers.
-fn touches(bits: u32, scene: &Scene) -> Vec<String> {
+fn touches(bits: u32, scene: &PlannedScene) -> Vec<String> {
     if scene.skeleton.is_none() {
         return (0..u32::BITS).filter(|c| bits >> c & 1 != 0).map(|c| format!("capsule {c}")).collect();
     }
-    let of = |part| contact::reach(part, &scene.colliders);
+    let of = |part| contact::body::reach(part, &scene.colliders);
     let (arms, legs) = ([of(Part::LeftArm), of(Part::RightArm)], [of(Part::LeftLeg), of(Part::RightLeg)]);
     let limbs = [
         ("trunk", legs[0] & legs[1]),
@@ -216,7 +216,7 @@ mod tests {
     use super::*;
 
     /// A cloth of 0.4 m that hangs at x = 0, with a ball that it can swing to and one that it cannot.
-    fn scene(pinned: &str) -> Scene {
+    fn scene(pinned: &str) -> PlannedScene {
         let ball = |centre: &str| format!("[[colliders.sphere]]\ncentre = {centre}\nradius = 0.05\n");
         let text = format!(
             "duration = 0.1\n[[garment]]\ngrid = {{ rows = 9, columns = 9, width = 0.4, height = 0.4 }}\nposition = [0, 2, \
@@ -224,7 +224,7 @@ mod tests {
             ball("[0, 1.8, 0.3]"),
             ball("[0, 1.0, 0]")
         );
-        Scene::file(SceneFile::parse("test", &text, SceneSource::Inside(&[])).unwrap()).unwrap()
+        PlannedScene::file(SceneFile::parse("test", &text, SceneSource::Inside(&[])).unwrap()).unwrap()
     }
 
     #[test]

@@ -7,7 +7,7 @@ use toile_engine::meter;
 
 use super::cost::Costs;
 use super::reach::Reach;
-use super::verdict::Verdict;
+use super::verdict::PlanVerdict;
 use super::weigh::Played;
 use super::work::{STAGES, UNITS};
 
@@ -139,7 +139,7 @@ pub struct Plan {
     /// Predicted time of each stage.
     pub stages: Vec<StagePlan>,
     /// Whether it fits, and what would help.
-    pub verdict: Verdict,
+    pub verdict: PlanVerdict,
     /// What the machine takes for a unit of work.
     pub units: Vec<UnitCost>,
     /// How the prediction held in a run; none where nothing was run.

@@ -11,12 +11,12 @@ use toile_base::rig::Rig;
 use toile_base::skeleton::{BONES, Pose, Skeleton};
 use toile_engine::body::{Poser, palette};
 use toile_engine::body_surface::BodySurface;
-use toile_engine::cloth::layers::{Layers, lay_outside};
+use toile_engine::cloth::contact::garments::{GarmentContact, lay_outside};
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere};
-use toile_engine::frame::{DRESS_STEPS, SETTLE_STEPS};
 use toile_engine::skin::{Blend, Posed, SkinningJob};
 use toile_engine::workers::WorkerPool;
+use toile_engine::world::{DRESS_STEPS, SETTLE_STEPS};
 use toile_sensors::sample::sample;
 
 use super::PlanError;
@@ -27,7 +27,7 @@ pub const MOST_STEPS: usize = 1_200;
 
 /// What moves bones and colliders.
 #[derive(Debug, Clone)]
-pub enum Motion {
+pub enum PlannedMotion {
     /// A shopper: the bones at the end of each step, the steps of dressing first.
     Shopper(Box<[[Affine3A; BONES]]>),
     /// A scene file.
@@ -36,7 +36,7 @@ pub enum Motion {
 
 /// A scene to plan: garments, colliders, and how they move.
 #[derive(Debug, Clone)]
-pub struct Scene {
+pub struct PlannedScene {
     /// Name in reports.
     pub name: String,
     /// The garments, inner first.
@@ -46,7 +46,7 @@ pub struct Scene {
     /// What they meet, where it stands at the start.
     pub colliders: Colliders,
     /// How bones and colliders move.
-    pub motion: Motion,
+    pub motion: PlannedMotion,
     /// The shopper's skeleton, where there is a shopper.
     pub skeleton: Option<Skeleton>,
     /// What moves the shopper's skin.
@@ -57,7 +57,7 @@ pub struct Scene {
     pub period_us: f64,
 }
 
-impl Scene {
+impl PlannedScene {
     /// A shopper in some garments, moved as a track of believable joints says.
     ///
     /// # Errors
@@ -87,7 +87,7 @@ impl Scene {
             settings: vec![settings; garments.len()],
             garments,
             colliders,
-            motion: Motion::Shopper(bones.into()),
+            motion: PlannedMotion::Shopper(bones.into()),
             skeleton: Some(body.skeleton.clone()),
             skinning: Some(skinning),
             dressing: (DRESS_STEPS + SETTLE_STEPS) as usize,
@@ -107,7 +107,7 @@ impl Scene {
             garments,
             colliders,
             period_us: 1e6 / file.step_hz,
-            motion: Motion::File(Box::new(file)),
+            motion: PlannedMotion::File(Box::new(file)),
             skeleton: None,
             skinning: None,
             dressing: 0,
@@ -117,21 +117,21 @@ impl Scene {
     /// Steps that can be played.
     pub fn steps(&self) -> usize {
         match &self.motion {
-            Motion::Shopper(bones) => bones.len(),
-            Motion::File(file) => (file.steps() as usize).min(MOST_STEPS),
+            PlannedMotion::Shopper(bones) => bones.len(),
+            PlannedMotion::File(file) => (file.steps() as usize).min(MOST_STEPS),
         }
     }
 
     /// Where bones and colliders are at the end of a step, counted from 0.
     pub fn place(&self, step: usize, bones: &mut [Affine3A; BONES], colliders: &mut Colliders) {
         match &self.motion {
-            Motion::Shopper(all) => {
+            PlannedMotion::Shopper(all) => {
                 if let Some(at) = all.get(step) {
                     *bones = *at;
                 }
                 colliders.place(bones);
             }
-            Motion::File(file) => {
+            PlannedMotion::File(file) => {
                 let end = (step + 1) as f64 / file.step_hz;
                 scene::place(colliders, file, end);
                 *bones = scene::palette(file, end);
@@ -155,7 +155,7 @@ impl Scene {
 /// A scene under way.
 pub struct Playing<'a> {
     /// The scene that is played.
-    pub scene: &'a Scene,
+    pub scene: &'a PlannedScene,
     /// State of each garment `[garments]`.
     pub cloths: Vec<Cloth>,
     /// The colliders as last placed.
@@ -165,17 +165,17 @@ pub struct Playing<'a> {
     /// Steps taken so far.
     pub step: usize,
     /// What keeps the garments from passing through each other and themselves.
-    pub layers: Option<Layers>,
+    pub layers: Option<GarmentContact>,
     /// The skin as last placed, where there is one.
     pub skin: Option<Posed>,
 }
 
 impl<'a> Playing<'a> {
     /// The scene at its start, before the first step.
-    pub fn new(scene: &'a Scene) -> Self {
+    pub fn new(scene: &'a PlannedScene) -> Self {
         let bones = scene.skeleton.as_ref().map_or([Affine3A::IDENTITY; BONES], rest_bones);
         let skin = scene.skinning.as_ref().map(SkinningJob::posed);
-        let (colliders, layers) = (scene.colliders.clone(), Layers::new(&scene.garments));
+        let (colliders, layers) = (scene.colliders.clone(), GarmentContact::new(&scene.garments));
         Self { scene, cloths: scene.cloths(), colliders, bones, step: 0, layers, skin }
     }
 
@@ -183,7 +183,7 @@ impl<'a> Playing<'a> {
     pub fn moment(&self) -> Self {
         let Self { scene, bones, step, .. } = *self;
         let (colliders, skin) = (self.colliders.clone(), self.skin.clone());
-        Self { scene, cloths: Vec::new(), colliders, bones, step, layers: Layers::new(&scene.garments), skin }
+        Self { scene, cloths: Vec::new(), colliders, bones, step, layers: GarmentContact::new(&scene.garments), skin }
     }
 
     /// Places what the next step meets.

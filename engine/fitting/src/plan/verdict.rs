@@ -2,16 +2,16 @@
 
 use serde::Serialize;
 use toile_engine::cloth::{Cloth, Quality, Settings, Step};
-use toile_engine::frame_loop::governor::{LADDER, Rung};
+use toile_engine::frame_loop::quality_control::{QUALITY_LEVELS, QualityLevel};
 use toile_engine::meter::{PERIOD_NS, STEP_BUDGET_US};
 
 use super::cost::{Costs, GarmentTime};
-use super::scene::Scene;
+use super::scene::PlannedScene;
 use super::work::{FirstStep, Work, beside, near};
 
 /// Whether a scene fits.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Verdict {
+pub struct PlanVerdict {
     /// What a step is predicted to take (us).
     pub step_us: f64,
     /// What it may take, so that a step of twice the usual length is still in time (us).
@@ -22,7 +22,7 @@ pub struct Verdict {
     pub within_budget: bool,
     /// Whether it fits at all.
     pub fits: bool,
-    /// What the governor would have to give up for the budget to hold; none where nothing, or where nothing helps.
+    /// What quality control would have to give up for the budget to hold; none where nothing, or where nothing helps.
     pub gives_up: Option<&'static str>,
     /// What would bring it within the budget, the least loss first; empty where nothing is needed.
     pub cures: Vec<String>,
@@ -43,11 +43,11 @@ pub struct Priced {
 
 impl Priced {
     /// Counts a scene's work by one step where it stands at its start, and prices it.
-    pub fn of(scene: &Scene, costs: &Costs, workers: usize) -> Self {
+    pub fn of(scene: &PlannedScene, costs: &Costs, workers: usize) -> Self {
         Self::with(scene, &scene.settings, costs, workers)
     }
 
-    fn with(scene: &Scene, settings: &[Settings], costs: &Costs, workers: usize) -> Self {
+    fn with(scene: &PlannedScene, settings: &[Settings], costs: &Costs, workers: usize) -> Self {
         let bones = scene.skeleton.as_ref().map_or([glam::Affine3A::IDENTITY; _], super::scene::rest_bones);
         let one = |(k, (garment, settings)): (usize, (_, &Settings))| {
             let mut cloth = Cloth::new(garment, &scene.colliders);
@@ -71,7 +71,7 @@ impl Priced {
 }
 
 /// Judges a scene.
-pub fn judge(scene: &Scene, priced: &Priced, costs: &Costs, workers: usize) -> Verdict {
+pub fn judge(scene: &PlannedScene, priced: &Priced, costs: &Costs, workers: usize) -> PlanVerdict {
     let budget_us = STEP_BUDGET_US as f64 * scene.period_us / (PERIOD_NS as f64 * 1e-3);
     let step_us = priced.step_us();
     let changed = |change: &dyn Fn(&mut Settings)| {
@@ -80,10 +80,10 @@ pub fn judge(scene: &Scene, priced: &Priced, costs: &Costs, workers: usize) -> V
         Priced::with(scene, &settings, costs, workers).step_us()
     };
     let within_budget = step_us <= budget_us;
-    let helps = |rung: &&Rung| changed(&|s| *s = rung.of(s)) <= budget_us;
-    let gives_up = if within_budget { None } else { LADDER[1..].iter().find(helps).map(|r| r.gives_up) };
+    let helps = |level: &&QualityLevel| changed(&|s| *s = level.of(s)) <= budget_us;
+    let gives_up = if within_budget { None } else { QUALITY_LEVELS[1..].iter().find(helps).map(|r| r.gives_up) };
     let cures = if within_budget { Vec::new() } else { cures(scene, priced, costs, (workers, budget_us), &changed) };
-    Verdict {
+    PlanVerdict {
         step_us,
         budget_us,
         period_us: scene.period_us,
@@ -99,7 +99,7 @@ type Changed<'a> = dyn Fn(&dyn Fn(&mut Settings)) -> f64 + 'a;
 
 /// What would bring a scene within the budget, each priced like the scene itself.
 fn cures(
-    scene: &Scene,
+    scene: &PlannedScene,
     priced: &Priced,
     costs: &Costs,
     (workers, budget_us): (usize, f64),
@@ -132,7 +132,7 @@ fn cures(
 
 /// The spacing at which the garment that takes most would leave the step within the budget: its time goes with its
 /// particles.
-fn coarser(scene: &Scene, priced: &Priced, budget_us: f64, add: &mut impl FnMut(String, f64)) {
+fn coarser(scene: &PlannedScene, priced: &Priced, budget_us: f64, add: &mut impl FnMut(String, f64)) {
     let times = priced.times.iter().map(|t| t.one_us).enumerate();
     let Some((most, _)) = times.max_by(|a, b| a.1.total_cmp(&b.1)) else { return };
     let garment = &scene.garments[most];

@@ -15,7 +15,7 @@ use toile_engine::workers::WorkerPool;
 
 use super::PlanError;
 use super::calibrate::quartile;
-use super::scene::{Playing, Scene};
+use super::scene::{PlannedScene, Playing};
 use super::work::STAGES;
 use crate::scene::contact::ContactReport;
 
@@ -73,7 +73,7 @@ struct Variant {
 ///
 /// # Errors
 /// Where the workers cannot be started.
-pub fn play(scene: &Scene, workers: usize) -> Result<Played, PlanError> {
+pub fn play(scene: &PlannedScene, workers: usize) -> Result<Played, PlanError> {
     let mut pool = WorkerPool::new(workers)?;
     let variants = variants(scene);
     let mut tallies: Vec<Tally> = variants.iter().map(|_| Tally::default()).collect();
@@ -105,7 +105,7 @@ pub fn play(scene: &Scene, workers: usize) -> Result<Played, PlanError> {
 }
 
 /// The scene as it is, then each model left out that it has, then each added that it has not.
-fn variants(scene: &Scene) -> Vec<Variant> {
+fn variants(scene: &PlannedScene) -> Vec<Variant> {
     let mut all = Vec::new();
     let mut add = |model, on, garment: &dyn Fn(&mut Garment), settings: &dyn Fn(&mut Settings)| {
         let (mut garments, mut with) = (scene.garments.clone(), scene.settings.clone());
@@ -160,7 +160,7 @@ fn variants(scene: &Scene) -> Vec<Variant> {
 }
 
 /// Whether a scene has skin, layers and folds.
-fn models(scene: &Scene) -> [bool; 3] {
+fn models(scene: &PlannedScene) -> [bool; 3] {
     let every = scene.settings[0].contact;
     [every.skin > 0 && scene.skinning.is_some(), every.layers > 0, every.folds > 0]
 }

@@ -4,10 +4,10 @@
 use glam::Vec3;
 use toile_base::garment::layout::{ENDED, Links};
 use toile_base::garment::{Garment, Part};
-use toile_engine::cloth::bending_matrix::{BendingMatrix, RowBlock, RowStrip};
-use toile_engine::cloth::friction_rows::{FrictionRows, FrictionStrip, FrictionTable};
-use toile_engine::cloth::program::{self, BEFORE, Bending, Stage};
-use toile_engine::cloth::{Cloth, Quality, Settings, bending, contact, record_links};
+use toile_engine::cloth::forces::bending_matrix::{BendingMatrix, RowBlock, RowStrip};
+use toile_engine::cloth::forces::friction_rows::{FrictionRows, FrictionStrip, FrictionTable};
+use toile_engine::cloth::step::program::{self, BEFORE, Bending, Stage};
+use toile_engine::cloth::{Cloth, Quality, Settings, contact, forces::bending, links::record_links};
 use toile_engine::colliders::Colliders;
 
 /// Kinds of unit in each stage.
@@ -60,7 +60,7 @@ pub fn near(garment: &Garment, colliders: &Colliders) -> f64 {
     let cones = colliders.cones_at(1.0);
     let free = garment.parts.iter().zip(&garment.start).zip(&garment.inverse_mass).filter(|(_, w)| **w > 0.0);
     let of = |((part, p), _): ((&Part, &Vec3), &f32)| {
-        let bits = contact::reach(*part, colliders);
+        let bits = contact::body::reach(*part, colliders);
         let touches = |c: &usize| bits >> c & 1 != 0 && cones[*c].distance(*p).0 < NEAR_M;
         (0..colliders.capsules().len()).filter(touches).count() as f64
     };
@@ -178,7 +178,7 @@ impl Count<'_> {
     /// Lanes of runs, and of what is in none; all of them where they are solved by records.
     fn links(&self, links: &Links) -> [f64; 2] {
         let tuples = &links.tuples;
-        if record_links::preferred(links, self.garment.particles()) && !self.garment.layout().laws.acts() {
+        if record_links::preferred(links, self.garment.particles()) && !self.garment.layout().link_curves.acts() {
             return [0.0, tuples.count as f64 / self.lanes as f64];
         }
         let zigzags = tuples.zigzags.iter().flat_map(|z| [z.straights.len, z.slants.len]);
@@ -222,8 +222,8 @@ impl Count<'_> {
         let [runs, loose] = self.links(weft);
         let passes = self.times(Stage::Weft(0));
         // Laws look at every link once; each takes about as long as a link.
-        let laws: usize = self.garment.layout().laws.tables().iter().map(|t| t.len()).sum();
-        [runs * passes + self.vectors(laws), loose * passes, weft.tuples.sets.len() as f64 * passes, 0.0]
+        let link_curves: usize = self.garment.layout().link_curves.tables().iter().map(|t| t.len()).sum();
+        [runs * passes + self.vectors(link_curves), loose * passes, weft.tuples.sets.len() as f64 * passes, 0.0]
     }
 
     fn fibers(&self) -> [f64; KINDS] {
@@ -246,7 +246,7 @@ impl Count<'_> {
             (&layout.fibers.compliance, layout.fibers.links),
             (&layout.crossing.compliance, layout.crossing.rest.len()),
         ];
-        let gives = |c: &[f32]| layout.laws.acts() || c.iter().any(|c| (1e-6..ENDED).contains(c));
+        let gives = |c: &[f32]| layout.link_curves.acts() || c.iter().any(|c| (1e-6..ENDED).contains(c));
         all.into_iter().filter(|(c, _)| gives(c)).map(|(_, count)| count as f64).sum()
     }
 }

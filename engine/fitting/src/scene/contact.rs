@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use toile_base::limits::MAX_GARMENTS;
-use toile_engine::cloth::layers::{LayerCounts, Layers, MOST_CROSSINGS, PAIRS_A_PARTICLE};
+use toile_engine::cloth::contact::garments::{GarmentContact, GarmentContactCounts, MOST_CROSSINGS, PAIRS_A_PARTICLE};
 
 /// Name of [`PAIRS_A_PARTICLE`] in reports and warnings.
 pub const PAIRS_NAME: &str = "PAIRS_A_PARTICLE (pairs of a garment's own particles that one worker keeps, a particle)";
@@ -31,10 +31,18 @@ pub struct ContactReport {
     pub left_out: u64,
 }
 
-impl From<LayerCounts> for ContactReport {
-    fn from(counts: LayerCounts) -> Self {
-        let LayerCounts { asked, contacts, contacts_most, pairs_most, pairs_room, crowded, crossings_most, left_out } =
-            counts;
+impl From<GarmentContactCounts> for ContactReport {
+    fn from(counts: GarmentContactCounts) -> Self {
+        let GarmentContactCounts {
+            asked,
+            contacts,
+            contacts_most,
+            pairs_most,
+            pairs_room,
+            crowded,
+            crossings_most,
+            left_out,
+        } = counts;
         Self { asked, contacts, contacts_most, pairs_most, pairs_room, crowded, crossings_most, left_out }
     }
 }
@@ -61,7 +69,7 @@ impl ContactReport {
 }
 
 /// Why garments that are to keep apart do not: there are too many.
-pub fn too_many(garments: usize, layers: Option<&Layers>) -> Option<String> {
+pub fn too_many(garments: usize, layers: Option<&GarmentContact>) -> Option<String> {
     (layers.is_none() && garments > MAX_GARMENTS).then(|| {
         format!(
             "{garments} garments are more than MAX_GARMENTS (garments that keep apart), {MAX_GARMENTS}, and pass through each \

@@ -32,8 +32,8 @@ impl ClothEvents {
     }
 }
 
-impl From<toile_engine::cloth::guard::GuardEvents> for ClothEvents {
-    fn from(e: toile_engine::cloth::guard::GuardEvents) -> Self {
+impl From<toile_engine::cloth::step::guard::GuardEvents> for ClothEvents {
+    fn from(e: toile_engine::cloth::step::guard::GuardEvents) -> Self {
         Self {
             repaired: e.repaired,
             rolled_back: e.rolled_back,

@@ -1,8 +1,6 @@
 //! Scenes of a user's own: garments, pins, colliders and settings of a scene file, stepped, timed and measured.
 //!
-//! Reads: a scene file. Writes: positions in the order of the user's mesh, strain, penetration, times.
 //! Budget: baking under a second for 10,000 particles; a step as the cloth's.
-//! Thread: the caller's.
 //!
 //! Everything that is particular to the engine as it is now stands in [`Runner::new`] and [`Runner::step`].
 
@@ -23,9 +21,9 @@ use toile_base::garment::Garment;
 use toile_base::limits::MAX_SPHERES;
 use toile_base::numeric::hash;
 use toile_base::skeleton::BONES;
-use toile_engine::cloth::layers::{Layers, TuckError, tuck_in};
-use toile_engine::cloth::program::METERED_STAGES;
-use toile_engine::cloth::{Cloth, ContactRates, Quality, Settings, Step, Wind, measure};
+use toile_engine::cloth::contact::garments::{GarmentContact, TuckError, tuck_in};
+use toile_engine::cloth::step::program::METERED_STAGES;
+use toile_engine::cloth::{Cloth, ContactRates, Quality, Settings, Step, Wind, step::measure};
 use toile_engine::colliders::{ColliderError, Colliders, RestSphere, RoundCone};
 use toile_engine::lanes::Width;
 use toile_engine::workers::{WorkerPool, WorkerPoolError};
@@ -118,7 +116,7 @@ pub struct Runner {
     settings: Vec<Settings>,
     palette: [Affine3A; BONES],
     /// What keeps garments from passing through each other and themselves, where the scene asks for it.
-    layers: Option<Layers>,
+    layers: Option<GarmentContact>,
     /// One worker: the caller.
     pool: WorkerPool,
     steps: u64,
@@ -158,7 +156,7 @@ impl Runner {
         let particles = scene.garments.iter().zip(&garments).map(|(given, baked)| user_order(given, baked)).collect();
         let measured = scene.steps() - (scene.measure_from * scene.step_hz) as u64;
         Ok(Self {
-            layers: Layers::new(&garments).filter(|layers| layers.asked(&settings(&scene))),
+            layers: GarmentContact::new(&garments).filter(|layers| layers.asked(&settings(&scene))),
             pool: WorkerPool::new(1)?,
             settings: garments.iter().map(|_| settings(&scene)).collect(),
             palette: palette(&scene, 0.0),
@@ -302,7 +300,7 @@ impl Runner {
     }
 
     /// What keeps cloth from passing through cloth, where the scene asks for it.
-    pub fn layers(&self) -> Option<&Layers> {
+    pub fn layers(&self) -> Option<&GarmentContact> {
         self.layers.as_ref()
     }
 

@@ -15,7 +15,7 @@ const ADDED_WEIGHT: f32 = 0.08;
 
 /// Vertices at rest with their weights, and the palette that poses them.
 #[derive(Debug, Clone)]
-pub struct Surface {
+pub struct SkinnedSurface {
     /// Rest position (m) `[vertices]`.
     pub positions: Vec<Vec3>,
     /// Rest normal, unit `[vertices]`.
@@ -26,7 +26,7 @@ pub struct Surface {
     pub palette: [Affine3A; BONES],
 }
 
-impl Surface {
+impl SkinnedSurface {
     /// The shopper's vertices in their order, each once.
     ///
     /// # Errors

@@ -1,4 +1,4 @@
-//! Laws of runs: what a scene says is what happens.
+//! Tests of runs: what a scene says is what happens.
 
 use toile_assets::scene_file::SceneSource;
 

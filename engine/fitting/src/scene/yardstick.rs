@@ -7,7 +7,7 @@ use glam::Affine3A;
 use toile_assets::body::BodyError;
 use toile_engine::lanes::{Kernel, Lanes, Width};
 
-use super::surface::Surface;
+use super::surface::SkinnedSurface;
 use crate::timing;
 
 /// Vertices of the yardstick, by the benchmark scene.
@@ -38,7 +38,7 @@ impl Yardstick {
     /// # Errors
     /// Where she cannot be built.
     pub fn new() -> Result<Self, BodyError> {
-        let surface = Surface::new(VERTICES)?;
+        let surface = SkinnedSurface::new(VERTICES)?;
         Ok(Self { vertices: vertices(&surface), palette: surface.palette.iter().map(rows).collect() })
     }
 
@@ -61,7 +61,7 @@ pub fn measure() -> Result<f64, BodyError> {
     Ok(Yardstick::new()?.read_us())
 }
 
-fn vertices(surface: &Surface) -> Vec<Vertex> {
+fn vertices(surface: &SkinnedSurface) -> Vec<Vertex> {
     let parts = surface.positions.iter().zip(&surface.normals).zip(&surface.weights);
     let vertex = |((p, n), w): ((&glam::Vec3, &glam::Vec3), &toile_base::mesh::SkinWeights)| Vertex {
         position: p.to_array(),
@@ -120,7 +120,7 @@ mod tests {
 
     #[test]
     fn the_yardstick_does_the_work_of_the_engine() {
-        let surface = Surface::new(VERTICES).unwrap();
+        let surface = SkinnedSurface::new(VERTICES).unwrap();
         let palette: Vec<Matrix> = surface.palette.iter().map(rows).collect();
         let mut posed = vec![[[0.0; 3]; 2]; VERTICES];
         blend(&palette, &vertices(&surface), &mut posed);

@@ -34,7 +34,7 @@ pub struct ClothBuffers {
     /// where there are none.
     pub stages: Buffer,
     /// Accelerations besides gravity (m/s2) `[particles]`.
-    pub pushed: Buffer,
+    pub acceleration: Buffer,
     /// What happened to each garment `[garments]`.
     pub reports: Buffer,
     /// Last good places `[particles]`.
@@ -101,7 +101,7 @@ impl ClothBuffers {
             weft_measures: all.weft.measures,
             bending: all.bending.entries,
             stages: all.bending.stages,
-            pushed: all.pushed,
+            acceleration: all.acceleration,
             reports: all.reports,
             good: all.good,
             normals: all.faces.normals,

@@ -3,9 +3,9 @@
 use bytemuck::{Pod, Zeroable};
 use glam::Affine3A;
 use toile_base::garment::Garment;
-use toile_engine::cloth::contact::ContactSettings;
-use toile_engine::cloth::prepared::Prepared;
-use toile_engine::cloth::root::Carried;
+use toile_engine::cloth::contact::body::ContactSettings;
+use toile_engine::cloth::forces::root::Carried;
+use toile_engine::cloth::step::prepared::Prepared;
 use toile_engine::cloth::{Quality, Settings, Wind};
 
 /// Flag: weft links keep their tension between passes (soft constraints).
@@ -32,9 +32,9 @@ pub const COMPENSATE: u32 = 256;
 #[repr(C)]
 pub struct GarmentConstants {
     /// Gravity over a substep (m/s).
-    pub fall: [f32; 3],
+    pub gravity_step: [f32; 3],
     /// Fraction of a velocity that is left after a substep of air damping.
-    pub kept: f32,
+    pub damping_factor: f32,
     /// Length of a substep (s).
     pub dt: f32,
     /// 1 / dt of the substep (1/s).
@@ -88,8 +88,8 @@ impl GarmentConstants {
         let wind = settings.wind.map(|w| (w.velocity.extend(w.drag), [w.lift, bound(&w), 0.0, 0.0]));
         let tethered = settings.tethers || prepared.quality == Quality::Draft;
         Self {
-            fall: (settings.gravity * dt).to_array(),
-            kept: (-garment.fabric.damping_per_s * dt).exp(),
+            gravity_step: (settings.gravity * dt).to_array(),
+            damping_factor: (-garment.fabric.damping_per_s * dt).exp(),
             dt,
             per_dt: dt.recip(),
             per_dt2,

@@ -1,8 +1,8 @@
 //! The body's capsules and planes in the contact kernels' layout, prepared for every substep of a step.
 
 use toile_base::limits::{MAX_CAPSULES, MAX_PLANES};
-use toile_engine::cloth::contact::ContactSettings;
-use toile_engine::cloth::contact::cones::{CapsuleCones, CapsuleEnds, PrepareCones};
+use toile_engine::cloth::contact::body::ContactSettings;
+use toile_engine::cloth::contact::body::cones::{CapsuleCones, CapsuleEnds, PrepareCones};
 use toile_engine::colliders::Colliders;
 use toile_engine::lanes::Width;
 
@@ -40,7 +40,7 @@ impl ContactData {
     ) -> u32 {
         self.ends.read(colliders);
         for (c, to) in ends.iter_mut().enumerate().take(MAX_CAPSULES) {
-            let of = |s: &toile_engine::cloth::contact::cones::EndSpheres| {
+            let of = |s: &toile_engine::cloth::contact::body::cones::EndSpheres| {
                 [s.centre[0].0[c], s.centre[1].0[c], s.centre[2].0[c], s.radius.0[c]]
             };
             *to =
@@ -61,7 +61,7 @@ impl ContactData {
 
 fn flat(cones: &CapsuleCones, c: usize) -> FlatCone {
     let k = cones;
-    let with = |three: &[toile_engine::cloth::contact::cones::CapsuleRow; 3], w: f32| {
+    let with = |three: &[toile_engine::cloth::contact::body::cones::CapsuleRow; 3], w: f32| {
         [three[0].0[c], three[1].0[c], three[2].0[c], w]
     };
     [

@@ -107,7 +107,7 @@ impl Kernel {
         self as usize
     }
 
-    /// Which of `toile_engine::cloth::program::METERED_STAGES` it counts towards.
+    /// Which of `toile_engine::cloth::step::program::METERED_STAGES` it counts towards.
     pub fn stage(self) -> usize {
         match self {
             Self::Repair | Self::Teleport | Self::RootCompensation | Self::Predict => 0,
@@ -171,8 +171,8 @@ mod tests {
 
     #[test]
     fn shaders_have_the_engines_limits() {
-        let most = format!("const MOST_STAGES = {}u;", toile_engine::cloth::stiff_bending::MAX_BENDING_STAGES);
-        let air = 0.25 * toile_engine::cloth::wind::AIR_DENSITY;
+        let most = format!("const MOST_STAGES = {}u;", toile_engine::cloth::forces::stiff_bending::MAX_BENDING_STAGES);
+        let air = 0.25 * toile_engine::cloth::forces::wind::AIR_DENSITY;
         assert!(COMMON.contains(&most));
         assert!(SHADERS.iter().any(|s| s.source().contains(&format!("const AIR = {air};"))));
     }

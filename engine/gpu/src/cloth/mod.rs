@@ -1,11 +1,10 @@
 //! The cloth on a GPU: all garments of a scene in one set of buffers, a dispatch a phase.
 //!
-//! Reads: baked garments, bone palettes, settings. Writes: positions, one step late; vertex buffers on the device, at once.
 //! Budget: buffers and pipelines at load; in the frame no buffer, no pipeline and no wait, some 40 dispatches a substep.
 //! Thread: the one that calls [`Offload::step`]; not the physics thread of a garment that is on the CPU.
 //!
-//! The phases and their order are those of `toile_engine::cloth::program`; docs/gpu.md says which kernel gives the same
-//! bits as its twin and which only stays within a bound.
+//! The phases and their order are those of `toile_engine::cloth::step::program`; docs/gpu.md says which kernel gives the same
+//! bits as its reference and which only stays within a bound.
 
 mod buffers;
 pub mod cloth_device;
@@ -27,11 +26,11 @@ use std::sync::Arc;
 use glam::Vec3A;
 use toile_base::garment::Garment;
 use toile_base::limits::MAX_CAPSULES;
-use toile_engine::cloth::guard::GuardEvents;
-use toile_engine::cloth::pins::Pins;
-use toile_engine::cloth::prepared::Prepared;
-use toile_engine::cloth::root::RootMotion;
-use toile_engine::cloth::settings::MAX_SUBSTEPS;
+use toile_engine::cloth::forces::root::RootMotion;
+use toile_engine::cloth::state::pins::Pins;
+use toile_engine::cloth::step::guard::GuardEvents;
+use toile_engine::cloth::step::prepared::Prepared;
+use toile_engine::cloth::step::settings::MAX_SUBSTEPS;
 use toile_engine::cloth::{Cloth, Quality, Settings, centre};
 use toile_engine::colliders::Colliders;
 

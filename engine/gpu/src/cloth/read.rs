@@ -2,7 +2,7 @@
 
 use glam::Vec3A;
 use toile_base::garment::Garment;
-use toile_engine::cloth::guard::{self, Fault};
+use toile_engine::cloth::step::guard::{self, InjectedFault};
 use wgpu::{Buffer, BufferDescriptor, BufferUsages, ComputePassDescriptor, MapMode};
 
 use super::buffers::REPORT;
@@ -122,8 +122,8 @@ impl Offload {
         for (i, what) in guard::spoil(seed, span.len as usize) {
             let at = span.first + i as u32;
             let (first, numbers) = match what {
-                Fault::Place(x) => (at, x.extend(self.flat.start[at as usize][3])),
-                Fault::Velocity(v) => (2 * self.flat.particles + at, v.extend(0.0)),
+                InjectedFault::Place(x) => (at, x.extend(self.flat.start[at as usize][3])),
+                InjectedFault::Velocity(v) => (2 * self.flat.particles + at, v.extend(0.0)),
             };
             let bytes = numbers.to_array();
             self.opened.device.queue.write_buffer(
@@ -134,7 +134,7 @@ impl Offload {
         }
     }
 
-    /// Runs the dispatches of one kernel alone, as in one substep, or one stage of it: how a test holds it against its twin. Where a kernel has
+    /// Runs the dispatches of one kernel alone, as in one substep, or one stage of it: how a test holds it against its reference. Where a kernel has
     /// several passes in a substep, the first.
     ///
     /// # Errors
@@ -183,7 +183,7 @@ impl Offload {
     /// # Errors
     /// [`GpuError::Lost`].
     pub fn accelerations(&self, garment: usize) -> Result<Vec<Vec3A>, GpuError> {
-        let numbers = self.numbers(&self.buffers.pushed)?;
+        let numbers = self.numbers(&self.buffers.acceleration)?;
         Ok(vectors(&numbers, self.flat.spans[self.own[garment].place]))
     }
 

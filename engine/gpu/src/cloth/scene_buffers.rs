@@ -14,7 +14,7 @@ use crate::buffer_builder::BufferBuilder;
 pub const REPORT: usize = 5;
 
 /// Places in the buffer of stages for each garment.
-pub const STAGES: usize = toile_engine::cloth::stiff_bending::MAX_BENDING_STAGES as usize;
+pub const STAGES: usize = toile_engine::cloth::forces::stiff_bending::MAX_BENDING_STAGES as usize;
 
 /// Bytes of a vector of four.
 const VEC4: usize = 16;
@@ -30,7 +30,7 @@ pub struct SceneBuffers {
     pub garments: Buffer,
     pub state: Buffer,
     pub targets: Buffer,
-    pub pushed: Buffer,
+    pub acceleration: Buffer,
     pub reports: Buffer,
     pub good: Buffer,
     /// Position in the rest pose, inverse mass `[particles]`.
@@ -68,7 +68,7 @@ impl SceneBuffers {
             garments: make.with("garments", constants, BufferUsages::COPY_DST),
             state: make.with("state", &state, BufferUsages::COPY_DST | BufferUsages::COPY_SRC),
             targets: make.zeros("targets", 2 * flat.targets as usize, VEC4),
-            pushed: make.zeros("pushed", particles, VEC4),
+            acceleration: make.zeros("pushed", particles, VEC4),
             reports: make.zeros("reports", garments, size_of::<u32>() * REPORT),
             good: make.with("good", &flat.start, DRAWN),
             start: make.with("start", &flat.start, KERNELS_ONLY),
@@ -88,18 +88,22 @@ impl SceneBuffers {
 
     /// What a kernel alone is bound to, in the order of its shader's bindings.
     pub fn bound_to(&self, kernel: Kernel) -> Vec<&Buffer> {
-        let Self { reports, good, start, pushed, wind, bending, diagonals, lists, fibers, contact, faces, .. } = self;
+        let Self {
+            reports, good, start, acceleration, wind, bending, diagonals, lists, fibers, contact, faces, ..
+        } = self;
         match kernel {
             Kernel::Repair => vec![reports, good],
             Kernel::Teleport => vec![good, start],
             Kernel::ContactCandidates | Kernel::Contact => {
                 vec![&contact.cones, &contact.ends, &contact.planes, &contact.reach, &contact.near]
             }
-            Kernel::Wind | Kernel::WindForces => vec![&wind.faces, &wind.forces, &wind.starts, &wind.around, pushed],
-            Kernel::RootCompensation => vec![pushed],
-            Kernel::StageCombine => vec![pushed, &bending.stages],
+            Kernel::Wind | Kernel::WindForces => {
+                vec![&wind.faces, &wind.forces, &wind.starts, &wind.around, acceleration]
+            }
+            Kernel::RootCompensation => vec![acceleration],
+            Kernel::StageCombine => vec![acceleration, &bending.stages],
             Kernel::StageBending | Kernel::Bending => vec![&bending.starts, &bending.entries, &bending.stages],
-            Kernel::Predict => vec![&self.pins, &self.targets, pushed],
+            Kernel::Predict => vec![&self.pins, &self.targets, acceleration],
             Kernel::Diagonals => {
                 vec![&diagonals.heads, &diagonals.leads, &diagonals.measures, &diagonals.kept, &diagonals.lengths]
             }

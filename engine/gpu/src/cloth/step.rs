@@ -4,9 +4,9 @@ use glam::Affine3A;
 use toile_base::garment::Garment;
 use toile_base::limits::MAX_CAPSULES;
 use toile_engine::cloth::Settings;
-use toile_engine::cloth::contact::ContactSettings;
-use toile_engine::cloth::prepared::Prepared;
-use toile_engine::cloth::root::RootStep;
+use toile_engine::cloth::contact::body::ContactSettings;
+use toile_engine::cloth::forces::root::RootStep;
+use toile_engine::cloth::step::prepared::Prepared;
 use wgpu::{CommandEncoder, CommandEncoderDescriptor, ComputePass, ComputePassDescriptor};
 
 use super::buffers::{ClothBuffers, STAGES};

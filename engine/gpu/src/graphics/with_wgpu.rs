@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::Vec3A;
 use toile_base::garment::Garment;
 use toile_base::numeric::hash;
-use toile_engine::cloth::guard::GuardEvents;
+use toile_engine::cloth::step::guard::GuardEvents;
 use toile_engine::cloth::{Cloth, Settings};
 use toile_engine::colliders::Colliders;
 
@@ -28,7 +28,7 @@ pub struct DeviceGarments {
     before: Vec<GuardEvents>,
     /// What each garment was made of, and where it lay in memory then.
     made_of: Vec<(usize, u64)>,
-    room: [Vec<Vec3A>; 2],
+    scratch: [Vec<Vec3A>; 2],
 }
 
 impl Graphics {
@@ -77,7 +77,7 @@ impl DeviceGarments {
         // The colliders count for themselves.
         let before = batch.cloths.iter().map(|c| GuardEvents { held_colliders: 0, ..c.events }).collect();
         let made_of = batch.garments.iter().map(|g| (address(g), fingerprint(g))).collect();
-        Ok(Self { offload, before, made_of, room: [(); 2].map(|()| Vec::with_capacity(most)) })
+        Ok(Self { offload, before, made_of, scratch: [(); 2].map(|()| Vec::with_capacity(most)) })
     }
 
     /// Whether these garments can be stepped as they are laid out: the settings may ask for more substeps.
@@ -130,7 +130,7 @@ impl DeviceGarments {
             to.clear();
             to.extend(x.iter().zip(y).zip(z).map(|((x, y), z)| Vec3A::new(*x, *y, *z)));
         };
-        let [x, v] = &mut self.room;
+        let [x, v] = &mut self.scratch;
         vectors(cloth.state().positions(), x);
         vectors(cloth.state().velocities(), v);
         let same = |a: &[Vec3A], b: &[Vec3A]| a.iter().zip(b).all(|(a, b)| a == b);

@@ -1,4 +1,4 @@
-// Bending: a row of the garment's matrix an invocation, its entries in the CPU's order. Twin of `cloth/bending.rs`. What is stiffer
+// Bending: a row of the garment's matrix an invocation, its entries in the CPU's order. Twin of `cloth/forces/bending.rs`. What is stiffer
 // than a substep bends the room of `stage_combine.wgsl` instead of the places.
 
 // Where each particle's entries begin [particles + 1].

@@ -50,7 +50,7 @@ struct Garment {
     // Wind: velocity of the air (m/s) and drag coefficient; lift coefficient, 1 / ((Cd + Cl) dt) (1/s).
     air: vec4<f32>,
     blow: vec4<f32>,
-    // What of the root's motion is not to be felt, as `Carried` of `cloth/root.rs` has it: origin and half the step (s);
+    // What of the root's motion is not to be felt, as `Carried` of `cloth/forces/root.rs` has it: origin and half the step (s);
     // velocity and twice the share of Coriolis' force; angular velocity and the share of the pull to the axis; jolt; twist.
     carried: array<vec4<f32>, 5>,
 }
@@ -96,7 +96,7 @@ const LEAST_PIVOT = 1e-5;
 const NO_PIVOT = 1e-12;
 const FARTHEST = 0.5;
 
-// Farthest from the origin that anything can be (m); what is next to nothing (m, m/s): `cloth/guard.rs`.
+// Farthest from the origin that anything can be (m); what is next to nothing (m, m/s): `cloth/step/guard.rs`.
 const FARTHEST_M = 10000.0;
 const LEAST = 1e-12;
 

@@ -1,4 +1,4 @@
-// Contact: which capsules and planes each particle may touch in a step (`near`, twin of `cloth/contact/near.rs`), and what
+// Contact: which capsules and planes each particle may touch in a step (`near`, twin of `cloth/contact/body/near.rs`), and what
 // touches is pushed out along the whole of a substep (`contact`, twin of `solve.rs`, `touch.rs`, `sweep.rs`).
 //
 // A particle meets its capsules in their order, as on the CPU, whose blocks of particles only take turns.

@@ -1,5 +1,5 @@
 // Fibers: the tridiagonal system of each fiber's tensions, a fiber an invocation (`fibers`), or a workgroup where they are few
-// and long (`cyclic`). Twin of `cloth/fibers.rs`.
+// and long (`cyclic`). Twin of `cloth/links/fibers.rs`.
 //
 // Neighbouring invocations are neighbouring fibers of a bundle: what one row holds of them lies side by side.
 

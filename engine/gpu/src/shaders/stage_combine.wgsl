@@ -1,10 +1,10 @@
-// Stage combine: what comes before the forces of a stage of stiff bending, and behind the last. Twin of `ApplyStiffBending` in `cloth/stiff_bending.rs`.
+// Stage combine: what comes before the forces of a stage of stiff bending, and behind the last. Twin of `ApplyStiffBending` in `cloth/forces/stiff_bending.rs`.
 //
 // Three more parts of the state are its room: r, which is what else changes the velocity, and two changes of velocity.
 
 // Accelerations besides gravity (m/s2) [particles].
 @group(1) @binding(0) var<storage, read> pushed: array<vec4<f32>>;
-// See `ChebyshevStage` in `cloth/stiff_bending.rs`: ahead, behind, forced, and what the forces are multiplied by [garments * MOST_STAGES].
+// See `ChebyshevStage` in `cloth/forces/stiff_bending.rs`: ahead, behind, forced, and what the forces are multiplied by [garments * MOST_STAGES].
 @group(1) @binding(1) var<storage, read> stages: array<vec4<f32>>;
 
 @compute @workgroup_size(64)

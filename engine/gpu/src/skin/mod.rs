@@ -1,7 +1,5 @@
 //! Skinning on a GPU: all bodies of a scene in one dispatch.
 //!
-//! Reads: skins that are laid out, bone palettes. Writes: positions and unit normals, which stay on the device for the
-//! renderer, and come back one step late on request.
 //! Budget: buffers and pipelines at load; in the frame no buffer, no pipeline and no wait, 3 kB a body and one dispatch.
 //! Thread: the one that calls [`Skinning::step`]; not the physics thread, whose skin is `toile_engine::skin`.
 //!

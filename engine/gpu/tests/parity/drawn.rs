@@ -1,4 +1,4 @@
-//! What is drawn: normals against their twin, and one device for both.
+//! What is drawn: normals against their reference, and one device for both.
 
 use std::sync::Arc;
 
@@ -30,7 +30,7 @@ fn device(needs: DeviceNeeds) -> Option<Device> {
     }
 }
 
-fn twin(positions: &[Vec3A], garment: &Garment) -> Vec<Vec3> {
+fn reference(positions: &[Vec3A], garment: &Garment) -> Vec<Vec3> {
     let positions: Vec<Vec3> = positions.iter().map(|p| Vec3::from(*p)).collect();
     let mut normals = vec![Vec3::ZERO; positions.len()];
     vertex_normals(&positions, &garment.triangles, &mut normals);
@@ -52,7 +52,7 @@ fn normals_are_the_twins_before_and_after_every_step() {
             gpu.finish().expect("it comes back");
         }
         for (k, garment) in garments.iter().enumerate() {
-            let (got, expected) = (gpu.normals(k).expect("they are read"), twin(gpu.positions(k), garment));
+            let (got, expected) = (gpu.normals(k).expect("they are read"), reference(gpu.positions(k), garment));
             assert_eq!(got.len(), garment.particles());
             let off =
                 got.iter().zip(&expected).map(|(a, b)| (Vec3::from(*a) - *b).abs().max_element()).fold(0.0, f32::max);

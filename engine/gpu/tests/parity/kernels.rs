@@ -4,15 +4,18 @@ use glam::Vec3A;
 use toile_assets::scene::skirt::Stretch;
 use toile_base::garment::Garment;
 use toile_base::garment::layout::OWNERS;
-use toile_engine::cloth::bending;
-use toile_engine::cloth::pins::Pins;
-use toile_engine::cloth::prepared::Prepared;
-use toile_engine::cloth::root::{RootMotion, RootStep};
+use toile_engine::cloth::forces::bending;
+use toile_engine::cloth::forces::root::{RootMotion, RootStep};
+use toile_engine::cloth::forces::stiff_bending::{self, StiffBendingUpdate};
+use toile_engine::cloth::forces::wind::{Accelerations, Faces, WindPart};
+use toile_engine::cloth::state::pins::Pins;
 use toile_engine::cloth::state::{self, State};
-use toile_engine::cloth::stiff_bending::{self, StiffBendingUpdate};
-use toile_engine::cloth::wind::{Accelerations, Faces, WindPart};
+use toile_engine::cloth::step::prepared::Prepared;
 use toile_engine::cloth::{
-    RootSettings, Settings, Wind, centre, diagonals, fibers, links, lists, predict, records, settle, tethers,
+    RootSettings, Settings, Wind, centre,
+    forces::predict,
+    links::{self, diagonals, fibers, lists, records, tethers},
+    step::settle,
 };
 use toile_engine::lanes::{RECORD, ReadColumn, Store, Width, WriteColumn};
 use toile_gpu::cloth::Kernel;
@@ -27,7 +30,7 @@ const BOUND: f32 = 1e-5;
 const VELOCITY_BOUND: f32 = 6e-5;
 
 /// A garment's CPU side of a substep.
-struct Twin<'a> {
+struct Reference<'a> {
     garment: &'a Garment,
     settings: &'a Settings,
     prepared: Prepared,
@@ -35,7 +38,7 @@ struct Twin<'a> {
     pins: Pins,
 }
 
-impl<'a> Twin<'a> {
+impl<'a> Reference<'a> {
     fn new(garment: &'a Garment, settings: &'a Settings, x: &[Vec3A], v: &[Vec3A]) -> Self {
         let mut prepared = Prepared::new(garment);
         prepared.make(garment, settings);
@@ -53,11 +56,11 @@ impl<'a> Twin<'a> {
         let columns = self.state.columns();
         let width = self.settings.width;
         let per_dt2 = (p.dt * p.dt).recip();
-        let room = [fibers::scratch_len(&layout.fibers), lists::scratch_len(&layout.crossing)];
-        let mut scratch = Store::zeros(room[0].max(room[1]));
+        let scratch_columns = [fibers::scratch_len(&layout.fibers), lists::scratch_len(&layout.crossing)];
+        let mut scratch = Store::zeros(scratch_columns[0].max(scratch_columns[1]));
         let tensions = layout.weft.tuples.count.max(layout.fibers.links).max(layout.crossing.rest.len());
         let mut tension = Store::zeros(tensions);
-        let mut room = diagonals::DiagonalScratch::new(&layout.diagonals, garment.particles());
+        let mut scratch_columns = diagonals::DiagonalScratch::new(&layout.diagonals, garment.particles());
         let spans = |owner: usize| &layout.spans[owner][..];
         match kernel {
             Kernel::Bending => {
@@ -66,9 +69,16 @@ impl<'a> Twin<'a> {
             }
             Kernel::Predict => {
                 for owner in 0..OWNERS {
-                    let kept = (-garment.fabric.damping_per_s * p.dt).exp();
-                    let (fall, pushed) = (self.settings.gravity * p.dt, None);
-                    width.run(predict::Predict { columns, spans: spans(owner), fall, pushed, kept, dt: p.dt });
+                    let damping_factor = (-garment.fabric.damping_per_s * p.dt).exp();
+                    let (gravity_step, acceleration) = (self.settings.gravity * p.dt, None);
+                    width.run(predict::Predict {
+                        columns,
+                        spans: spans(owner),
+                        gravity_step,
+                        acceleration,
+                        damping_factor,
+                        dt: p.dt,
+                    });
                 }
                 let to = 1.0 / p.substeps as f32;
                 for (k, &i) in garment.fixed.iter().enumerate() {
@@ -78,9 +88,17 @@ impl<'a> Twin<'a> {
             Kernel::Diagonals => {
                 let (diagonals, gamma, per_dt2) = (&layout.diagonals, p.gamma, per_dt2 / p.shear_every as f32);
                 for strand in diagonals.families.iter().flatten() {
-                    let room = room.columns();
+                    let scratch_columns = scratch_columns.columns();
                     let links = [&diagonals.rest, &diagonals.compliance].map(|c| ReadColumn::new(c));
-                    width.run(diagonals::SolveDiagonals { columns, diagonals, links, strand, room, per_dt2, gamma });
+                    width.run(diagonals::SolveDiagonals {
+                        columns,
+                        diagonals,
+                        links,
+                        strand,
+                        scratch_columns,
+                        per_dt2,
+                        gamma,
+                    });
                 }
             }
             Kernel::Shear | Kernel::Weft => {
@@ -139,23 +157,30 @@ impl<'a> Twin<'a> {
         let (garment, p) = (self.garment, &self.prepared);
         let columns = self.state.columns();
         let (width, spans) = (self.settings.width, [(0, garment.particles() as u32)]);
-        let mut room = stiff_bending::StiffBendingScratch::new(garment.particles());
-        let room = room.columns();
+        let mut scratch_columns = stiff_bending::StiffBendingScratch::new(garment.particles());
+        let scratch_columns = scratch_columns.columns();
         let last = p.bending.stages;
         for stage in 0..=last {
             let turn = match stage {
-                0 => StiffBendingUpdate::Begin { fall: self.settings.gravity * p.dt, pushed: None, dt: p.dt },
+                0 => StiffBendingUpdate::Begin {
+                    gravity_step: self.settings.gravity * p.dt,
+                    acceleration: None,
+                    dt: p.dt,
+                },
                 j if j == last => StiffBendingUpdate::End(j),
                 1 => StiffBendingUpdate::First([p.stages[0], p.stages[1]]),
                 j => StiffBendingUpdate::Next(j + 1, p.stages[j as usize]),
             };
-            width.run(stiff_bending::ApplyStiffBending { columns, spans: &spans, room, turn });
+            width.run(stiff_bending::ApplyStiffBending { columns, spans: &spans, scratch_columns, turn });
             if stage == last {
                 break;
             }
             let (from_to, by) = match stage {
-                0 => ([room[1], room[0]], p.dt),
-                j => ([j, j + 1].map(|j| room[stiff_bending::place(j)]), p.stages[j as usize].forced * p.dt * p.dt),
+                0 => ([scratch_columns[1], scratch_columns[0]], p.dt),
+                j => (
+                    [j, j + 1].map(|j| scratch_columns[stiff_bending::place(j)]),
+                    p.stages[j as usize].forced * p.dt * p.dt,
+                ),
             };
             bend(garment, p, columns.w, from_to, by, width);
         }
@@ -187,7 +212,7 @@ fn bend(
     }
 }
 
-/// Holds one kernel against its twin; a software adapter, which fuses nothing, to the bit.
+/// Holds one kernel against its reference; a software adapter, which fuses nothing, to the bit.
 fn held(name: &str, garment: &Garment, settings: &Settings, kernel: Kernel) {
     let Some(mut gpu) = offload(&[garment], settings) else { return };
     let (mut x, v) = disturbed(garment);
@@ -195,14 +220,14 @@ fn held(name: &str, garment: &Garment, settings: &Settings, kernel: Kernel) {
         // Drawn out by a tenth, so that tethers have something to hold.
         x.iter_mut().for_each(|p| p.y -= 0.1 * (1.2 - p.y));
     }
-    let mut twin = Twin::new(garment, settings, &x, &v);
-    twin.run(kernel);
+    let mut reference = Reference::new(garment, settings, &x, &v);
+    reference.run(kernel);
     let (palette, colliders) = (swaying(3), nobody());
     let steps = [around(&palette, &colliders, settings)];
     gpu.disturb(0, &x, &v);
     gpu.only(kernel, 0, &[garment], &steps).expect("the kernel runs");
     let got = gpu.particles(0).expect("the state is read");
-    let expected = twin.particles();
+    let expected = reference.particles();
     let (same_x, all, most_x) = apart(&got.x, &expected.0);
     let (same_v, _, most_v) = apart(&got.v, &expected.1);
     let moved = apart(&expected.0, &x).2.max(apart(&expected.1, &v).2);
@@ -245,14 +270,14 @@ fn few_long_fibers_come_out_as_one_by_one() {
             let (mut x, v) = disturbed(&garment);
             // Millimetres are too much for links of as many: a tenth.
             x.iter_mut().zip(&garment.start).for_each(|(x, s)| *x = Vec3A::from(*s).lerp(*x, 0.1));
-            let mut twin = Twin::new(&garment, &settings, &x, &v);
-            twin.run(Kernel::Cyclic);
+            let mut reference = Reference::new(&garment, &settings, &x, &v);
+            reference.run(Kernel::Cyclic);
             let (palette, colliders) = (swaying(3), nobody());
             gpu.disturb(0, &x, &v);
             let steps = [around(&palette, &colliders, &settings)];
             gpu.only(Kernel::Fibers, 0, &[&garment], &steps).expect("nothing is left for it");
             gpu.only(Kernel::Cyclic, 0, &[&garment], &steps).expect("the kernel runs");
-            let (got, expected) = (gpu.particles(0).expect("the state is read").x, twin.particles().0);
+            let (got, expected) = (gpu.particles(0).expect("the state is read").x, reference.particles().0);
             let (most, moved) = (apart(&got, &expected).2, apart(&expected, &x).2);
             println!("{n} rows, {stretch:?}: {most} m apart, {moved} m moved");
             assert!(most <= CYCLIC_BOUND && moved > 20.0 * most, "{n} rows, {stretch:?}: {most} m apart of {moved} m");
@@ -271,10 +296,10 @@ fn alike(name: &str, software: bool, got: &[Vec3A], expected: &[Vec3A]) {
 }
 
 /// The wind's accelerations.
-fn blow(garment: &Garment, settings: &Settings, wind: &Wind, twin: &mut Twin<'_>, to: &mut Accelerations) {
+fn blow(garment: &Garment, settings: &Settings, wind: &Wind, reference: &mut Reference<'_>, to: &mut Accelerations) {
     let faces = Faces::new(&garment.triangles, &garment.start, &garment.inverse_mass, &garment.layout().owner);
     for part in WindPart::ALL {
-        faces.blow(settings.width, part, wind, settings.step_seconds, twin.state.columns(), to.columns());
+        faces.blow(settings.width, part, wind, settings.step_seconds, reference.state.columns(), to.columns());
     }
 }
 
@@ -287,32 +312,32 @@ fn wind_gives_what_its_twin_gives() {
         let settings = Settings { wind: Some(wind), ..Settings::default() };
         let Some(mut gpu) = offload(&[garment], &settings) else { return };
         let (x, v) = disturbed(garment);
-        let mut twin = Twin::new(garment, &settings, &x, &v);
-        let mut pushed = Accelerations::new(garment.particles());
-        blow(garment, &settings, &wind, &mut twin, &mut pushed);
+        let mut reference = Reference::new(garment, &settings, &x, &v);
+        let mut acceleration = Accelerations::new(garment.particles());
+        blow(garment, &settings, &wind, &mut reference, &mut acceleration);
         gpu.disturb(0, &x, &v);
         let (palette, colliders) = (swaying(3), nobody());
         for kernel in [Kernel::Wind, Kernel::WindForces] {
             gpu.only(kernel, 0, &[garment], &[around(&palette, &colliders, &settings)]).expect("the kernel runs");
         }
-        let expected: Vec<Vec3A> = (0..garment.particles()).map(|i| pushed.of(i)).collect();
+        let expected: Vec<Vec3A> = (0..garment.particles()).map(|i| acceleration.of(i)).collect();
         let software = gpu.device().adapter().kind == "software";
         alike(&format!("{} in {speed} m/s", garment.name), software, &gpu.accelerations(0).expect("read"), &expected);
     }
 }
 
-/// Holds what of the root is not to be felt against its twin, beside wind or without.
+/// Holds what of the root is not to be felt against its reference, beside wind or without.
 fn carried(wind: Option<Wind>) {
     let root = RootSettings { linear: 0.3, angular: 0.1, centrifugal: 0.6, ..RootSettings::default() };
     let (garment, settings) = (skirt(24, Stretch::Inextensible), Settings { root, wind, ..Settings::default() });
     let Some(mut gpu) = offload(&[&garment], &settings) else { return };
     let (x, v) = disturbed(&garment);
-    let mut twin = Twin::new(&garment, &settings, &x, &v);
-    let mut pushed = Accelerations::new(garment.particles());
+    let mut reference = Reference::new(&garment, &settings, &x, &v);
+    let mut acceleration = Accelerations::new(garment.particles());
     let mut motion = RootMotion::new(root);
     gpu.disturb(0, &x, &v);
     if let Some(wind) = wind {
-        blow(&garment, &settings, &wind, &mut twin, &mut pushed);
+        blow(&garment, &settings, &wind, &mut reference, &mut acceleration);
     }
     let (colliders, software) = (nobody(), gpu.device().adapter().kind == "software");
     // The root is new in the first, and starts in the second; `blown` goes last, as in a step.
@@ -323,13 +348,13 @@ fn carried(wind: Option<Wind>) {
         let moved = motion.advance(&at, settings.step_seconds);
         if let (Kernel::RootCompensation, RootStep::Carried(carried)) = (kernel, moved) {
             let all = (0, garment.particles() as u32);
-            carried.apply(settings.width, twin.state.columns(), all, pushed.columns());
+            carried.apply(settings.width, reference.state.columns(), all, acceleration.columns());
         }
     }
     let name = if wind.is_some() { "carry in the wind" } else { "carry" };
-    let expected: Vec<Vec3A> = (0..garment.particles()).map(|i| pushed.of(i)).collect();
+    let expected: Vec<Vec3A> = (0..garment.particles()).map(|i| acceleration.of(i)).collect();
     alike(name, software, &gpu.accelerations(0).expect("read"), &expected);
-    alike(name, software, &gpu.particles(0).expect("read").v, &twin.particles().1);
+    alike(name, software, &gpu.particles(0).expect("read").v, &reference.particles().1);
 }
 
 #[test]
@@ -347,13 +372,13 @@ fn stages_give_what_their_twins_give() {
         let settings = Settings { substeps: Some(substeps), step_seconds, ..Settings::default() };
         let Some(mut gpu) = offload(&[garment], &settings) else { return };
         let (x, v) = disturbed(garment);
-        let mut twin = Twin::new(garment, &settings, &x, &v);
-        let last = twin.prepared.bending.stages;
+        let mut reference = Reference::new(garment, &settings, &x, &v);
+        let last = reference.prepared.bending.stages;
         if last < 2 {
             continue;
         }
         seen.push(last);
-        twin.run_stages();
+        reference.run_stages();
         gpu.disturb(0, &x, &v);
         let (palette, colliders) = (swaying(3), nobody());
         for stage in 0..=last {
@@ -365,7 +390,7 @@ fn stages_give_what_their_twins_give() {
         }
         let software = gpu.device().adapter().kind == "software";
         let name = format!("{} in {last} stages", garment.name);
-        alike(&name, software, &gpu.particles(0).expect("read").v, &twin.particles().1);
+        alike(&name, software, &gpu.particles(0).expect("read").v, &reference.particles().1);
     }
     // Odd and even numbers end in another part of the room; what is past the most is weakened.
     assert!(seen.iter().any(|m| m % 2 == 0) && seen.iter().any(|m| m % 2 == 1), "{seen:?}");

@@ -1,4 +1,4 @@
-//! Parity: each kernel against its twin on the CPU, whole steps against `Cloth::step`, and what happens when the device
+//! Parity: each kernel against its reference on the CPU, whole steps against `Cloth::step`, and what happens when the device
 //! fails. `scene::offload` says where these tests can run: with CI=true a machine without an adapter fails them.
 
 mod backend;

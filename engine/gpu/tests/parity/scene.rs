@@ -4,7 +4,7 @@ use glam::{Affine3A, DVec3, Quat, Vec3, Vec3A};
 use toile_assets::scene::skirt::{self, Stretch};
 use toile_assets::wardrobe;
 use toile_bake::bake;
-use toile_base::body::{Body, Measures, Sex};
+use toile_base::body::{Measures, Sex};
 use toile_base::garment::Garment;
 use toile_base::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Settings, Step};

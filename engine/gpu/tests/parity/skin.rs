@@ -4,7 +4,7 @@ use std::f32::consts::PI;
 
 use glam::{Affine3A, Quat, Vec3};
 use toile_assets::scene::shopper;
-use toile_base::body::{Body, Measures, Sex};
+use toile_base::body::{Measures, Sex};
 use toile_base::mesh::WideWeights;
 use toile_base::skeleton::{BONES, Joint, Pose, Skeleton};
 use toile_engine::body::palette;

@@ -1,16 +1,16 @@
 //! Whole steps against the CPU's.
 
 use glam::Vec3A;
-use toile_assets::scene::skirt::{self as scene, Motion, Stretch};
+use toile_assets::scene::skirt::{self as scene, SkirtMotion, Stretch};
 use toile_base::garment::Garment;
-use toile_engine::cloth::{Cloth, Quality, RootSettings, Settings, Wind, measure};
+use toile_engine::cloth::{Cloth, Quality, RootSettings, Settings, Wind, step::measure};
 
 use super::scene::{
     REST, apart, around, irregular, nobody, nudge, offload, offload_worn, skirt, swaying, walker, worn,
 };
 
 /// How the body walks.
-const MOTION: Motion = Motion::Walk;
+const MOTION: SkirtMotion = SkirtMotion::Walk;
 
 /// How much farther from the processor a device that fuses products and sums may come than the processor itself does with last
 /// bits changed before every step, and what both may (m). A hem that swings free doubles what sets it off every few steps, and the

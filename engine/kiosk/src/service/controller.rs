@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use toile_base::frame::Joints;
-use toile_engine::frame::Frame;
-use toile_engine::frame_loop::physics_thread::Scene;
+use toile_engine::frame_loop::physics_thread::LoopScene;
 use toile_engine::frame_loop::sensor_thread::ObservedFrame;
+use toile_engine::world::World;
 use toile_fitting::dress::try_on::{DressedWorld, TryOn};
 use toile_fitting::live::background::{BackgroundJob, Finished};
 use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
@@ -15,7 +15,7 @@ use super::stock_watch::StockFigures;
 use crate::error::KioskError;
 
 /// What a dressed frame becomes in the loop, and what the renderer has to know of it.
-pub type ToScene<S, O> = Box<dyn Fn(Frame) -> (S, O)>;
+pub type ToScene<S, O> = Box<dyn Fn(World) -> (S, O)>;
 
 /// Parts of the kiosk that a controller uses.
 pub struct ControllerContext<S, O> {
@@ -31,7 +31,7 @@ pub struct ControllerContext<S, O> {
     pub pose: Joints,
 }
 
-impl<S: Scene, O> ControllerContext<S, O> {
+impl<S: LoopScene, O> ControllerContext<S, O> {
     /// Somebody dressed, as the loop takes them.
     pub fn scene(&self, dressed: DressedWorld) -> DressedScene<S, O> {
         DressedScene::new(dressed, &self.to_scene)

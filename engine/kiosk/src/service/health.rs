@@ -25,7 +25,7 @@ pub struct HealthFigures {
     pub step_p999_us: f64,
     /// Steps that were published after their period, and steps that were dropped.
     pub misses: u64,
-    /// The place in the governor's ladder.
+    /// The place in the quality levels.
     pub rung: u8,
     /// Steps that were rolled back because of a NaN or an infinity.
     pub nonfinite: u64,
@@ -99,7 +99,7 @@ impl HealthCounter {
         self.step.add(step.step_ns);
         self.figures.steps += 1;
         self.figures.misses += u64::from(step.late);
-        (self.figures.rung, self.figures.nonfinite) = (step.rung, step.nonfinite);
+        (self.figures.rung, self.figures.nonfinite) = (step.level, step.nonfinite);
     }
 
     /// Something happened in the loop. Late steps are reported by their beats.
@@ -148,7 +148,7 @@ mod tests {
     fn beats_and_events_add_up_to_one_line() {
         let mut counter = HealthCounter::default();
         for i in 0..2_000 {
-            counter.step(&StepReport { step_ns: 2_000_000, late: i % 1_000 == 7, rung: 1, nonfinite: i / 1_000 });
+            counter.step(&StepReport { step_ns: 2_000_000, late: i % 1_000 == 7, level: 1, nonfinite: i / 1_000 });
         }
         for what in
             [EventKind::Dropped(5), EventKind::SensorLost, EventKind::SensorBack, EventKind::Missed(Default::default())]

@@ -1,9 +1,8 @@
 //! The service: the whole loop, unattended, from shopper to shopper, until it is asked to end.
 //!
-//! Reads: a configuration, a shop's catalogue, frames of a sensor. Writes: a health line, figures of the machine; nothing about a person.
 //! Budget: ready within 5 s of its start; a round of the service each 20 ms, under 100 us of the first core.
-//! Thread: the loop's own; a service thread, a dressing thread while somebody is measured, one that watches the catalogue, one for
-//! metrics.
+//! Thread: the loop's own; a service thread, a dressing thread while somebody is measured, one that watches the catalogue, one
+//! for metrics.
 //!
 //! [`session`] is the state machine that a window drives too, [`controller`] decides by it, and [`runner`] polls the loop. How the
 //! loop's threads are joined, and how one dressed body takes another's place in them, is `toile_fitting::live`.
@@ -31,11 +30,11 @@ use std::time::{Duration, Instant};
 
 use toile_base::frame::Joints;
 use toile_engine::clock::{Clock, RealClock};
-use toile_engine::frame::Frame;
-use toile_engine::frame_loop::physics_thread::FrameScene;
+use toile_engine::frame_loop::physics_thread::WorldScene;
 use toile_engine::frame_loop::render_thread::Renderer;
 use toile_engine::frame_loop::threads;
 use toile_engine::triple_buffer::Writer;
+use toile_engine::world::World;
 use toile_fitting::dress::session as sessions;
 use toile_fitting::live::assembly::{LoopOptions, LoopParts};
 use toile_fitting::live::lateness::ThreadAccount;
@@ -141,7 +140,7 @@ pub struct Frontend<F, H, O> {
     /// Makes the renderer, once the mannequin is dressed; it is given the camera's pictures, where shoppers may see themselves.
     pub renderer: F,
     /// A dressed frame as a scene of the loop, and what the renderer has to know of it.
-    pub to_scene: ToScene<FrameScene, O>,
+    pub to_scene: ToScene<WorldScene, O>,
     /// Makes the controller, once the loop runs.
     pub controller: H,
 }
@@ -159,7 +158,7 @@ pub struct ControllerStart {
 }
 
 /// A controller.
-pub type BoxedController<'a, O> = Box<dyn SessionController<FrameScene, O> + 'a>;
+pub type BoxedController<'a, O> = Box<dyn SessionController<WorldScene, O> + 'a>;
 
 /// Sets everything up and runs until the end; returns the report, and the renderer.
 ///
@@ -171,7 +170,7 @@ pub fn serve<'a, E, F, H>(
 ) -> Result<(KioskReport, Option<E>), KioskError>
 where
     E: Renderer<Outfit: Default> + 'static,
-    F: FnOnce(&Frame, Option<PictureReceiver>) -> Result<E, KioskError>,
+    F: FnOnce(&World, Option<PictureReceiver>) -> Result<E, KioskError>,
     H: FnOnce(ControllerStart) -> Result<BoxedController<'a, E::Outfit>, KioskError>,
 {
     let KioskRun { options, config, stock, begun, clock, stop, print_line, figures } = run;
@@ -197,8 +196,8 @@ where
             .map(|(flight_recorder, recording)| (Some(flight_recorder), Some(recording)))?,
         None => (None, None),
     };
-    let renderer = (frontend.renderer)(&dressed.frame, pictures)?;
-    let first = DressedScene::new(dressed, |frame| (FrameScene::new(frame.with_workers(crew)), E::Outfit::default()));
+    let renderer = (frontend.renderer)(&dressed.world, pictures)?;
+    let first = DressedScene::new(dressed, |world| (WorldScene::new(world.with_workers(crew)), E::Outfit::default()));
     let parts = LoopParts { first, renderer, source: feed, account: ThreadAccount::new(), recording };
     let (live, handover) = LiveLoop::start(parts, clock, LoopOptions::default()).map_err(KioskError::internal)?;
     stop.graceful();

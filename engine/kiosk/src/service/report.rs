@@ -1,7 +1,7 @@
 //! The report of a kiosk's run, as in the JSON: figures of the machine, and nothing of a person.
 
 use serde::Serialize;
-use toile_engine::frame_loop::physics_thread::{LoopMeters, Scene};
+use toile_engine::frame_loop::physics_thread::{LoopMeters, LoopScene};
 use toile_engine::frame_loop::queue::Capacity;
 use toile_engine::frame_loop::render_thread::Renderer;
 use toile_fitting::live::depth_camera::CameraFigures;
@@ -45,7 +45,7 @@ pub struct KioskReport {
     pub present_us: Quantiles,
     /// From when a sensor frame was seen until the first picture that shows it was taken (us).
     pub total_us: Quantiles,
-    /// Steps on each rung of the governor's ladder.
+    /// Steps on each quality level.
     pub rungs: Vec<u64>,
     /// Steps that were rolled back because of a NaN or an infinity.
     pub nonfinite: u64,
@@ -151,7 +151,7 @@ pub struct RunRecord {
 
 impl KioskReport {
     /// Of threads that have ended.
-    pub fn of<S: Scene, E: Renderer>(
+    pub fn of<S: LoopScene, E: Renderer>(
         ended: &EndedLive<S, E, Feed>,
         capacities: [Capacity; 3],
         record: RunRecord,
@@ -178,7 +178,7 @@ impl KioskReport {
             step_us: Quantiles::of(&gauges.step),
             present_us: render.map(|r| Quantiles::of(&r.drawing)).unwrap_or_default(),
             total_us: render.map(|r| Quantiles::of(&r.total)).unwrap_or_default(),
-            rungs: gauges.rungs.to_vec(),
+            rungs: gauges.level_steps.to_vec(),
             nonfinite: record.figures.nonfinite,
             memory_locked: record.memory_locked,
             threads: record.threads,

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use toile_base::frame::Joints;
 use toile_engine::frame_loop::flight_recorder::FlightRecorder;
-use toile_engine::frame_loop::physics_thread::Scene;
+use toile_engine::frame_loop::physics_thread::LoopScene;
 use toile_engine::frame_loop::queue::Capacity;
 use toile_engine::frame_loop::render_thread::Renderer;
 use toile_engine::triple_buffer::Writer;
@@ -75,7 +75,7 @@ pub struct ServiceEnvironment<'a, S, O> {
 pub type ServiceEnd<S, E> = (EndedLive<S, E, Feed>, [Capacity; 3], RunRecord);
 
 /// The service while it runs.
-pub struct Service<'a, S: Scene, E: Renderer> {
+pub struct Service<'a, S: LoopScene, E: Renderer> {
     live: LiveLoop<S, E, Feed>,
     context: ControllerContext<S, E::Outfit>,
     controller: Box<dyn SessionController<S, E::Outfit> + 'a>,
@@ -97,7 +97,7 @@ pub struct Service<'a, S: Scene, E: Renderer> {
     record: RunRecord,
 }
 
-impl<'a, S: Scene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
+impl<'a, S: LoopScene + Send + 'static, E: Renderer + 'static> Service<'a, S, E> {
     /// Over threads that have been started, with the controller that decides.
     pub fn new(
         live: LiveLoop<S, E, Feed>,

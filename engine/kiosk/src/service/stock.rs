@@ -55,7 +55,7 @@ impl Stock {
     /// # Errors
     /// A catalogue that cannot be read or has nothing to wear, a named garment that cannot be used.
     pub fn read(config: &Config) -> Result<Self, KioskError> {
-        Reading { config, before: None, left_out: Vec::new() }.stock()
+        StockReader { config, before: None, left_out: Vec::new() }.stock()
     }
 
     /// Reads it again: what has not changed is taken over. A named garment that cannot be used any more is left out.
@@ -63,7 +63,7 @@ impl Stock {
     /// # Errors
     /// A catalogue that cannot be read, or nothing to wear.
     pub fn read_again(&self, config: &Config) -> Result<Self, KioskError> {
-        Reading { config, before: Some(self), left_out: Vec::new() }.stock()
+        StockReader { config, before: Some(self), left_out: Vec::new() }.stock()
     }
 
     /// Whether everybody wears the same first as by another stock, of the same files.
@@ -110,13 +110,13 @@ fn files(folder: &Path, is_one: impl Fn(&str) -> bool) -> FilesSeen {
 }
 
 /// A stock that is being read.
-struct Reading<'a> {
+struct StockReader<'a> {
     config: &'a Config,
     before: Option<&'a Stock>,
     left_out: Vec<LeftOut>,
 }
 
-impl Reading<'_> {
+impl StockReader<'_> {
     fn stock(mut self) -> Result<Stock, KioskError> {
         let seen = look(self.config);
         let before = self.before.and_then(|before| before.catalogue.as_deref());

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use toile_assets::sizes::Population;
 use toile_base::frame::Joints;
-use toile_engine::frame_loop::physics_thread::Scene;
+use toile_engine::frame_loop::physics_thread::LoopScene;
 use toile_engine::frame_loop::sensor_thread::ObservedFrame;
 use toile_fitting::dress::measured;
 use toile_fitting::dress::session;
@@ -172,7 +172,7 @@ impl<'a> VisitController<'a> {
     }
 
     /// Takes a stock that was read again, when nobody is there: a visitor keeps what they see.
-    fn restock<S: Scene, O>(&mut self, context: &mut ControllerContext<S, O>) {
+    fn restock<S: LoopScene, O>(&mut self, context: &mut ControllerContext<S, O>) {
         let Some(watch) = &mut self.watch else { return };
         watch.poll();
         if self.model.is_idle()
@@ -187,13 +187,13 @@ impl<'a> VisitController<'a> {
     }
 
     /// Updates the model with an input and carries out its effects.
-    fn update<S: Scene, O>(&mut self, now: u64, input: Input, context: &mut ControllerContext<S, O>) {
+    fn update<S: LoopScene, O>(&mut self, now: u64, input: Input, context: &mut ControllerContext<S, O>) {
         for effect in self.model.update(now, input) {
             self.run(now, effect, context);
         }
     }
 
-    fn run<S: Scene, O>(&mut self, now: u64, effect: Effect, context: &mut ControllerContext<S, O>) {
+    fn run<S: LoopScene, O>(&mut self, now: u64, effect: Effect, context: &mut ControllerContext<S, O>) {
         match effect {
             Effect::Measure { number, seated } => {
                 self.played.iter().for_each(ShopperSource::begin);
@@ -229,7 +229,7 @@ impl<'a> VisitController<'a> {
     }
 
     /// Nothing of the shopper is to be seen any more, and no work for them goes on.
-    fn clear<S: Scene, O>(&mut self, context: &mut ControllerContext<S, O>) {
+    fn clear<S: LoopScene, O>(&mut self, context: &mut ControllerContext<S, O>) {
         self.worker.forget();
         self.worn_face.take_away();
         self.faces.iter_mut().for_each(FaceCamera::cancel);
@@ -240,7 +240,7 @@ impl<'a> VisitController<'a> {
     }
 
     /// Takes what the worker has done.
-    fn done<S: Scene, O>(&mut self, now: u64, number: u32, done: JobResult, context: &mut ControllerContext<S, O>) {
+    fn done<S: LoopScene, O>(&mut self, now: u64, number: u32, done: JobResult, context: &mut ControllerContext<S, O>) {
         let input = match done {
             JobResult::Measured(known) => {
                 let sex = measured::sex(known.population, Population::Women);
@@ -273,7 +273,7 @@ impl<'a> VisitController<'a> {
     }
 
     /// Gives the worker the picture that was asked for, or says that there is none.
-    fn take_face<S: Scene, O>(&mut self, now: u64, context: &mut ControllerContext<S, O>) {
+    fn take_face<S: LoopScene, O>(&mut self, now: u64, context: &mut ControllerContext<S, O>) {
         let taken = self.faces.as_mut().and_then(|faces| faces.poll(now));
         match taken {
             Some((number, Ok(portrait))) => self.jobs.face = Some((number, self.portrayed.clone(), portrait)),
@@ -283,7 +283,7 @@ impl<'a> VisitController<'a> {
     }
 
     /// Ends measuring when enough was seen, or when too little came for too long.
-    fn measure<S: Scene, O>(&mut self, now: u64, context: &mut ControllerContext<S, O>) {
+    fn measure<S: LoopScene, O>(&mut self, now: u64, context: &mut ControllerContext<S, O>) {
         let Some(measuring) = &self.measuring else { return };
         let (lasted, whole) = (now.saturating_sub(measuring.since_ns), self.model.times().measure_ns);
         let enough = measuring.frames.len() >= FEWEST_FRAMES;
@@ -330,7 +330,7 @@ impl<'a> VisitController<'a> {
     }
 }
 
-impl<S: Scene, O> SessionController<S, O> for VisitController<'_> {
+impl<S: LoopScene, O> SessionController<S, O> for VisitController<'_> {
     fn state(&self) -> SessionState {
         self.model.state()
     }

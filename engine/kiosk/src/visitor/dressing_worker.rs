@@ -10,7 +10,7 @@ use toile_assets::sizes::Population;
 use toile_base::body::Sex;
 use toile_base::frame::Joints;
 use toile_engine::cloth::Quality;
-use toile_engine::frame::{Frame, Snapshot};
+use toile_engine::world::{Snapshot, World};
 use toile_fitting::FittingError;
 use toile_fitting::dress::garment_source::GarmentSource;
 use toile_fitting::dress::measured::{self, ShopperFacts};
@@ -41,7 +41,7 @@ const DRAWN_LARGE: Size = Size::new(720, 1200);
 const WORN_OPEN: usize = 8;
 
 /// A frame that was dressed, and the snapshot of it.
-pub type DrapedFrame = (Frame, Snapshot);
+pub type DrapedFrame = (World, Snapshot);
 
 /// Somebody who was measured, in the pose in which they are dressed.
 #[derive(Debug, Clone)]
@@ -296,17 +296,17 @@ impl DressingContext {
     }
 
     fn draped(&self, client: &MeasuredVisitor, worn: &Outfit) -> Result<DrapedFrame, KioskError> {
-        let DressedWorld { mut frame, mut reader, .. } = self.dressed(client, worn)?;
-        frame.step(&client.pose);
+        let DressedWorld { mut world, mut reader, .. } = self.dressed(client, worn)?;
+        world.step(&client.pose);
         let snapshot = reader.latest().clone();
-        Ok((frame, snapshot))
+        Ok((world, snapshot))
     }
 
     fn picture(&self, client: &MeasuredVisitor, worn: &Outfit, yaw: f32) -> Result<OfferedPicture, KioskError> {
-        let (frame, snapshot) = self.draped(client, worn)?;
+        let (world, snapshot) = self.draped(client, worn)?;
         let colour = |w: &super::wardrobe::WornItem| self.wardrobe.items.get(w.item)?.colours.get(w.colour);
         let colours: Vec<[f32; 3]> = worn.iter().filter_map(colour).map(|c| c.srgb.map(linear)).collect();
-        let drawn = DrawnFrame::new(&frame, self.appearance).coloured(&colours);
+        let drawn = DrawnFrame::new(&world, self.appearance).coloured(&colours);
         let size = if self.served.serve.is_some() { DRAWN_LARGE } else { DRAWN };
         let image = drawn_frame::still(drawn, &snapshot, yaw, size);
         let still = RgbImage { size: image.size(), bytes: image.bytes().to_vec() };

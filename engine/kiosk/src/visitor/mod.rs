@@ -1,8 +1,6 @@
 //! The visitor's part of the kiosk, without drawing: pages, texts, controls, what is known of them.
 //!
-//! Reads: what is seen, pressed and gestured; what was measured and dressed; photographs of garments. Writes: one `Screen` for the renderer,
-//! jobs for the dressing worker; nothing to a disk or a network, and nothing of a shopper once they have left.
-//! Budget: 0.5 ms a poll, 10 ms where a size is judged. Thread: the service's.
+//! Budget: 0.5 ms a poll, 10 ms where a size is judged.
 //!
 //! [`model`] is a state machine that knows the time and its inputs, and nothing else; `pages` makes a [`screen::Screen`] of it. docs/screens.md
 //! shows what leads where.

@@ -1,8 +1,8 @@
 //! The window of a visit: pages with their texts and photographs on the way out, touch and keys on the way in.
 
-use toile_engine::frame::{Frame, Snapshot};
 use toile_engine::frame_loop::queue::Sender;
 use toile_engine::triple_buffer::Writer;
+use toile_engine::world::{Snapshot, World};
 
 use super::controller::VisitWindow;
 use super::dressing_worker::DrapedFrame;
@@ -19,7 +19,7 @@ pub type OutfitPair<O> = Box<[O; 2]>;
 pub type NextInput<'a> = Box<dyn FnMut() -> Option<Input> + 'a>;
 
 /// What the renderer has to know of a frame as it lies in a snapshot.
-pub type ToOutfit<O> = Box<dyn Fn(&Frame, &Snapshot) -> O>;
+pub type ToOutfit<O> = Box<dyn Fn(&World, &Snapshot) -> O>;
 
 /// The ends of the window's channels.
 pub struct WindowChannels<'a, O> {
@@ -66,7 +66,7 @@ impl<O> VisitWindow for PageWindow<'_, O> {
 
     fn show_two(&mut self, two: Option<&[DrapedFrame; 2]>) {
         let pair =
-            two.map(|two| Box::new(two.each_ref().map(|(frame, snapshot)| (self.channels.draped)(frame, snapshot))));
+            two.map(|two| Box::new(two.each_ref().map(|(world, snapshot)| (self.channels.draped)(world, snapshot))));
         self.channels.pairs.push(pair);
     }
 }

@@ -1,8 +1,6 @@
 //! Pages: the model's page as a screen, in words.
 //!
-//! Reads: the visitor's model, the texts of its language. Writes: one `Screen`.
 //! Budget: 0.2 ms a screen.
-//! Thread: the service's.
 
 mod clothes;
 mod face;

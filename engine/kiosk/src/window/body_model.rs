@@ -6,8 +6,8 @@ use glam::Vec3;
 use toile_assets::sizes::Girth;
 use toile_base::body::Levels;
 use toile_base::mesh::vertex_normals;
-use toile_engine::cloth::measure;
-use toile_engine::frame::{Frame, Snapshot};
+use toile_engine::cloth::step::measure;
+use toile_engine::world::{Snapshot, World};
 use toile_view::figure::{Appearance, Figure, OwnHead, PlacedHead};
 use toile_view::hidden_skin::CoveringCloth;
 use toile_view::own_picture::OwnPictureModel;
@@ -60,8 +60,8 @@ impl BodyModel {
     }
 
     /// Of a frame that was dressed, in rest as it lies in a snapshot of its own.
-    pub fn draped(frame: &Frame, snapshot: &Snapshot, appearance: Appearance, face: Option<&OwnHead>) -> Self {
-        let mut model = Self::of(frame, appearance, face);
+    pub fn draped(world: &World, snapshot: &Snapshot, appearance: Appearance, face: Option<&OwnHead>) -> Self {
+        let mut model = Self::of(world, appearance, face);
         let mut normals = vec![Vec3::ZERO; snapshot.skin.vertices() + model.head.hair()];
         let points = snapshot.garments.iter().map(|g| g.to_vec());
         for (surface, points) in model.meshes.surfaces.iter_mut().skip(1).zip(points) {
@@ -75,8 +75,8 @@ impl BodyModel {
     }
 
     /// Of a frame that was dressed, with the shopper's own head where it is on.
-    pub fn of(frame: &Frame, appearance: Appearance, face: Option<&OwnHead>) -> Self {
-        let (body, garments) = (frame.body(), frame.garments());
+    pub fn of(world: &World, appearance: Appearance, face: Option<&OwnHead>) -> Self {
+        let (body, garments) = (world.body(), world.garments());
         let over = |first: usize| {
             let worn = garments.iter().skip(first);
             CoveringCloth::new(worn.flat_map(|g| g.triangles.iter().map(|t| t.map(|i| g.start[i as usize]))))
@@ -96,12 +96,12 @@ impl BodyModel {
             vertex_normals(&garment.start, &garment.triangles, &mut normals);
             recesses.push(recess(i + 1, &garment.start, &normals));
         }
-        let tight = |(cloth, garment)| measure::tightness(cloth, garment, frame.colliders());
+        let tight = |(cloth, garment)| measure::tightness(cloth, garment, world.colliders());
         Self {
             meshes: Model::of_outfit(&figure, garments),
             head: figure.head,
             recess: recesses,
-            fit: frame.cloths().iter().zip(garments).map(tight).collect(),
+            fit: world.cloths().iter().zip(garments).map(tight).collect(),
             zones: garments.iter().map(|g| g.start.iter().map(|p| zone(&body.levels, p.y)).collect()).collect(),
             heights: garments.iter().map(|g| g.start.iter().map(|p| p.y).collect()).collect(),
             levels: [body.levels.chest, body.levels.waist, body.levels.hip],

@@ -6,7 +6,7 @@ use std::f32::consts::TAU;
 use glam::Vec3;
 use toile_assets::sizes::Girth;
 use toile_base::mesh::vertex_normals;
-use toile_engine::frame::Snapshot;
+use toile_engine::world::Snapshot;
 use toile_view::figure::PlacedHead;
 use toile_view::fit_map;
 use toile_view::image::Size;

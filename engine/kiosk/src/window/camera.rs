@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use toile_base::numeric::statistics;
-use toile_view::scene::{Bounds, Camera};
+use toile_view::scene::{Bounds, OrbitCamera};
 
 /// Arm's reach beside the body (m): what stays in the picture when somebody lifts their arms.
 const HALF_REACH_M: f32 = 0.5;
@@ -31,14 +31,14 @@ fn bounds(stature: f32, at: Vec3, half: f32) -> Bounds {
 
 /// A camera that frames a standing body of this stature at a place on the floor, turned by `yaw` (rad), within a part of the
 /// display: left, top, right, bottom as shares of it; `aspect` is the display's width over its height.
-pub fn camera(stature: f32, at: Vec3, yaw: f32, free: [f32; 4], aspect: f32) -> Camera {
+pub fn camera(stature: f32, at: Vec3, yaw: f32, free: [f32; 4], aspect: f32) -> OrbitCamera {
     let [left, top, right, bottom] = free;
     let (wide, tall) = ((right - left).clamp(0.05, 1.0), (bottom - top).clamp(0.05, 1.0));
     let free_aspect = aspect * wide / tall;
     let is_narrow = free_aspect < NARROW;
     let bounds = if is_narrow { bounds(stature, at, HALF_REST * stature) } else { standing_bounds(stature, at) };
     // As if the free part were the whole picture ...
-    let near = Camera::framing(&bounds, yaw, free_aspect);
+    let near = OrbitCamera::framing(&bounds, yaw, free_aspect);
     // ... of which the display shows more, all around.
     let distance = near.distance / tall * if is_narrow { NEARER } else { 1.0 };
     let seen = 2.0 * distance * (0.5 * near.fov_y).tan();
@@ -48,7 +48,7 @@ pub fn camera(stature: f32, at: Vec3, yaw: f32, free: [f32; 4], aspect: f32) -> 
     let above = (0.5 - 0.5 * (top + bottom)) * seen;
     let target = near.target + right_hand * aside - Vec3::Y * above;
     // The camera stays at its height and looks down a little: from the height of the target it would see along the floor.
-    Camera { target, distance, height: near.height + above, ..near }
+    OrbitCamera { target, distance, height: near.height + above, ..near }
 }
 
 /// Where a body stands on the floor: the median of its vertices, which an arm that is held out does not move as it does their mean or their box. `sorted`
@@ -84,7 +84,7 @@ pub(super) mod tests {
     }
 
     /// Where a point is seen, as shares of the display from its upper left corner.
-    fn seen(camera: &Camera, aspect: f32, point: Vec3) -> Vec2 {
+    fn seen(camera: &OrbitCamera, aspect: f32, point: Vec3) -> Vec2 {
         let (sin, cos) = camera.yaw.sin_cos();
         let eye = camera.target + Vec3::new(sin, 0.0, cos) * camera.distance + Vec3::Y * camera.height;
         let forward = (camera.target - eye).normalize();

@@ -1,8 +1,5 @@
 //! The kiosk's window.
 //!
-//! Reads: snapshots of the loop, the visitor's [`Screen`](crate::visitor::screen::Screen), touch, mouse and keys. Writes: pictures on the
-//! display, what was pressed.
-//! Budget: nothing of the physics' core: on a driver that draws on the processor, half of the first core at most.
 //! Thread: main waits for the window system; render paints and presents; the service decides on a thread of its own.
 //!
 //! ```text

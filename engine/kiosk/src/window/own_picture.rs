@@ -1,6 +1,6 @@
 //! The shopper's own picture in the window: drawn when the camera's next one has come, at the size that the body is drawn at.
 
-use toile_engine::frame::Snapshot;
+use toile_engine::world::Snapshot;
 use toile_fitting::live::own_picture::PictureReceiver;
 use toile_view::image::Size;
 use toile_view::own_picture::{OwnPicture, OwnPictureInput, OwnPictureOptions};

@@ -5,10 +5,10 @@ use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 use toile_engine::clock::Clock;
-use toile_engine::frame::Snapshot;
 use toile_engine::frame_loop::queue::{Capacity, Receiver, Sender};
 use toile_engine::frame_loop::render_thread::Renderer;
 use toile_engine::triple_buffer::Reader;
+use toile_engine::world::Snapshot;
 use toile_fitting::live::own_picture::PictureReceiver;
 use toile_view::raster::PresentOutcome;
 use winit::window::Window;

@@ -1,8 +1,8 @@
 //! The kiosk with a window: the visit's controller decides, the window's renderer draws.
 
 use toile_engine::clock::Clock;
-use toile_engine::frame::{Frame, Snapshot};
-use toile_engine::frame_loop::physics_thread::FrameScene;
+use toile_engine::frame_loop::physics_thread::WorldScene;
+use toile_engine::world::{Snapshot, World};
 use toile_fitting::live::own_picture::PictureReceiver;
 use toile_pose::files;
 use toile_view::figure::Appearance;
@@ -47,8 +47,8 @@ pub fn run(kiosk: KioskRun<'_>) -> Result<KioskReport, KioskError> {
         let ServiceChannels { screens, mut user_events, pairs, opening } = channels;
         let next_input = Box::new(move || user_events.pop().map(input));
         let (face, to_scene) = (worn.clone(), to_scene(appearance, worn.clone()));
-        let draped = Box::new(move |frame: &Frame, snapshot: &Snapshot| {
-            BodyModel::draped(frame, snapshot, appearance, face.of(frame.body().sex).as_deref())
+        let draped = Box::new(move |world: &World, snapshot: &Snapshot| {
+            BodyModel::draped(world, snapshot, appearance, face.of(world.body().sex).as_deref())
         });
         let channels = WindowChannels { screens, next_input, pairs, draped };
         let controller = move |start: ControllerStart| -> Result<BoxedController<'_, BodyModel>, KioskError> {
@@ -58,7 +58,7 @@ pub fn run(kiosk: KioskRun<'_>) -> Result<KioskReport, KioskError> {
             Ok(Box::new(visit.watching(watch)))
         };
         let print_line = kiosk.print_line;
-        let renderer = |mannequin: &Frame, pictures: Option<PictureReceiver>| {
+        let renderer = |mannequin: &World, pictures: Option<PictureReceiver>| {
             let renderer = opening.finish()?.seeing(pictures);
             if let Some(slow) = renderer.slowness() {
                 print_line(&slow);
@@ -76,10 +76,10 @@ pub fn run(kiosk: KioskRun<'_>) -> Result<KioskReport, KioskError> {
 }
 
 /// A frame as a scene of the loop, and what is drawn of it.
-fn to_scene(appearance: Appearance, worn: WornFace) -> ToScene<FrameScene, BodyModel> {
-    Box::new(move |frame| {
-        let model = BodyModel::of(&frame, appearance, worn.of(frame.body().sex).as_deref());
-        (FrameScene::new(frame), model)
+fn to_scene(appearance: Appearance, worn: WornFace) -> ToScene<WorldScene, BodyModel> {
+    Box::new(move |world| {
+        let model = BodyModel::of(&world, appearance, worn.of(world.body().sex).as_deref());
+        (WorldScene::new(world), model)
     })
 }
 

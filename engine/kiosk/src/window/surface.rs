@@ -7,7 +7,7 @@ use std::thread;
 use thread_priority::ThreadPriority;
 #[cfg(target_os = "linux")]
 use thread_priority::{NormalThreadSchedulePolicy, ThreadPriorityValue, ThreadSchedulePolicy};
-use toile_engine::frame::Snapshot;
+use toile_engine::world::Snapshot;
 use toile_view::image::Size;
 use toile_view::raster::{AdapterChoice, DeviceNeeds, Gpu, PresentOutcome, PresentPacing, Presenter};
 use winit::window::Window;

@@ -15,7 +15,7 @@ use toile_sensors::source::live::ColourImage;
 use toile_view::cloth_look::{GarmentLook, TileLevels};
 use toile_view::figure::{Hair, HairMesh};
 use toile_view::image::{Size, linear};
-use toile_view::scene::{Camera, Colours, Material, Scene, Surface};
+use toile_view::scene::{Colours, Material, OrbitCamera, PictureScene, PictureSurface};
 use toile_view::trace::{TraceQuality, TracedScene};
 
 /// Texels along a side of the painted atlas.
@@ -77,10 +77,10 @@ impl PaintedHead {
         (0..base.positions.len()).filter(is_face).collect()
     }
 
-    fn camera(&self, shot: &Shot) -> Camera {
+    fn camera(&self, shot: &Shot) -> OrbitCamera {
         let Shot { below, distance, yaw, height, fov_y, .. } = *shot;
         let target = middle(Shapes::of(self.sex).base()).as_vec3() - Vec3::Y * below;
-        Camera { target, yaw, height, distance, fov_y }
+        OrbitCamera { target, yaw, height, distance, fov_y }
     }
 
     /// The lens of a shot.
@@ -109,7 +109,7 @@ impl PaintedHead {
         vertex_normals(&positions, &base.triangles, &mut normals);
         let colour = |c: [f32; 3]| Vec3::from_array(c.map(|b| linear(b / 255.0)));
         let surfaces = [
-            Surface {
+            PictureSurface {
                 positions: &positions,
                 normals: &normals,
                 triangles: &base.triangles,
@@ -117,7 +117,7 @@ impl PaintedHead {
                 material: Material::Skin,
                 look: Some(self.look.shown()),
             },
-            Surface {
+            PictureSurface {
                 positions: &self.hair.positions,
                 normals: &self.hair.normals,
                 triangles: &self.hair.triangles,
@@ -126,7 +126,7 @@ impl PaintedHead {
                 look: None,
             },
         ];
-        let scene = TracedScene::build(Scene { surfaces: &surfaces, floor: shot.below > 0.5 });
+        let scene = TracedScene::build(PictureScene { surfaces: &surfaces, floor: shot.below > 0.5 });
         let image = scene.render(&self.camera(shot), shot.size, TraceQuality::Motion);
         let rgb = image.bytes().to_vec();
         let picture = ColourImage { width: shot.size.width, height: shot.size.height, rgb };

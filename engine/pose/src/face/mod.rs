@@ -1,10 +1,5 @@
 //! A head from photographs with marked points: the mannequin's head adapted by radial functions, its picture, and how it moves.
 //!
-//! Reads: photographs with points and outlines, cameras where they are calibrated; frames of a sequence. Writes: the adapted head, a
-//! texture; pose and expressions of each frame.
-//! Budget: offline; a second a head, a millisecond a frame.
-//! Thread: the caller's.
-//!
 //! What is off from the mannequin's head is a field of displacements d(x) with a prior: smooth (a compact radial function), nearly the
 //! same on both sides, and with an affine part. The marked points are its observations, each two equations in one photograph, and so are
 //! stretches of the head's outline, one equation each; the most likely field is a sum of radial functions around them (Roussel and

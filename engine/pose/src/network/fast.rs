@@ -52,7 +52,7 @@ pub fn run(
         (Op::Slopes(slopes), _) => {
             narrow(width, slopes.len()).run(SlopesKernel { slopes, from: inputs[0], to: out });
         }
-        // These copy, or are a handful of numbers: their twin is as fast as can be.
+        // These copy, or are a handful of numbers: their reference is as fast as can be.
         _ => reference::run(op, inputs, out),
     }
 }

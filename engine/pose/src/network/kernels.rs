@@ -13,7 +13,7 @@ const PIXELS: usize = 4;
 /// Columns of a larger image whose places are found at once.
 const COLUMNS: usize = 64;
 
-/// Numbers after their activation; of a NaN it makes the lower bound, as its twin does.
+/// Numbers after their activation; of a NaN it makes the lower bound, as its reference does.
 #[inline(always)]
 pub fn activated<L: Lanes>(x: L, activation: Activation) -> L {
     match activation {

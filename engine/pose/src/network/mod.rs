@@ -1,8 +1,4 @@
 //! A network that runs: typed steps, all memory made at load.
-//!
-//! Reads: a model's operators and weights; an image. Writes: the outputs that were asked for.
-//! Budget: what its multiplications take; nothing is allocated once it is loaded.
-//! Thread: whichever has it; the tracker's thread.
 
 mod conv;
 mod fast;

@@ -13,7 +13,7 @@ pub const MOST_INPUTS: usize = 4;
 
 /// One step: what it does, the buffers that it reads with their lengths, and the one that it writes.
 #[derive(Debug)]
-pub struct Step {
+pub struct NetworkStep {
     /// What it does.
     pub op: Op,
     /// Buffers that it reads, and how many numbers of each.
@@ -26,7 +26,7 @@ pub struct Step {
 #[derive(Debug)]
 pub struct Plan {
     /// In the order in which they run.
-    pub steps: Vec<Step>,
+    pub steps: Vec<NetworkStep>,
     /// Numbers of each buffer.
     pub buffers: Vec<usize>,
     /// The image that is given, its buffer.
@@ -280,7 +280,7 @@ impl Memory {
             let numbers = self.numbers[output];
             let written = self.take(numbers);
             self.of[output] = Some(written);
-            steps.push(Step { op, inputs: read.clone(), output: (written, numbers) });
+            steps.push(NetworkStep { op, inputs: read.clone(), output: (written, numbers) });
             let over = |tensor: &usize| last[*tensor] == i && !outputs.contains(tensor) && self.of[*tensor] != Some(0);
             let mut over: Vec<usize> = inputs.iter().filter(|t| over(t)).filter_map(|t| self.of[*t]).collect();
             over.sort_unstable();

@@ -1,4 +1,4 @@
-//! Fast kernels against their twins, on images and weights drawn at random: the same bits at every width.
+//! Fast kernels against their reference, on images and weights drawn at random: the same bits at every width.
 
 use toile_base::numeric::random::SplitMix64;
 use toile_engine::lanes::Width;
@@ -14,7 +14,7 @@ fn drawn(random: &mut SplitMix64, count: usize) -> Box<[f32]> {
     (0..count).map(|_| random.between(-1.0, 1.0)).collect()
 }
 
-/// The same bits by the twin and at every width.
+/// The same bits by the reference and at every width.
 fn agrees(op: &Op, inputs: &[&[f32]], output: Shape) {
     let mut plain = vec![f32::NAN; output.numbers()];
     reference::run(op, inputs, &mut plain);
@@ -132,7 +132,7 @@ fn a_border_has_zeros_around_and_in_channels_that_are_more() {
     assert_eq!(out, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 7.0, 0.0, 8.0, 0.0]);
 }
 
-/// What the twin itself computes, against numbers worked out by hand.
+/// What the reference itself computes, against numbers worked out by hand.
 #[test]
 fn a_convolution_of_ones_counts_the_places_of_its_window() {
     let input = Shape { height: 3, width: 3, channels: 2 };

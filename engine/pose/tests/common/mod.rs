@@ -1,6 +1,6 @@
 //! The network's files for tests.
 
-pub mod twins;
+pub mod references;
 
 use std::env;
 use std::path::PathBuf;

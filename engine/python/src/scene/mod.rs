@@ -1,6 +1,5 @@
 //! Scenes in motion.
 //!
-//! Reads: bodies, garments, scene files, arrays. Writes: steps, arrays that show the scene's memory, plain answers.
 //! Budget: below 5 us a call beside what `toile-sdk` takes.
 //! Thread: one call at a time, of any thread; steps, dressing and pictures run without the interpreter's lock.
 

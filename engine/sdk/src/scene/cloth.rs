@@ -3,10 +3,10 @@
 use glam::Vec3;
 use toile_assets::scene_file::{SceneFile, SceneSource};
 use toile_base::mesh::vertex_normals;
-use toile_engine::cloth::measure;
+use toile_engine::cloth::step::measure;
 use toile_fitting::scene::Runner;
 use toile_view::image::linear;
-use toile_view::scene::{Colours, Material, Surface};
+use toile_view::scene::{Colours, Material, PictureSurface};
 
 use super::vertex_order::triangles;
 use super::worn::{GarmentStats, WornGarment, no_body};
@@ -105,7 +105,14 @@ impl ClothScene {
             meshes.iter().zip(&self.triangles).zip(&self.runner.scene().garments)
         {
             let colours = Colours::One(Vec3::from_array(given.fabric.colour.map(linear)));
-            surfaces.push(Surface { positions, normals, triangles, colours, material: Material::Cloth, look: None });
+            surfaces.push(PictureSurface {
+                positions,
+                normals,
+                triangles,
+                colours,
+                material: Material::Cloth,
+                look: None,
+            });
         }
         Ok(picture::draw(&surfaces, self.runner.colliders().floor, 0.0, views, size))
     }

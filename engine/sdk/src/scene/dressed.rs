@@ -7,9 +7,9 @@ use toile_base::body::Body as BodyShape;
 use toile_base::frame::Joints;
 use toile_base::garment::Garment as BakedGarment;
 use toile_base::skeleton::Joint;
-use toile_engine::cloth::measure;
-use toile_engine::frame::{Frame, Snapshot as FrameSnapshot};
+use toile_engine::cloth::step::measure;
 use toile_engine::triple_buffer::Reader;
+use toile_engine::world::{Snapshot as FrameSnapshot, World};
 use toile_fitting::dress::garment_source::{FittedGarment, SourceKind};
 use toile_fitting::dress::player::Player;
 use toile_fitting::dress::try_on::{DressedBody, TryOn};
@@ -38,7 +38,7 @@ enum Mover {
 /// A dressed body.
 #[derive(Debug)]
 pub(super) struct DressedScene {
-    frame: Frame,
+    world: World,
     reader: Reader<FrameSnapshot>,
     mover: Mover,
     worn: Vec<WornGarment>,
@@ -71,8 +71,8 @@ impl DressedScene {
         let worn = described_all
             .map(|((garment, worn), (order, of))| described(garment, worn, &baked[of.clone()], order))
             .collect();
-        let (mut frame, reader) = dressed.build(settings).map_err(Error::input)?;
-        frame.dress_and_show(&first);
+        let (mut world, reader) = dressed.build(settings).map_err(Error::input)?;
+        world.dress_and_show(&first);
         let (mover, wanted) = match &options.motion {
             Motion::Track(track) => {
                 let player = Player::new(track.clone());
@@ -81,7 +81,7 @@ impl DressedScene {
             }
             _ => (Mover::Still(Box::new(first)), None),
         };
-        Ok(Self { frame, reader, mover, worn, orders, cloths, judged, wanted })
+        Ok(Self { world, reader, mover, worn, orders, cloths, judged, wanted })
     }
 
     pub fn step(&mut self) {
@@ -89,7 +89,7 @@ impl DressedScene {
             Mover::Still(joints) => **joints,
             Mover::Follows(player) => player.step(),
         };
-        self.frame.step(&joints);
+        self.world.step(&joints);
     }
 
     pub fn step_to(&mut self, joints: &Joints) -> Result<()> {
@@ -99,12 +99,12 @@ impl DressedScene {
             ));
         };
         **at = *checked(joints)?;
-        self.frame.step(at);
+        self.world.step(at);
         Ok(())
     }
 
     pub fn steps(&self) -> u64 {
-        self.frame.tick()
+        self.world.tick()
     }
 
     pub fn wanted(&self) -> Option<u64> {
@@ -120,27 +120,27 @@ impl DressedScene {
     }
 
     pub fn positions(&self, garment: usize) -> impl Iterator<Item = Vec3> + '_ {
-        self.orders[garment].positions(self.frame.cloths())
+        self.orders[garment].positions(self.world.cloths())
     }
 
     pub fn pinned(&self, garment: usize) -> impl Iterator<Item = bool> + '_ {
-        let garments = self.frame.garments();
+        let garments = self.world.garments();
         self.orders[garment].each(move |cloth, particle| garments[cloth].inverse_mass[particle] == 0.0, |_| true)
     }
 
     pub fn stats(&self, garment: usize) -> GarmentStats {
         let mut stats = GarmentStats::default();
         for number in self.cloths[garment].clone() {
-            let (mut cloth, baked) = (self.frame.cloths()[number].clone(), &self.frame.garments()[number]);
+            let (mut cloth, baked) = (self.world.cloths()[number].clone(), &self.world.garments()[number]);
             let strain = measure::strain(&mut cloth, baked);
-            let deep = measure::penetration(&mut cloth, baked, self.frame.colliders());
+            let deep = measure::penetration(&mut cloth, baked, self.world.colliders());
             stats.add(strain, deep, &cloth);
         }
         stats
     }
 
     pub fn body(&self) -> &BodyShape {
-        self.frame.body()
+        self.world.body()
     }
 
     /// The body's vertices and normals as they are now.
@@ -153,40 +153,40 @@ impl DressedScene {
     }
 
     pub fn fit_map(&self, garment: usize) -> Vec<f32> {
-        let maps = fit_map::of_frame(&self.frame, &self.judged);
+        let maps = fit_map::of_frame(&self.world, &self.judged);
         self.orders[garment].each(|cloth, particle| maps[cloth][particle], |_| f32::NAN).collect()
     }
 
     pub fn pictures(&mut self, views: &[View], size: [u32; 2], look: Look) -> Result<Vec<Picture>> {
         let size = picture::checked_size(size)?;
-        let mut drawn = DrawnFrame::new(&self.frame, Appearance::default());
-        let maps = fit_map::of_frame(&self.frame, &self.judged);
+        let mut drawn = DrawnFrame::new(&self.world, Appearance::default());
+        let maps = fit_map::of_frame(&self.world, &self.judged);
         drawn.update(self.reader.latest());
         let surfaces = drawn.surfaces((look == Look::FitMap).then_some(&maps));
-        let ahead = self.frame.pose().local[Joint::Pelvis.index()] * Vec3::Z;
+        let ahead = self.world.pose().local[Joint::Pelvis.index()] * Vec3::Z;
         Ok(picture::draw(&surfaces, true, ahead.x.atan2(ahead.z), views, size))
     }
 
     pub fn state_hash(&self) -> u64 {
-        self.frame.state_hash()
+        self.world.state_hash()
     }
 
     /// What the steps had to repair, a sentence each.
     pub fn warnings(&self) -> Vec<String> {
         let rolled: BTreeMap<&str, u64> = self
-            .frame
+            .world
             .cloths()
             .iter()
-            .zip(self.frame.garments())
+            .zip(self.world.garments())
             .map(|(c, g)| (g.name.as_str(), c.events.rolled_back))
             .collect();
         let rolled = rolled.into_iter().filter(|(_, count)| *count > 0);
         let mut all: Vec<String> =
             rolled.map(|(name, count)| format!("{name}: {count} steps were not finite and were rolled back")).collect();
-        if self.frame.broken() > 0 {
+        if self.world.broken() > 0 {
             all.push(format!(
                 "{} steps broke off in a worker; the garments kept their last places",
-                self.frame.broken()
+                self.world.broken()
             ));
         }
         all

@@ -1,6 +1,5 @@
 //! Scenes in motion: a dressed body, or cloth and colliders of a scene file.
 //!
-//! Reads: bodies, garments, scene files, joints. Writes: positions in the caller's own order, figures, pictures.
 //! Budget: dressing a second and more, a step as the engine's (8.3 ms), pictures a second each.
 //! Thread: the caller's; a scene may be sent to another thread.
 

@@ -8,7 +8,7 @@ use toile_engine::cloth::Cloth;
 
 /// Where a vertex is kept.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Place {
+enum VertexOrigin {
     /// A particle of one of the cloths.
     Particle { cloth: u32, particle: u32 },
     /// No face uses it: it stands where it was.
@@ -18,7 +18,7 @@ enum Place {
 /// The vertices and faces of a garment in the caller's order.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct VertexOrder {
-    places: Vec<Place>,
+    places: Vec<VertexOrigin>,
     /// Triangles by the caller's vertices.
     pub triangles: Vec<[u32; 3]>,
 }
@@ -27,9 +27,9 @@ impl VertexOrder {
     /// Of a garment that was drafted: the order of its draft. It is cloth number `cloth` of the scene.
     pub fn drafted(garment: &Garment, cloth: usize) -> Self {
         let cloth = cloth as u32;
-        let mut places = vec![Place::Stands(Vec3::ZERO); garment.particles()];
+        let mut places = vec![VertexOrigin::Stands(Vec3::ZERO); garment.particles()];
         for (vertex, particle) in garment.source.iter().zip(0..) {
-            places[*vertex as usize] = Place::Particle { cloth, particle };
+            places[*vertex as usize] = VertexOrigin::Particle { cloth, particle };
         }
         let triangles = garment.triangles.iter().map(|t| t.map(|particle| garment.source[particle as usize])).collect();
         Self { places, triangles }
@@ -39,14 +39,14 @@ impl VertexOrder {
     /// of the repaired mesh that each layer has.
     pub fn of_file(order: &FileOrder, garments: &[Garment], vertices: &[Vec<u32>], first: usize) -> Self {
         let repaired = vertices.iter().map(Vec::len).sum();
-        let mut kept = vec![Place::Stands(Vec3::ZERO); repaired];
+        let mut kept = vec![VertexOrigin::Stands(Vec3::ZERO); repaired];
         for ((garment, vertices), cloth) in garments.iter().zip(vertices).zip(first as u32..) {
             for (vertex, particle) in garment.source.iter().zip(0..) {
-                kept[vertices[*vertex as usize] as usize] = Place::Particle { cloth, particle };
+                kept[vertices[*vertex as usize] as usize] = VertexOrigin::Particle { cloth, particle };
             }
         }
         let place = |(became, start): (&u32, &Vec3)| match *became {
-            NO_VERTEX => Place::Stands(*start),
+            NO_VERTEX => VertexOrigin::Stands(*start),
             became => kept[became as usize],
         };
         let places = order.vertices.iter().zip(&order.start).map(place).collect();
@@ -60,8 +60,8 @@ impl VertexOrder {
     /// A value of each vertex, of those that particles have; what has no particle has `else_where`.
     pub fn each<T>(&self, of: impl Fn(usize, usize) -> T, elsewhere: impl Fn(Vec3) -> T) -> impl Iterator<Item = T> {
         self.places.iter().map(move |place| match *place {
-            Place::Particle { cloth, particle } => of(cloth as usize, particle as usize),
-            Place::Stands(at) => elsewhere(at),
+            VertexOrigin::Particle { cloth, particle } => of(cloth as usize, particle as usize),
+            VertexOrigin::Stands(at) => elsewhere(at),
         })
     }
 

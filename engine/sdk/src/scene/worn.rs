@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use toile_engine::cloth::Cloth;
-use toile_engine::cloth::measure::Strain;
+use toile_engine::cloth::step::measure::Strain;
 
 use crate::error::Error;
 use crate::fit::Recommendation;

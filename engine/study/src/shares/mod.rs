@@ -1,8 +1,4 @@
 //! What rows come to: shares of people with intervals, where sizes fail, which step between sizes would help.
-//!
-//! Reads: the Parquet file of a study. Writes: a [`Summary`].
-//! Budget: a second for a thousand people, some minutes for a million.
-//! Thread: the caller's.
 
 mod grading;
 mod interval;

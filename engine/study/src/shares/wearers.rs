@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::error::{Result, StudyError};
 use crate::garments::GarmentNote;
 use crate::parquet_file::{self, Notes};
-use crate::row::Row;
+use crate::row::StudyRow;
 
 /// The measures by which zones are named, in the order in which girths are kept.
 pub(super) const ZONES: [&str; 3] = ["chest", "waist", "hip"];
@@ -89,7 +89,7 @@ impl Wearers {
         }
     }
 
-    fn add(&mut self, row: &Row) {
+    fn add(&mut self, row: &StudyRow) {
         if !row.offered {
             return;
         }

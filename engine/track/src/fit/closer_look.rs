@@ -54,7 +54,7 @@ pub(super) struct SeenBody {
 }
 
 /// One view of the closer look.
-struct View {
+struct CloserView {
     cells: DepthCells,
     state: FitState,
 }
@@ -108,7 +108,7 @@ impl BodyFit {
     }
 
     /// Some views of every side that was seen.
-    fn views(&self, frames: &[DepthFrame]) -> Vec<View> {
+    fn views(&self, frames: &[DepthFrame]) -> Vec<CloserView> {
         let side = |p: &&PathState| ((p.facing / TAU * SIDES as f32) as usize).min(SIDES - 1);
         let sides: Vec<Vec<&PathState>> =
             (0..SIDES).map(|s| self.path.iter().filter(|p| side(p) == s).collect()).collect();
@@ -118,7 +118,7 @@ impl BodyFit {
             let count = s.len().min(each);
             (0..count).map(move |i| s[(2 * i + 1) * s.len() / (2 * count)])
         });
-        chosen.map(|p| View { cells: self.cells(&frames[p.frame]), state: p.state }).collect()
+        chosen.map(|p| CloserView { cells: self.cells(&frames[p.frame]), state: p.state }).collect()
     }
 
     fn cells(&self, frame: &DepthFrame) -> DepthCells {
@@ -154,7 +154,7 @@ impl BodyFit {
     }
 
     /// The surface at rest that all views show (m) `[vertices]`.
-    fn surface(&mut self, shape: &BodyShape, body: &Body, kept: &FitState, views: &mut [View]) -> Vec<Vec3> {
+    fn surface(&mut self, shape: &BodyShape, body: &Body, kept: &FitState, views: &mut [CloserView]) -> Vec<Vec3> {
         let mut out = vec![0.0; body.mesh.positions.len()];
         let mut rest = body.mesh.positions.clone();
         self.shaped = None;

@@ -1,9 +1,5 @@
 //! Joints and shape from depth alone: the parametric body fitted to the shopper's surface, frame after frame.
 //!
-//! Reads: depth frames that hold nothing but the shopper. Writes: joints, a shape with its covariance.
-//! Budget: 12 ms a frame on one core; the first frame of a shopper a few tenths of a second.
-//! Thread: the sensor thread.
-//!
 //! Analysis by synthesis with point-to-surface residuals and a Gauss-Newton step over pose and shape together; the
 //! shape is accumulated over the frames, with the population (ANSUR II) as its prior.
 

@@ -1,10 +1,5 @@
 //! Gestures: a hand swiped left, right or up, held out to confirm, opened or closed.
 //!
-//! Reads: filtered `Joints`, and a `DepthFrame` where the sensor does not report itself whether hands are open or closed.
-//! Writes: `GestureEvents`. Budget:
-//! 2 us a frame of joints, 2 ms a hand with depth; fixed state, no allocation after [`Gestures::new`].
-//! Thread: the sensor thread.
-//!
 //! Left and right are the shopper's own. Everything is measured in arm lengths from the middle of the shoulders along
 //! the trunk's own axes, so that the shopper's size, place and distance do not matter, nor a slow turn.
 

@@ -1,9 +1,6 @@
 //! The size that fits: by the primary measures of the garment's kind (EN 13402-2), with the ease and a verdict for
 //! each zone, never a bare label.
 //!
-//! Reads: `Measurements` with their errors, an `Offer` (finished girths, comfortable ease, size table). Writes: a
-//! `Recommendation`. Budget: 10 ms a garment, once a shopper. Thread: the sensor thread.
-//!
 //! The body is uncertain, so each size is judged on many bodies drawn from the measurement's errors: the size whose
 //! mean penalty is least is recommended, and every size has the share of bodies that it suits best as its probability.
 //! Where no size is sure, the measure is named whose exact knowledge would make the choice surest.

@@ -8,7 +8,7 @@ use toile_base::body::{Body, Measures, Sex};
 use toile_view::contact_sheet;
 use toile_view::figure::{Appearance, Figure, Hair, SkinTone};
 use toile_view::image::{Image, Size};
-use toile_view::scene::{Bounds, Camera, Colours, Material, Scene, Surface};
+use toile_view::scene::{Bounds, Colours, Material, OrbitCamera, PictureScene, PictureSurface};
 use toile_view::trace::{TraceQuality, TracedScene};
 
 const SIZE: Size = Size::new(320, 400);
@@ -59,7 +59,7 @@ pub fn write_all(folder: &str) -> Result<(), Box<dyn Error>> {
 
 fn traced(body: &Body, appearance: Appearance, shot: impl Fn(&TracedScene) -> Image) -> Image {
     let figure = Figure::of(body, appearance);
-    let skin = Surface {
+    let skin = PictureSurface {
         positions: &figure.rest,
         normals: &figure.normals,
         triangles: &figure.triangles,
@@ -68,14 +68,14 @@ fn traced(body: &Body, appearance: Appearance, shot: impl Fn(&TracedScene) -> Im
         look: Some(figure.look.shown()),
     };
     let surfaces = [skin];
-    shot(&TracedScene::build(Scene { surfaces: &surfaces, floor: true }))
+    shot(&TracedScene::build(PictureScene { surfaces: &surfaces, floor: true }))
 }
 
 fn whole(body: &Body, appearance: Appearance) -> Image {
     traced(body, appearance, |scene| {
         let Bounds { min, max } = scene.bounds();
         let target = (min + max) * 0.5;
-        let camera = Camera { target, yaw: FRONT, height: 0.25, distance: AWAY_M, fov_y: 0.38 };
+        let camera = OrbitCamera { target, yaw: FRONT, height: 0.25, distance: AWAY_M, fov_y: 0.38 };
         scene.render(&camera, SIZE, TraceQuality::Still)
     })
 }
@@ -83,6 +83,6 @@ fn whole(body: &Body, appearance: Appearance) -> Image {
 fn bust(body: &Body, appearance: Appearance, yaw: f32) -> Image {
     let top = Bounds::of(&body.mesh.positions).max.y;
     let camera =
-        Camera { target: Vec3::new(0.0, top - 0.42 * BUST_M, 0.0), yaw, height: 0.05, distance: 2.0, fov_y: 0.24 };
+        OrbitCamera { target: Vec3::new(0.0, top - 0.42 * BUST_M, 0.0), yaw, height: 0.05, distance: 2.0, fov_y: 0.24 };
     traced(body, appearance, |scene| scene.render(&camera, SIZE, TraceQuality::Still))
 }

@@ -9,7 +9,7 @@ use toile_sculpt::{Drawn, draw};
 use toile_view::{
     contact_sheet,
     image::{Image, Size},
-    scene::{Camera, Colours, MANNEQUIN, Material, Scene, Surface},
+    scene::{Colours, MANNEQUIN, Material, OrbitCamera, PictureScene, PictureSurface},
     trace::{TraceQuality, TracedScene},
 };
 
@@ -63,7 +63,7 @@ fn picture(drawn: &Drawn, &(_, target, tall, turns, tilt, fov_y): &View, checks:
         // Every other quad is darker: the grid shows.
         (positions, normals, triangles, colours) = chequered(drawn, &positions, &normals);
     }
-    let surface = Surface {
+    let surface = PictureSurface {
         positions: &positions,
         normals: &normals,
         triangles: &triangles,
@@ -72,14 +72,14 @@ fn picture(drawn: &Drawn, &(_, target, tall, turns, tilt, fov_y): &View, checks:
         look: None,
     };
     let surfaces = [surface];
-    let stage = TracedScene::build(Scene { surfaces: &surfaces, floor: tilt >= 0.0 });
+    let stage = TracedScene::build(PictureScene { surfaces: &surfaces, floor: tilt >= 0.0 });
     let stature = positions.iter().map(|p| p.y).fold(0.0, f32::max);
     let size = if tall > 1.0 { Size::new(560, 900) } else { Size::new(560, 560) };
     let images: Vec<Image> = turns
         .iter()
         .map(|turn| {
             let distance = 0.5 * tall * stature / (0.5 * fov_y).tan();
-            let camera = Camera {
+            let camera = OrbitCamera {
                 target: Vec3::from(target) * stature,
                 yaw: turn.to_radians(),
                 height: distance * tilt,

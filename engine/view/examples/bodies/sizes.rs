@@ -9,7 +9,7 @@ use toile_base::body::{Body, Sex};
 use toile_view::{
     contact_sheet,
     image::{Image, Size},
-    scene::{Camera, Colours, MANNEQUIN, Material, Scene, Surface},
+    scene::{Colours, MANNEQUIN, Material, OrbitCamera, PictureScene, PictureSurface},
     trace::{TraceQuality, TracedScene},
 };
 
@@ -87,7 +87,7 @@ fn save(folder: &str, name: &str, sheet: &Image) -> Result<(), Box<dyn Error>> {
 
 fn picture(body: &Body, turn: f32, size: Size) -> Image {
     let colours = vec![MANNEQUIN; body.mesh.positions.len()];
-    let surfaces = [Surface {
+    let surfaces = [PictureSurface {
         positions: &body.mesh.positions,
         normals: &body.normals,
         triangles: &body.mesh.triangles,
@@ -95,9 +95,9 @@ fn picture(body: &Body, turn: f32, size: Size) -> Image {
         material: Material::Skin,
         look: None,
     }];
-    let stage = TracedScene::build(Scene { surfaces: &surfaces, floor: true });
+    let stage = TracedScene::build(PictureScene { surfaces: &surfaces, floor: true });
     // The same camera for all, so that sizes can be compared.
-    let camera = Camera {
+    let camera = OrbitCamera {
         target: glam::Vec3::new(0.0, 0.93, 0.0),
         yaw: turn.to_radians(),
         height: 0.2,

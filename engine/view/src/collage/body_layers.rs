@@ -7,7 +7,7 @@ use toile_base::body::{Body, Region};
 
 use crate::figure::{Appearance, Figure};
 use crate::image::{Image, Size};
-use crate::scene::{Bounds, Camera, CameraFrame, Colours, Material, Scene, Surface};
+use crate::scene::{Bounds, CameraFrame, Colours, Material, OrbitCamera, PictureScene, PictureSurface};
 use crate::trace::{TraceQuality, TracedScene};
 
 toile_base::named! {
@@ -77,8 +77,8 @@ impl BodyLayers {
         let tall = (max.y - min.y).max(0.1);
         let fov_y = 2.0 * (0.5 * tall / FILL / AWAY).atan();
         let target = Vec3::new(0.5 * (min.x + max.x), 0.5 * tall, 0.5 * (min.z + max.z));
-        let camera = Camera { target, yaw: side.yaw(), height: 0.0, distance: AWAY, fov_y };
-        let skin = Surface {
+        let camera = OrbitCamera { target, yaw: side.yaw(), height: 0.0, distance: AWAY, fov_y };
+        let skin = PictureSurface {
             positions: &figure.rest,
             normals: &figure.normals,
             triangles: &figure.triangles,
@@ -87,7 +87,7 @@ impl BodyLayers {
             look: Some(figure.look.shown()),
         };
         let surfaces = [skin];
-        let scene = TracedScene::build(Scene { surfaces: &surfaces, floor: true });
+        let scene = TracedScene::build(PictureScene { surfaces: &surfaces, floor: true });
         let picture = scene.render(&camera, size, TraceQuality::Still);
         let view = camera.view(size.width as f32 / size.height.max(1) as f32);
         let is_arm = |t: &[u32; 3]| {

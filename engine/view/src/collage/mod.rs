@@ -1,6 +1,5 @@
 //! A collage: photographs of garments laid on the picture of a body, from the front, the side and behind.
 //!
-//! Reads: a body, garments' photographs with their arm layers. Writes: a picture a side.
 //! Budget: not in the frame; half a second a side of 800 rows, nearly all of it the body's picture.
 //! Thread: the caller's, which lends every core for the body's picture.
 //!

@@ -1,13 +1,13 @@
 //! The figure that is drawn of a body: a shop mannequin's head in the place of the drawn one, or the shopper's own; the tone of the
 //! skin, the hair.
 //!
-//! Reads: a body at rest, and its skin as it was posed. Writes: what is drawn: the body's vertices in their order, then the hair's.
-//! Budget: 30 ms at load; 50 us a picture, nothing allocated. Thread: that which dresses, then the renderer's.
+//! Budget: 30 ms at load; 50 us a picture, nothing allocated.
+//! Thread: that which dresses, then the renderer's.
 //!
 //! It is a matter of pictures alone: measures, weights, colliders and cloth know the body as it is, so that a head costs no bit
 //! of the physics. Below the neck, on the crown and on bodies by others no vertex is moved.
 
-// Rooms in the order of the data.
+// Modules in the order of the data.
 mod egg;
 mod fairing;
 mod head_space;

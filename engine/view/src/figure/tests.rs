@@ -1,4 +1,4 @@
-//! Laws of heads and hair.
+//! Tests of heads and hair.
 
 use glam::{Quat, Vec3};
 use toile_base::body::{Body, Measures, Region, Sex};

@@ -5,7 +5,7 @@ use toile_base::frame::{DepthFrame, Joints};
 use toile_base::limits::MAX_SIDE;
 use toile_base::mesh::vertex_normals;
 use toile_engine::body::JointFrames;
-use toile_engine::frame::Snapshot;
+use toile_engine::world::Snapshot;
 use toile_sensors::colour_camera::ColourCamera;
 use toile_sensors::limits::MAX_COLOUR_PIXELS;
 use toile_sensors::person_mask::PersonMask;

@@ -1,14 +1,12 @@
 //! The shopper's own picture with the garment drawn on it: a mirror of a camera's picture, by the processor alone.
 //!
-//! Reads: a picture with its camera, the joints, depth or odds of a person that belong to it, the newest snapshot. Writes: an sRGB picture,
-//! mirrored; why it has no garment, where it has none.
 //! Budget: 15 ms a picture of 608 x 1080 on one core; nothing is allocated once the first of a size was drawn.
 //! Thread: render.
 //!
 //! The garment is drawn at the picture's own moment: `repose` brings the newest snapshot's cloth to the joints that were seen in that
 //! very picture, so that nothing has to be predicted where the two have to agree.
 
-// Rooms in the order of the data.
+// Modules in the order of the data.
 mod canvas;
 mod framing;
 mod model;

@@ -7,7 +7,7 @@ use toile_base::frame::{DepthFrame, Intrinsics, Joints};
 use toile_base::skeleton::{BONES, JOINTS, Joint};
 use toile_engine::body::{JointFrames, palette};
 use toile_engine::cloth::Settings;
-use toile_engine::frame::{Frame, Snapshot};
+use toile_engine::world::{Snapshot, World};
 use toile_sensors::colour_camera::ColourCamera;
 use toile_sensors::lens::BrownConrady;
 use toile_sensors::person_mask::PersonMask;
@@ -31,19 +31,19 @@ const SIZE: Size = Size::new(320, 240);
 fn scene() -> DressedPicture {
     let body = toile_assets::body::build(SHOPPER.0, &SHOPPER.1).unwrap();
     let dress = wardrobe::style("sun-dress").unwrap().dress("38", &body).unwrap();
-    let (mut frame, mut reader) =
-        Frame::new(body.clone(), &toile_assets::rig::fit(&body), vec![dress], Settings::default()).unwrap();
+    let (mut world, mut reader) =
+        World::new(body.clone(), &toile_assets::rig::fit(&body), vec![dress], Settings::default()).unwrap();
     let pose = shopper(&body.skeleton, 0.5);
     let first = Joints::seen(0, JointFrames::new(&body.skeleton, &pose).position);
-    frame.dress(&first);
-    (0..30).for_each(|_| frame.step(&first));
+    world.dress(&first);
+    (0..30).for_each(|_| world.step(&first));
     let snapshot = reader.latest().clone();
     let joints = Joints::seen(1, JointFrames::new(&body.skeleton, &snapshot.pose).position);
     let intrinsics = Intrinsics { width: 320, height: 240, fx: 280.0, fy: 280.0, cx: 159.5, cy: 119.5 };
     let rotation = Mat3::from_diagonal(Vec3::new(1.0, -1.0, -1.0));
     let place = Affine3A::from_mat3_translation(rotation, Vec3::new(0.0, 0.9, 3.0));
     let picture = ColourImage { width: 320, height: 240, rgb: [150, 140, 130].repeat(320 * 240) };
-    let model = OwnPictureModel::of(frame.body(), frame.garments());
+    let model = OwnPictureModel::of(world.body(), world.garments());
     DressedPicture { model, snapshot, joints, camera: ColourCamera::pinhole(intrinsics, place), picture }
 }
 

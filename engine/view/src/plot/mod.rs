@@ -1,8 +1,4 @@
 //! Plots: a chart is described once, laid out as marks, and drawn as SVG text or as pixels; and the page that shows it.
-//!
-//! Reads: series of points, or a grid of cells. Writes: a [`Drawing`], an SVG, an image, a page of HTML.
-//! Budget: milliseconds a chart; never inside the frame.
-//! Thread: the caller's.
 
 pub mod axis;
 pub mod chart;

@@ -1,7 +1,7 @@
 //! The rasteriser: pictures by a GPU, or by a driver that draws on the processor, on a display or off it.
 //!
-//! Reads: positions and normals of each surface, here or on the device, lines, the camera's picture. Writes: a part of any target, sRGB.
-//! Budget: a picture within a display's frame (16 ms) on hardware; 540 x 960 within 100 ms by the processor, at `RenderQuality::LOW`.
+//! Budget: a picture within a display's frame (16 ms) on hardware; 540 x 960 within 100 ms by the processor, at
+//! `RenderQuality::LOW`.
 //! Thread: render; it may wait for the display, which the physics thread never does.
 
 mod display_state;

@@ -8,7 +8,7 @@ use super::Gpu;
 use super::renderer::{Backdrop, Renderer, Viewport};
 use super::textures;
 use crate::image::{Image, Size};
-use crate::scene::Camera;
+use crate::scene::OrbitCamera;
 
 /// Rows of a buffer that a texture is copied into begin at multiples of this (bytes).
 const ROW: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT;
@@ -82,7 +82,7 @@ impl Offscreen {
         &self,
         gpu: &Gpu,
         renderer: &mut Renderer,
-        camera: &Camera,
+        camera: &OrbitCamera,
         backdrop: Backdrop,
     ) -> Result<Image, OffscreenError> {
         self.draw(gpu, renderer, Viewport::whole(self.size), camera, backdrop);
@@ -90,7 +90,7 @@ impl Offscreen {
     }
 
     /// Draws one view into a part of the picture and leaves the rest as it is.
-    pub fn draw(&self, gpu: &Gpu, renderer: &mut Renderer, part: Viewport, camera: &Camera, backdrop: Backdrop) {
+    pub fn draw(&self, gpu: &Gpu, renderer: &mut Renderer, part: Viewport, camera: &OrbitCamera, backdrop: Backdrop) {
         let view = self.target.create_view(&wgpu::TextureViewDescriptor::default());
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         renderer.draw(&mut encoder, &view, part, camera, backdrop);

@@ -17,7 +17,7 @@ use super::textures::{self, BackdropTexture, IntermediateTarget};
 use super::view_uniforms::{BLOCK, BackdropKind, ViewUniforms};
 use super::weave_textures::WeaveTextures;
 use crate::image::Size;
-use crate::scene::{Bounds, Camera};
+use crate::scene::{Bounds, OrbitCamera};
 
 /// Most pictures drawn into one submission: side by side, and a few small ones.
 pub const MOST_VIEWS: usize = 8;
@@ -271,7 +271,7 @@ impl Renderer {
         encoder: &mut CommandEncoder,
         target: &TextureView,
         viewport: Viewport,
-        camera: &Camera,
+        camera: &OrbitCamera,
         backdrop: Backdrop,
     ) {
         let whole = Size::new(target.texture().width(), target.texture().height());
@@ -348,7 +348,7 @@ impl Renderer {
         }
     }
 
-    fn uniforms(&self, size: Size, camera: &Camera, backdrop: Backdrop) -> ViewUniforms {
+    fn uniforms(&self, size: Size, camera: &OrbitCamera, backdrop: Backdrop) -> ViewUniforms {
         let shown = self.surfaces.iter().filter(|s| s.visible && s.count > 0);
         let subject = shown.fold(Bounds::EMPTY, |b, s| b.union(s.bounds));
         let behind = match backdrop {

@@ -11,7 +11,7 @@ use crate::image::Size;
 use crate::lighting::{CURVE, DEPTH, Lighting, PAINT, POOL};
 use crate::ray_tracer::LEAST_FACING;
 use crate::sampling::disc;
-use crate::scene::{Bounds, Camera, CameraFrame};
+use crate::scene::{Bounds, CameraFrame, OrbitCamera};
 
 /// Numbers of the uniform block before the beams.
 const HEAD: usize = 100;
@@ -45,7 +45,7 @@ pub enum BackdropKind {
 #[derive(Debug, Clone, Copy)]
 pub struct ViewUniforms {
     /// Camera of the view.
-    pub camera: Camera,
+    pub camera: OrbitCamera,
     /// The part of the target that is drawn on (pixels).
     pub size: Size,
     /// The box around all that is drawn.
@@ -160,7 +160,7 @@ impl ShadowVolume {
 }
 
 /// World to clip space as the drivers have it: x and y -1..1, y up, depth 0..1.
-fn clip_from_world(view: &CameraFrame, camera: &Camera) -> Mat4 {
+fn clip_from_world(view: &CameraFrame, camera: &OrbitCamera) -> Mat4 {
     let eye = Mat4::from_cols(
         Vec3::new(view.right.x, view.up.x, -view.forward.x).extend(0.0),
         Vec3::new(view.right.y, view.up.y, -view.forward.y).extend(0.0),
@@ -202,7 +202,7 @@ mod tests {
     fn uniforms() -> ViewUniforms {
         let subject = Bounds { min: Vec3::new(-0.4, 0.0, -0.2), max: Vec3::new(0.4, 1.7, 0.3) };
         let size = Size::new(300, 500);
-        let camera = Camera::framing(&subject, 0.4, 0.6);
+        let camera = OrbitCamera::framing(&subject, 0.4, 0.6);
         ViewUniforms { camera, size, subject, stands: subject, behind: BackdropKind::Curved }
     }
 

@@ -8,7 +8,7 @@ use toile_base::mesh::vertex_normals;
 use toile_view::hidden_skin::CoveringCloth;
 use toile_view::image::linear;
 use toile_view::raster::{self, Model, RenderSurface, Renderer};
-use toile_view::scene::{Bounds, Colours, MANNEQUIN, Material, Surface};
+use toile_view::scene::{Bounds, Colours, MANNEQUIN, Material, PictureSurface};
 
 /// Body and garment as they are drawn: the skin tucked beneath the cloth.
 pub struct Dressed {
@@ -57,12 +57,12 @@ impl Dressed {
     }
 
     /// The surfaces as the ray tracer takes them.
-    pub fn surfaces(&self, map: bool) -> [Surface<'_>; 2] {
+    pub fn surfaces(&self, map: bool) -> [PictureSurface<'_>; 2] {
         let (colours, material) = match map {
             true => (Colours::Tightness(&self.fit), Material::Diffuse),
             false => (Colours::One(self.colour), Material::Cloth),
         };
-        let skin = Surface {
+        let skin = PictureSurface {
             positions: &self.body,
             normals: &self.body_normals,
             triangles: &self.body_triangles,
@@ -70,7 +70,7 @@ impl Dressed {
             material: Material::Skin,
             look: None,
         };
-        let cloth = Surface {
+        let cloth = PictureSurface {
             positions: &self.garment.start,
             normals: &self.cloth_normals,
             triangles: &self.garment.triangles,

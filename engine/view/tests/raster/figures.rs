@@ -4,7 +4,7 @@ use glam::Vec3;
 use toile_view::figure::{Appearance, Figure, Hair, SkinTone};
 use toile_view::image::Image;
 use toile_view::raster::{Model, Offscreen, Renderer};
-use toile_view::scene::{Bounds, Camera, Colours, Material, Scene, Surface};
+use toile_view::scene::{Bounds, Colours, Material, OrbitCamera, PictureScene, PictureSurface};
 use toile_view::trace;
 
 use super::dressed::wearer;
@@ -14,7 +14,7 @@ use super::{FINE, SIZE, gpu, pixels, shoot};
 fn both(appearance: Appearance) -> Option<[Image; 2]> {
     let gpu = gpu()?;
     let figure = Figure::of(&wearer(), appearance);
-    let skin = Surface {
+    let skin = PictureSurface {
         positions: &figure.rest,
         normals: &figure.normals,
         triangles: &figure.triangles,
@@ -23,8 +23,8 @@ fn both(appearance: Appearance) -> Option<[Image; 2]> {
         look: Some(figure.look.shown()),
     };
     let target = Vec3::Y * (Bounds::of(&figure.rest).max.y - 0.16);
-    let camera = Camera { target, yaw: 0.7, height: 0.05, distance: 2.0, fov_y: 0.26 };
-    let scene = Scene { surfaces: &[skin], floor: true };
+    let camera = OrbitCamera { target, yaw: 0.7, height: 0.05, distance: 2.0, fov_y: 0.26 };
+    let scene = PictureScene { surfaces: &[skin], floor: true };
     let theirs = trace::render(&scene, &camera, SIZE, trace::TraceQuality::Motion);
     let mut renderer = Renderer::new(gpu, Offscreen::FORMAT, FINE);
     renderer.set_model(&Model::of_outfit(&figure, &[])).expect("the model is whole");

@@ -7,7 +7,7 @@ use toile_view::image::{Image, Size};
 use toile_view::raster::{
     AdapterChoice, Backdrop, Gpu, Line, Model, ModelError, Offscreen, OffscreenError, RenderQuality, Renderer, Viewport,
 };
-use toile_view::scene::{Bounds, Camera, Colours, Material, Scene};
+use toile_view::scene::{Bounds, Colours, Material, OrbitCamera, PictureScene};
 use toile_view::{fit_map, trace};
 
 mod dressed;
@@ -42,8 +42,8 @@ fn scene() -> &'static Dressed {
     SCENE.get_or_init(|| Dressed::new("sun-dress", "38"))
 }
 
-fn camera(yaw: f32) -> Camera {
-    Camera::framing(&scene().bounds(), yaw, SIZE.width as f32 / SIZE.height as f32)
+fn camera(yaw: f32) -> OrbitCamera {
+    OrbitCamera::framing(&scene().bounds(), yaw, SIZE.width as f32 / SIZE.height as f32)
 }
 
 fn renderer(gpu: &Gpu, quality: RenderQuality, map: bool) -> Renderer {
@@ -52,14 +52,14 @@ fn renderer(gpu: &Gpu, quality: RenderQuality, map: bool) -> Renderer {
     renderer
 }
 
-fn shoot(gpu: &Gpu, renderer: &mut Renderer, camera: &Camera) -> Image {
+fn shoot(gpu: &Gpu, renderer: &mut Renderer, camera: &OrbitCamera) -> Image {
     let offscreen = Offscreen::new(gpu, SIZE).unwrap();
     offscreen.shoot(gpu, renderer, camera, Backdrop::Curved).unwrap()
 }
 
-fn traced(camera: &Camera, map: bool) -> Image {
+fn traced(camera: &OrbitCamera, map: bool) -> Image {
     let surfaces = scene().surfaces(map);
-    trace::render(&Scene { surfaces: &surfaces, floor: true }, camera, SIZE, trace::TraceQuality::Motion)
+    trace::render(&PictureScene { surfaces: &surfaces, floor: true }, camera, SIZE, trace::TraceQuality::Motion)
 }
 
 fn pixels(image: &Image) -> Vec<Vec3> {
@@ -113,7 +113,7 @@ fn the_whole_subjects_silhouette_agrees() {
     let (camera, size) = (camera(0.4), Size::new(2 * SIZE.width, 2 * SIZE.height));
     let offscreen = Offscreen::new(gpu, size).unwrap();
     let ours = dress(&offscreen.shoot(gpu, &mut renderer, &camera, Backdrop::Curved).unwrap());
-    let scene = Scene { surfaces: &surfaces, floor: true };
+    let scene = PictureScene { surfaces: &surfaces, floor: true };
     let theirs = dress(&trace::render(&scene, &camera, size, trace::TraceQuality::Motion));
     let count = |f: fn(bool, bool) -> bool| ours.iter().zip(&theirs).filter(|(a, b)| f(**a, **b)).count() as f32;
     let (both, any) = (count(|a, b| a && b), count(|a, b| a || b));

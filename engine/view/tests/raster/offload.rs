@@ -4,7 +4,6 @@ use std::sync::{Arc, OnceLock};
 
 use glam::{Affine3A, Vec3, Vec3A};
 use toile_base::mesh::vertex_normals;
-use toile_base::rig::Rig;
 use toile_base::skeleton::BONES;
 use toile_engine::cloth::{Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere};
@@ -15,7 +14,7 @@ use toile_gpu::skin::Skinning;
 use toile_view::hidden_skin::CoveringCloth;
 use toile_view::image::Image;
 use toile_view::raster::{Backdrop, Gpu, ModelError, Renderer};
-use toile_view::scene::{Bounds, Camera};
+use toile_view::scene::{Bounds, OrbitCamera};
 
 use super::dressed::{Dressed, wearer};
 use super::{AdapterChoice, FINE, Offscreen, RenderQuality, SIZE, gpu, pixels};
@@ -42,7 +41,7 @@ fn renderer(gpu: &Gpu, quality: RenderQuality) -> Renderer {
 }
 
 fn shoot(gpu: &Gpu, renderer: &mut Renderer) -> Image {
-    let camera = Camera::framing(&Bounds::of(&shirt().garment.start), 0.3, SIZE.width as f32 / SIZE.height as f32);
+    let camera = OrbitCamera::framing(&Bounds::of(&shirt().garment.start), 0.3, SIZE.width as f32 / SIZE.height as f32);
     let offscreen = Offscreen::new(gpu, SIZE).expect("it is small");
     offscreen.shoot(gpu, renderer, &camera, Backdrop::Curved).expect("it is drawn")
 }

@@ -10,7 +10,7 @@ use toile_base::mesh::vertex_normals;
 use toile_view::cloth_look::GarmentLook;
 use toile_view::image::{Image, linear};
 use toile_view::raster::{Model, RenderSurface, Renderer};
-use toile_view::scene::{Bounds, Camera, Colours, Material, Scene, Surface};
+use toile_view::scene::{Bounds, Colours, Material, OrbitCamera, PictureScene, PictureSurface};
 use toile_view::trace;
 
 use super::{FINE, SIZE, gpu, pixels, shoot};
@@ -50,7 +50,7 @@ fn both_with(fabric: &Fabric, trims: Vec<ClothTrim>) -> Option<[Image; 2]> {
     let mut normals = vec![Vec3::ZERO; garment.particles()];
     vertex_normals(&garment.start, &garment.triangles, &mut normals);
     let look = GarmentLook::of(&garment);
-    let surface = Surface {
+    let surface = PictureSurface {
         positions: &garment.start,
         normals: &normals,
         triangles: &garment.triangles,
@@ -58,8 +58,8 @@ fn both_with(fabric: &Fabric, trims: Vec<ClothTrim>) -> Option<[Image; 2]> {
         material: Material::Cloth,
         look: Some(look.shown()),
     };
-    let camera = Camera::framing(&Bounds::of(&garment.start), 0.3, SIZE.width as f32 / SIZE.height as f32);
-    let scene = Scene { surfaces: &[surface], floor: false };
+    let camera = OrbitCamera::framing(&Bounds::of(&garment.start), 0.3, SIZE.width as f32 / SIZE.height as f32);
+    let scene = PictureScene { surfaces: &[surface], floor: false };
     let theirs = trace::render(&scene, &camera, SIZE, trace::TraceQuality::Still);
     let mut renderer = Renderer::new(gpu, toile_view::raster::Offscreen::FORMAT, FINE);
     let surfaces = vec![RenderSurface::of_garment(&garment)];

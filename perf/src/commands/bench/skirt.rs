@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 use clap::value_parser;
-use toile_assets::scene::skirt::{Motion, Stretch};
+use toile_assets::scene::skirt::{SkirtMotion, Stretch};
 use toile_assets::wardrobe;
 use toile_cli::arguments::{count, one_of, quality};
 use toile_cli::document::Document;
@@ -50,10 +50,10 @@ pub struct SkirtArgs {
     #[arg(
         long,
         value_name = "M",
-        value_parser = one_of(Motion::ALL, Motion::name),
+        value_parser = one_of(SkirtMotion::ALL, SkirtMotion::name),
         default_value = "walk"
     )]
-    motion: Motion,
+    motion: SkirtMotion,
     /// How the skirt is meshed
     #[arg(long, value_name = "M", value_parser = one_of(SkirtMesh::ALL, SkirtMesh::name), default_value = "grid")]
     mesh: SkirtMesh,
@@ -339,7 +339,7 @@ mod tests {
         );
         let expected = SkirtOptions {
             verts: 1_024,
-            motion: Motion::Fast,
+            motion: SkirtMotion::Fast,
             mesh: SkirtMesh::Irregular,
             stretch: Stretch::Physical,
             wind: true,

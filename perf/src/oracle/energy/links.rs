@@ -6,16 +6,16 @@
 //! changes, T = k (C + o) is C / compliance, or for an inextensible link C = 0, whatever rho is; so rho can be small
 //! enough for the Hessian to stay well conditioned.
 //!
-//! A link of several slopes, or one that rubs ([`law`]), has T(C) in place of C / compliance, and o and k of the line that
+//! A link of several slopes, or one that rubs ([`link_curve`]), has T(C) in place of C / compliance, and o and k of the line that
 //! it is on.
 //!
 //! Gradient: T n. Hessian of the difference b - a: k n n^T + (T / l) (I - n n^T). Its eigenvalues are k > 0 along the
 //! link and, twice, T / l across it, negative where the link is compressed: the projection leaves those out.
 
 use glam::{DMat3, DVec3};
-use toile_base::fabric::link_law::LinkLaw;
+use toile_base::fabric::link_curve::LinkCurve;
 
-use super::super::law;
+use super::super::link_curve;
 use super::super::problem::Link;
 use super::super::solids::outer;
 use super::super::system::System;
@@ -25,7 +25,7 @@ use super::super::system::System;
 pub struct Springs<'a> {
     links: &'a [Link],
     /// Laws of links with more than one slope `[links]`; empty where none has.
-    laws: Vec<LinkLaw>,
+    link_curves: Vec<LinkCurve>,
     /// 1 / rho of each (m/N), 0 where the link is soft enough.
     give: Vec<f64>,
     /// Tension of the round before (N).
@@ -46,10 +46,12 @@ struct Pull {
 
 impl<'a> Springs<'a> {
     /// Links with those stiffer than `rho` (N/m) solved by multipliers, which start at `multiplier`.
-    pub fn new(links: &'a [Link], laws: Vec<LinkLaw>, rho: f64, multiplier: Vec<f64>) -> Self {
-        let softest = |(e, l): (usize, &Link)| laws.get(e).map_or(l.compliance, |law| l.rest / law::steepest(law));
+    pub fn new(links: &'a [Link], link_curves: Vec<LinkCurve>, rho: f64, multiplier: Vec<f64>) -> Self {
+        let softest = |(e, l): (usize, &Link)| {
+            link_curves.get(e).map_or(l.compliance, |link_curve| l.rest / link_curve::steepest(link_curve))
+        };
         let give = links.iter().enumerate().map(|l| if softest(l) * rho < 1.0 { rho.recip() } else { 0.0 }).collect();
-        Self { links, laws, give, multiplier }
+        Self { links, link_curves, give, multiplier }
     }
 
     fn pull(&self, e: usize, x: &[DVec3]) -> Pull {
@@ -58,8 +60,8 @@ impl<'a> Springs<'a> {
         let length = gap.length().max(1e-9 * link.rest);
         let n = gap / length;
         let whole = length - link.rest + self.multiplier[e] * self.give[e];
-        if let Some(law) = self.laws.get(e) {
-            let found = law::answer(law, whole / link.rest, self.give[e] / link.rest);
+        if let Some(link_curve) = self.link_curves.get(e) {
+            let found = link_curve::answer(link_curve, whole / link.rest, self.give[e] / link.rest);
             let (k, longer) = (found.slope / link.rest, found.strain * link.rest);
             return Pull { n, length, k, tension: found.force, longer };
         }
@@ -78,8 +80,10 @@ impl<'a> Springs<'a> {
         let one = |e: usize| {
             let Pull { k, tension, longer, .. } = self.pull(e, x);
             let rest = self.links[e].rest;
-            match self.laws.get(e) {
-                Some(law) => rest * law::energy(law, longer / rest) + 0.5 * self.give[e] * tension * tension,
+            match self.link_curves.get(e) {
+                Some(link_curve) => {
+                    rest * link_curve::energy(link_curve, longer / rest) + 0.5 * self.give[e] * tension * tension
+                }
                 None => 0.5 * tension * tension / k,
             }
         };

@@ -1,7 +1,7 @@
 //! Gradients against differences of values, Hessians against differences of gradients.
 
 use glam::DVec3;
-use toile_base::fabric::link_law::LinkLaw;
+use toile_base::fabric::link_curve::LinkCurve;
 
 use super::super::energy::TotalEnergy;
 use super::super::energy::contact::Contact;
@@ -32,7 +32,7 @@ fn landscape<'a>(problem: &'a Problem, start: &'a [DVec3], random: &mut Random, 
     TotalEnergy {
         problem,
         load,
-        springs: Springs::new(&problem.links, problem.laws.clone(), 200.0, multiplier),
+        springs: Springs::new(&problem.links, problem.link_curves.clone(), 200.0, multiplier),
         contact,
         friction: Some(friction),
     }
@@ -41,11 +41,11 @@ fn landscape<'a>(problem: &'a Problem, start: &'a [DVec3], random: &mut Random, 
 /// The square with links that have knees and rub.
 fn lawful() -> Problem {
     let mut problem = square(6);
-    let law = |l: &Link| {
+    let link_curve = |l: &Link| {
         let slope = if l.compliance > 0.0 { l.rest / l.compliance } else { 4e3 };
-        LinkLaw { knees: [-0.02, 0.015], behind: [0.05, 6.0], half_width: 0.01 * slope, ..LinkLaw::plain(slope) }
+        LinkCurve { knees: [-0.02, 0.015], behind: [0.05, 6.0], half_width: 0.01 * slope, ..LinkCurve::plain(slope) }
     };
-    problem.laws = problem.links.iter().map(law).collect();
+    problem.link_curves = problem.links.iter().map(link_curve).collect();
     problem
 }
 

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::super::{Bend, Link, Oracle, OracleError, Problem, Solids, State, Step, measure};
+use super::super::{Bend, Link, Oracle, OracleError, OracleStep, Problem, Solids, State, measure};
 use super::{GRAVITY, chain, furniture, square};
 
 const DT: f64 = 1.0 / 120.0;
@@ -12,7 +12,7 @@ fn free_fall_is_exact() {
     let problem =
         Problem { mass: vec![0.001, 2.0], start: vec![DVec3::ZERO, DVec3::X], gravity: GRAVITY, ..Problem::default() };
     let start = State { x: problem.start.clone(), v: vec![DVec3::Z; 2] };
-    let solved = Oracle::new(problem).unwrap().trajectory(&start, 60, |_| Step::of(DT)).unwrap();
+    let solved = Oracle::new(problem).unwrap().trajectory(&start, 60, |_| OracleStep::of(DT)).unwrap();
     for (k, s) in solved.iter().enumerate() {
         let n = (k + 1) as f64;
         let fallen = DVec3::new(0.0, -9.81 * DT * DT * n * (n + 1.0) / 2.0, n * DT);
@@ -24,7 +24,7 @@ fn free_fall_is_exact() {
 fn damping_keeps_its_share_of_the_velocity_in_each_step() {
     let problem = Problem { mass: vec![0.1], start: vec![DVec3::ZERO], ..Problem::default() };
     let start = State { x: vec![DVec3::ZERO], v: vec![DVec3::X] };
-    let step = Step { kept: 0.9, ..Step::of(DT) };
+    let step = OracleStep { kept: 0.9, ..OracleStep::of(DT) };
     let solved = Oracle::new(problem).unwrap().trajectory(&start, 3, |_| step.clone()).unwrap();
     assert!((solved[2].state.v[0].x - 0.729).abs() < 1e-12);
 }
@@ -36,7 +36,7 @@ fn a_spring_takes_the_closed_form_step() {
     let problem = chain(1, rest, m, 1.0 / k, -DVec3::Y);
     let mut start = State::at_rest(&problem.start);
     start.v[1].y = -0.4;
-    let solved = Oracle::new(problem).unwrap().step(&start, &Step::of(DT)).unwrap();
+    let solved = Oracle::new(problem).unwrap().step(&start, &OracleStep::of(DT)).unwrap();
     let foreseen = rest + DT * (0.4 + 9.81 * DT);
     let length = (m / (DT * DT) * foreseen + k * rest) / (m / (DT * DT) + k);
     assert!((solved.state.x[1].y + length).abs() < 1e-13);
@@ -91,7 +91,7 @@ fn a_light_cantilever_sinks_as_its_discrete_beam() {
 fn long_chains_take_few_rounds() {
     let problem = chain(300, 0.01, 1e-4, 0.0, DVec3::X);
     let start = State::at_rest(&problem.start);
-    let solved = Oracle::new(problem).unwrap().trajectory(&start, 4, |_| Step::of(1e-3)).unwrap();
+    let solved = Oracle::new(problem).unwrap().trajectory(&start, 4, |_| OracleStep::of(1e-3)).unwrap();
     let rounds = solved.iter().map(|s| s.report.rounds).max();
     assert!(rounds < Some(10), "{rounds:?}");
     assert!(solved.iter().all(|s| s.report.violation.strain < 1e-8 && s.report.residual_n < 1e-9));
@@ -117,7 +117,7 @@ fn cloth_at_rest_stays_and_has_no_residual() {
     let worst = oracle.problem().links.iter().zip(measure::strains(oracle.problem(), &hung.state.x));
     let worst = worst.filter(|(l, _)| l.compliance == 0.0).map(|(_, s)| s.abs()).fold(0.0, f64::max);
     assert!(worst < 1e-7, "{worst}");
-    let step = Step { solids: [furniture(), furniture()], ..Step::of(DT) };
+    let step = OracleStep { solids: [furniture(), furniture()], ..OracleStep::of(DT) };
     let later = oracle.trajectory(&hung.state, 3, |_| step.clone()).unwrap();
     let moved = measure::apart(&later[2].state.x, &hung.state.x);
     assert!(moved.max_m < 1e-8, "{moved:?}");
@@ -142,7 +142,7 @@ fn renumbered(problem: &Problem) -> (Problem, Vec<usize>) {
 fn results_do_not_depend_on_the_numbering() {
     let problem = square(9);
     let (other, new) = renumbered(&problem);
-    let step = Step { solids: [furniture(), furniture()], ..Step::of(1.0 / 30.0) };
+    let step = OracleStep { solids: [furniture(), furniture()], ..OracleStep::of(1.0 / 30.0) };
     let run = |problem: Problem| {
         let start = State::at_rest(&problem.start);
         Oracle::new(problem).unwrap().trajectory(&start, 8, |_| step.clone()).unwrap().pop().unwrap()
@@ -158,7 +158,7 @@ fn pins_go_where_they_are_told() {
     let problem = square(5);
     let start = State::at_rest(&problem.start);
     let pins = vec![DVec3::new(0.0, 0.01, 0.0), DVec3::new(0.078, 0.012, 0.0)];
-    let step = Step { pins: pins.clone(), ..Step::of(DT) };
+    let step = OracleStep { pins: pins.clone(), ..OracleStep::of(DT) };
     let solved = Oracle::new(problem).unwrap().step(&start, &step).unwrap();
     assert_eq!([solved.state.x[0], solved.state.x[4]], [pins[0], pins[1]]);
 }
@@ -173,7 +173,7 @@ fn momentum_is_kept() {
     start.v.iter_mut().enumerate().for_each(|(i, v)| *v = DVec3::new((i % 5) as f64, (i % 3) as f64, -1.0) * 0.2);
     let sum = |state: &State| problem.mass.iter().zip(&state.v).map(|(m, v)| *v * *m).sum::<DVec3>();
     let before = sum(&start);
-    let solved = Oracle::new(problem.clone()).unwrap().trajectory(&start, 10, |_| Step::of(DT)).unwrap();
+    let solved = Oracle::new(problem.clone()).unwrap().trajectory(&start, 10, |_| OracleStep::of(DT)).unwrap();
     assert!((sum(&solved[9].state) - before).length() < 1e-9 * before.length().max(1.0));
 }
 
@@ -188,11 +188,11 @@ fn what_cannot_be_solved_is_said() {
     assert!(error.to_string().contains("2 Newton iterations"), "{error}");
     let mut state = State::at_rest(&start);
     state.x[7].y = f64::NAN;
-    let error = oracle.step(&state, &Step::of(DT)).unwrap_err();
+    let error = oracle.step(&state, &OracleStep::of(DT)).unwrap_err();
     assert_eq!(error, OracleError::Unusable { what: "particle", at: 7 });
-    let error = oracle.step(&State::at_rest(&start[1..]), &Step::of(DT)).unwrap_err();
+    let error = oracle.step(&State::at_rest(&start[1..]), &OracleStep::of(DT)).unwrap_err();
     assert!(matches!(error, OracleError::Length { got: 35, expected: 36, .. }), "{error}");
-    assert!(oracle.step(&State::at_rest(&start), &Step::of(0.0)).is_err());
+    assert!(oracle.step(&State::at_rest(&start), &OracleStep::of(0.0)).is_err());
     let broken = Problem { links: vec![Link { ends: [0, 0], rest: 1.0, compliance: 0.0 }], ..problem };
     assert!(matches!(Oracle::new(broken), Err(OracleError::Unusable { what: "link", at: 0 })));
 }

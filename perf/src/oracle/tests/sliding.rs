@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::super::{Ball, Oracle, Plane, Problem, Solids, State, Step};
+use super::super::{Ball, Oracle, OracleStep, Plane, Problem, Solids, State};
 use super::GRAVITY;
 
 const DT: f64 = 1.0 / 120.0;
@@ -26,7 +26,7 @@ fn on_slope(degrees: f64, friction: f64) -> (Problem, Solids, DVec3) {
 
 fn run(problem: Problem, solids: &Solids, v: DVec3, steps: usize) -> Vec<State> {
     let start = State { x: problem.start.clone(), v: vec![v] };
-    let step = Step { solids: [solids.clone(), solids.clone()], ..Step::of(DT) };
+    let step = OracleStep { solids: [solids.clone(), solids.clone()], ..OracleStep::of(DT) };
     let solved = Oracle::new(problem).unwrap().trajectory(&start, steps, |_| step.clone()).unwrap();
     solved.into_iter().map(|s| s.state).collect()
 }
@@ -103,7 +103,10 @@ fn friction_takes_along() {
     let start = State::at_rest(&problem.start);
     let pace = 0.1 * DT;
     let mut oracle = Oracle::new(problem).unwrap();
-    let step = |k: usize| Step { solids: [capsule(k as f64 * pace), capsule((k + 1) as f64 * pace)], ..Step::of(DT) };
+    let step = |k: usize| OracleStep {
+        solids: [capsule(k as f64 * pace), capsule((k + 1) as f64 * pace)],
+        ..OracleStep::of(DT)
+    };
     // mu g = 4.9 m/s2 brings it to 0.1 m/s within three steps.
     let solved = oracle.trajectory(&start, 12, step).unwrap();
     let v = solved[11].state.v[0];

@@ -54,10 +54,10 @@ fn hung(solver: Solver, rows: usize) -> ValidationCase {
         let tip = || (0..specimen.vertices()).filter(|v| shape.worn[*v].y < -1.0 + 1e-4);
         Ok(CaseOutcome::at_rest(&specimen, setup, |seen| -seen.mean(tip()).y - 1.0).settled(settled))
     };
-    let (law, weight) = (KNEE.law(), cloth.density * G);
+    let (link_curve, weight) = (KNEE.link_curve(), cloth.density * G);
     const STEPS: u32 = 10_000;
     let at = |k: u32| (f64::from(k) + 0.5) / f64::from(STEPS);
-    let expected = (0..STEPS).map(|k| law.deformation(weight * at(k))).sum::<f64>() / f64::from(STEPS);
+    let expected = (0..STEPS).map(|k| link_curve.deformation(weight * at(k))).sum::<f64>() / f64::from(STEPS);
     ValidationCase {
         name: "stretch-curve",
         parameter: format!("100 to 1,000 N/m, {}", if solver == Solver::SemiImplicit { "direct" } else { "swept" }),

@@ -1,8 +1,4 @@
 //! The cases, in the order of the table.
-//!
-//! Reads: exact values. Writes: cases that can be run at any level.
-//! Budget: nothing; a case costs when it is run.
-//! Thread: any.
 
 mod bending;
 mod bias;

@@ -6,7 +6,7 @@ use crate::validate::CaseSetup;
 use crate::validate::case::{CaseOutcome, ValidationCase};
 use crate::validate::exact::string;
 use crate::validate::mesh::{CaseFabric, EndSupport, MeshStyle, Strip};
-use crate::validate::specimen::{G, Placement, Specimen, Surroundings};
+use crate::validate::specimen::{G, ParticlePlaces, Specimen, Surroundings};
 
 /// Links along the strings.
 const ROWS: usize = 32;
@@ -97,7 +97,7 @@ fn strip(stretch: f64, shear: f64, what: Hung) -> ValidationCase {
         let mut specimen = Specimen::new(&shape, &cloth, setup, &Surroundings::default())?;
         let settled = specimen.rest(REST_S);
         let tip = || (0..specimen.vertices()).filter(|v| shape.cut[*v].y < -1.0 + 1e-4);
-        let read = |seen: &Placement<'_>| match what {
+        let read = |seen: &ParticlePlaces<'_>| match what {
             Hung::Tip => -seen.mean(tip()).y - 1.0,
             Hung::Top => -seen.force_on_fixed(|_| true).y / (specimen.mass() * G),
         };
@@ -140,7 +140,7 @@ fn catenary(length: f64, shear: f64, what: Slung) -> ValidationCase {
         let mut specimen = Specimen::new(&shape, &cloth, setup, &Surroundings::default())?;
         let settled = specimen.rest(REST_S);
         let weight = cloth.density * G * strip.width * length;
-        let read = |seen: &Placement<'_>| match what {
+        let read = |seen: &ParticlePlaces<'_>| match what {
             Slung::Sag => -seen.lowest(),
             Slung::Tension => seen.force_on_fixed(|p| p.x < 0.0).x / weight,
         };

@@ -1,8 +1,4 @@
 //! Exact values that each case is compared with, from its own equation in f64.
-//!
-//! Reads: the case's numbers without dimension. Writes: what theory says, to a millionth or better.
-//! Budget: milliseconds a value.
-//! Thread: any; nothing is kept.
 
 pub mod column;
 pub mod elastica;

@@ -8,7 +8,7 @@ use toile_base::numeric::random::SplitMix64;
 
 use super::error::CameraError;
 use super::live_camera::{Arrival, CameraFrame, CameraInfo, ColourPlace, LiveCamera};
-use crate::source::camera::Camera;
+use crate::source::camera::DepthCamera;
 use toile_base::clock::SECOND_NS;
 use toile_base::frame::{Intrinsics, Joints};
 
@@ -165,7 +165,7 @@ impl SimulatedCamera {
     pub fn new(clock: FaultClock, pose: Affine3A) -> Self {
         let info = CameraInfo {
             device: "simulated camera".to_owned(),
-            camera: Camera::pinhole(SIMULATED),
+            camera: DepthCamera::pinhole(SIMULATED),
             rate_hz: SIMULATED_HZ as f32,
             placed: Some(pose),
             colour: ColourPlace::Unknown,

@@ -37,7 +37,7 @@ toile_base::named! {
 
 /// What one frame is worth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict {
+pub enum FrameVerdict {
     /// Good, and taken at this time on the loop's clock (ns).
     Good(u64),
     /// Cut short, or of another size.
@@ -118,11 +118,11 @@ impl FrameCheck {
     }
 
     /// Judges a frame that arrived at this time on the loop's clock (ns).
-    pub fn judge(&mut self, frame: &CameraFrame, arrived_ns: u64) -> Verdict {
+    pub fn judge(&mut self, frame: &CameraFrame, arrived_ns: u64) -> FrameVerdict {
         self.counts.frames += 1;
         if frame.depth.len() != self.pixels {
             self.counts.half += 1;
-            return Verdict::Half;
+            return FrameVerdict::Half;
         }
         let measured = frame.depth.iter().filter(|d| **d != 0).count();
         let empty = (measured as f32) < SEES * self.pixels as f32;
@@ -130,7 +130,7 @@ impl FrameCheck {
         if !empty && self.last == frame.depth {
             self.counts.repeated += 1;
             self.repeated_ns = Some(arrived_ns);
-            return Verdict::Repeated;
+            return FrameVerdict::Repeated;
         }
         self.last.clone_from(&frame.depth);
         let stamp = self.clock.stamp(frame.device_ns, arrived_ns);
@@ -141,11 +141,11 @@ impl FrameCheck {
             self.covered += 1;
             self.good_ns = self.good_ns.or(Some(arrived_ns));
             self.turn(if self.covered >= COVERED_FRAMES { CameraState::Covered } else { self.state });
-            return Verdict::Empty(stamp);
+            return FrameVerdict::Empty(stamp);
         }
         (self.covered, self.good_ns) = (0, Some(arrived_ns));
         self.turn(CameraState::Seeing);
-        Verdict::Good(stamp)
+        FrameVerdict::Good(stamp)
     }
 
     /// Looks at the clock (ns): a camera that has not given anything good for 150 ms is lost, or frozen where the same frame comes.

@@ -16,7 +16,7 @@ use super::error::CameraError;
 use super::library::{Library, LibraryName, functions};
 use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourPlace, LiveCamera, is_of_moment};
 use crate::source::azure_calibration;
-use crate::source::camera::Camera;
+use crate::source::camera::DepthCamera;
 
 const NAME: &str = "Azure Kinect";
 
@@ -170,7 +170,7 @@ impl K4a {
             ),
             None => (CaptureSource::Device(opened_device(&api, which)?), Some(NARROW), NAME.to_owned()),
         };
-        let camera = Camera::pinhole(toile_base::frame::Intrinsics::KINECT_V1);
+        let camera = DepthCamera::pinhole(toile_base::frame::Intrinsics::KINECT_V1);
         let info = CameraInfo { device: name, camera, rate_hz: 30.0, placed: None, colour: ColourPlace::Unknown };
         let mut k4a = Self { api, source, info, colour: options.colour };
         let size = match size {
@@ -179,7 +179,7 @@ impl K4a {
         };
         let calibration = k4a.calibration()?;
         let camera = azure_calibration::read(&calibration, size).map_err(|problem| refused(&problem))?;
-        k4a.info.camera = Camera { quarter_turns: options.quarter_turns, ..camera };
+        k4a.info.camera = DepthCamera { quarter_turns: options.quarter_turns, ..camera };
         // One whose colour lens is not described shows the mannequin; its depth is as good as ever.
         let colour = azure_calibration::read_colour(&calibration, k4a.colour_resolution());
         k4a.info.colour = colour.map_or(ColourPlace::Unknown, ColourPlace::Beside);

@@ -16,7 +16,7 @@ use super::error::CameraError;
 use super::library::{Library, LibraryName, functions};
 use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourPlace, LiveCamera};
 use crate::colour_camera::ColourCamera;
-use crate::source::camera::Camera;
+use crate::source::camera::DepthCamera;
 use crate::source::fakenect::millimetres;
 use toile_base::clock::SECOND_NS;
 use toile_base::frame::Intrinsics;
@@ -157,7 +157,7 @@ impl Kinect {
             return Err(refused("libfreenect cannot be started"));
         }
         let intrinsics = Intrinsics::KINECT_V1;
-        let camera = Camera { quarter_turns: options.quarter_turns, ..Camera::pinhole(intrinsics) };
+        let camera = DepthCamera { quarter_turns: options.quarter_turns, ..DepthCamera::pinhole(intrinsics) };
         let device = which.map_or_else(|| "Kinect v1".to_owned(), |which| format!("Kinect v1 {which}"));
         let mut kinect = Self {
             api,

@@ -8,7 +8,7 @@ use glam::Affine3A;
 use super::error::CameraError;
 use crate::colour_camera::ColourCamera;
 use crate::limits::MAX_VIEW_PEOPLE;
-use crate::source::camera::Camera;
+use crate::source::camera::DepthCamera;
 use toile_base::frame::{Intrinsics, Joints};
 
 /// Stamps of one moment differ by so much, for clocks count in milliseconds (ns).
@@ -47,7 +47,7 @@ pub struct CameraInfo {
     /// Its name and number, as the library has them.
     pub device: String,
     /// How it sees.
-    pub(in crate::source) camera: Camera,
+    pub(in crate::source) camera: DepthCamera,
     /// Frames a second that it promises (Hz).
     pub rate_hz: f32,
     /// Its pose in our world (m), where that is known already: then no floor is looked for.
@@ -73,7 +73,7 @@ impl CameraInfo {
     pub(super) fn webcam(device: String, [width, height]: [u32; 2], rate_hz: f32) -> Self {
         let focal = WEBCAM_FOCAL * width.max(height) as f32;
         let (cx, cy) = (0.5 * (width as f32 - 1.0), 0.5 * (height as f32 - 1.0));
-        let camera = Camera::pinhole(Intrinsics { width, height, fx: focal, fy: focal, cx, cy });
+        let camera = DepthCamera::pinhole(Intrinsics { width, height, fx: focal, fy: focal, cx, cy });
         Self { device, camera, rate_hz, placed: None, colour: ColourPlace::Unknown }
     }
 

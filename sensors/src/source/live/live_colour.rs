@@ -4,7 +4,7 @@
 use std::time::Duration;
 
 use super::error::CameraError;
-use super::frame_check::{CameraCounts, CameraState, FrameCheck, Verdict};
+use super::frame_check::{CameraCounts, CameraState, FrameCheck, FrameVerdict};
 use super::live_camera::{Arrival, CameraFrame, CameraInfo, ColourImage, LiveCamera};
 use super::live_depth::{CameraOpener, RETRY_NS, SILENT_NS};
 
@@ -124,8 +124,8 @@ impl LiveColour {
         sampled.device_ns = raw.device_ns;
         sample(&raw.colour, &mut sampled.depth);
         match self.check.judge(&self.sampled, now) {
-            Verdict::Good(time_ns) => Some(time_ns),
-            Verdict::Half | Verdict::Repeated | Verdict::Empty(_) => None,
+            FrameVerdict::Good(time_ns) => Some(time_ns),
+            FrameVerdict::Half | FrameVerdict::Repeated | FrameVerdict::Empty(_) => None,
         }
     }
 }

@@ -7,13 +7,13 @@ use std::time::Duration;
 use glam::Affine3A;
 
 use super::error::CameraError;
-use super::frame_check::{CameraCounts, CameraState, FrameCheck, Verdict};
+use super::frame_check::{CameraCounts, CameraState, FrameCheck, FrameVerdict};
 use super::frame_pool::FramePool;
 use super::live_camera::{Arrival, CameraFrame, CameraInfo, ColourImage, LiveCamera};
 use crate::colour_camera::ColourCamera;
-use crate::error::{Fault, Place};
+use crate::error::{FilePlace, ReaderFault};
 use crate::source::depth_converter::DepthConverter;
-use crate::source::placement::{PlacedCamera, Placement};
+use crate::source::placement::{CameraPlacement, PlacedCamera};
 use toile_base::frame::{DepthFrame, Intrinsics, Joints};
 
 /// Longest that a camera is waited for at once (ns): so often its state is looked at.
@@ -48,7 +48,7 @@ pub struct LiveDepth {
     info: CameraInfo,
     check: FrameCheck,
     converter: DepthConverter,
-    placement: Placement,
+    placement: CameraPlacement,
     pose: Option<Affine3A>,
     pool: FramePool,
     raw: CameraFrame,
@@ -74,7 +74,7 @@ impl LiveDepth {
             camera: Some(camera),
             check: FrameCheck::new(info.sensor().pixels(), info.rate_hz),
             pool: FramePool::new(converter.kept(), kept),
-            placement: Placement::default(),
+            placement: CameraPlacement::default(),
             pose: info.placed,
             info,
             converter,
@@ -178,7 +178,7 @@ impl LiveDepth {
     /// Judges, straightens and places the frame that was read.
     fn take(&mut self, now: u64) -> Option<Arc<DepthFrame>> {
         self.people.clear();
-        let Verdict::Good(time_ns) = self.check.judge(&self.raw, now) else { return None };
+        let FrameVerdict::Good(time_ns) = self.check.judge(&self.raw, now) else { return None };
         let (converter, samples) = (&mut self.converter, &self.raw.depth);
         let pose = self.pose;
         let frame = self.pool.fill(|frame| {
@@ -199,7 +199,7 @@ impl LiveDepth {
     /// Finds the camera's pose by its first frames; the frame by which it is found is the first that is handed on.
     fn place(&mut self, mut frame: Arc<DepthFrame>) -> Option<Arc<DepthFrame>> {
         let PlacedCamera { pose, note } = self.placement.push(&frame)?;
-        (self.pose, self.placement) = (Some(pose), Placement::default());
+        (self.pose, self.placement) = (Some(pose), CameraPlacement::default());
         self.notes.push(note);
         // The pool lends it to nobody else while it is here: this copies one image, once.
         Arc::make_mut(&mut frame).camera_to_world = pose;
@@ -208,7 +208,7 @@ impl LiveDepth {
 }
 
 fn converter(info: &CameraInfo, notes: &mut Vec<String>) -> Result<DepthConverter, CameraError> {
-    let fault = info.sensor().fault().map(|fault| Fault::new(Place::Whole, fault, "report this camera"));
+    let fault = info.sensor().fault().map(|fault| ReaderFault::new(FilePlace::Whole, fault, "report this camera"));
     let converter = fault.map_or_else(|| DepthConverter::new(info.camera, notes), Err);
     converter.map_err(|fault| CameraError::Recording(fault.at(&info.device).to_string()))
 }

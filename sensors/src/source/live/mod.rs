@@ -1,7 +1,5 @@
 //! Live cameras: depth, and colour and joints where a camera gives them, frame by frame as they come.
 //!
-//! Reads: a camera through its library, loaded at run time; or a recording, played in time. Writes: `CameraFrame`, and through
-//! [`LiveDepth`] depth images in our world with stamps of the loop's clock.
 //! Budget: 2 ms a 640x480 frame beside what the camera's library takes; nothing is allocated once the first frame was seen.
 //! Thread: the camera thread, which may wait for the camera; nothing else does.
 //!
@@ -49,7 +47,7 @@ use webcam_unsupported as webcam;
 
 pub use device_clock::DeviceClock;
 pub use error::CameraError;
-pub use frame_check::{CameraCounts, CameraState, FrameCheck, Verdict};
+pub use frame_check::{CameraCounts, CameraState, FrameCheck, FrameVerdict};
 pub use frame_pool::{FramePool, POOL_FRAMES, POOL_FRAMES_NAME};
 pub use library::{FOLDERS_VARIABLE, LibraryName, OWN_FOLDER, folders};
 pub use live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourImage, LiveCamera};

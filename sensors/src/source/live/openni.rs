@@ -6,8 +6,8 @@ use std::time::Duration;
 use super::error::CameraError;
 use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourPlace, LiveCamera};
 use super::openni_colour::OpenNiColour;
-use crate::error::Fault;
-use crate::source::camera::Camera;
+use crate::error::ReaderFault;
+use crate::source::camera::DepthCamera;
 use crate::source::openni_library::{LIBRARY, OpenNiLibrary, OpenNiStream};
 
 /// A camera that is open.
@@ -21,7 +21,7 @@ impl OpenNi {
     pub fn open(which: Option<&str>, options: &CameraOptions) -> Result<Self, CameraError> {
         // Whether it is there at all is said in the words of all cameras.
         super::library::Library::load(&LIBRARY, &options.libraries)?;
-        let refused = |fault: Fault| refused(which, &fault);
+        let refused = |fault: ReaderFault| refused(which, &fault);
         let library = OpenNiLibrary::start(&options.libraries).map_err(refused)?;
         let device = match (library.open(which.map(str::as_bytes)), which) {
             (Err(_), None) => {
@@ -37,8 +37,8 @@ impl OpenNi {
             said_by_library: String::new(),
             cure: "set it to millimetres, or use another camera",
         })?;
-        let pinhole = Camera::pinhole(depth.intrinsics(width, height).map_err(refused)?);
-        let camera = Camera { mm_per_unit, quarter_turns: options.quarter_turns, ..pinhole };
+        let pinhole = DepthCamera::pinhole(depth.intrinsics(width, height).map_err(refused)?);
+        let camera = DepthCamera { mm_per_unit, quarter_turns: options.quarter_turns, ..pinhole };
         let colour = if options.colour { device.colour().ok().map(OpenNiColour::new) } else { None };
         if colour.is_some() {
             device.synchronise();
@@ -50,7 +50,7 @@ impl OpenNi {
     }
 }
 
-fn refused(which: Option<&str>, fault: &Fault) -> CameraError {
+fn refused(which: Option<&str>, fault: &ReaderFault) -> CameraError {
     let is_file = which.is_some_and(|which| Path::new(which).exists());
     let what = match which {
         Some(which) if is_file => return CameraError::Recording(format!("{which}: {}; {}", fault.problem, fault.cure)),

@@ -17,7 +17,7 @@ use super::library::{Library, LibraryName, functions};
 use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourPlace, LiveCamera, is_of_moment};
 use crate::colour_camera::ColourCamera;
 use crate::lens::BrownConrady;
-use crate::source::camera::Camera;
+use crate::source::camera::DepthCamera;
 use toile_base::frame::Intrinsics;
 
 pub(super) const LIBRARY: LibraryName = LibraryName {
@@ -188,7 +188,7 @@ impl Orbbec {
         let first = parts.first(options.colour && recording.is_none())?;
         let none = || refused("no depth comes of it", String::new());
         let (camera, rate_hz) = first.depth().ok_or_else(none)?.camera()?;
-        let camera = Camera { quarter_turns: options.quarter_turns, ..camera };
+        let camera = DepthCamera { quarter_turns: options.quarter_turns, ..camera };
         let colour = first.colour_camera().map_or(ColourPlace::Unknown, ColourPlace::Beside);
         let device = which.map_or_else(|| "Orbbec".to_owned(), |which| format!("Orbbec {which}"));
         let info = CameraInfo { device, camera, rate_hz, placed: None, colour };
@@ -325,7 +325,7 @@ impl ObFrame {
     }
 
     /// The camera of a depth frame, and its rate (Hz).
-    fn camera(&self) -> Result<(Camera, f32), CameraError> {
+    fn camera(&self) -> Result<(DepthCamera, f32), CameraError> {
         let (api, what) = (self.1, "its lens cannot be read");
         let profile = self.profile().ok_or_else(|| refused(what, String::new()))?;
         let (intrinsics, lens) = self.lens(&profile)?;
@@ -334,7 +334,7 @@ impl ObFrame {
         // SAFETY: a depth frame that is valid.
         let scale = api.call(what, |e| unsafe { (api.ob_depth_frame_get_value_scale)(self.0, e) })?;
         let mm_per_unit = if scale > 0.0 { scale } else { 1.0 };
-        let camera = Camera { distortion: lens.lens(), mm_per_unit, ..Camera::pinhole(intrinsics) };
+        let camera = DepthCamera { distortion: lens.lens(), mm_per_unit, ..DepthCamera::pinhole(intrinsics) };
         Ok((camera, rate.max(1) as f32))
     }
 

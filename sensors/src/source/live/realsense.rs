@@ -15,7 +15,7 @@ use super::library::{Library, LibraryName, functions};
 use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourPlace, LiveCamera, is_of_moment};
 use super::realsense_lens::{RsExtrinsics, RsIntrinsics};
 use crate::colour_camera::ColourCamera;
-use crate::source::camera::Camera;
+use crate::source::camera::DepthCamera;
 
 pub(super) const LIBRARY: LibraryName = LibraryName {
     camera: NAME,
@@ -186,7 +186,7 @@ impl RealSense {
             }
         };
         let (camera, rate_hz) = first.depth().ok_or_else(|| refused("no depth comes of it"))?.camera()?;
-        let camera = Camera { quarter_turns: options.quarter_turns, ..camera };
+        let camera = DepthCamera { quarter_turns: options.quarter_turns, ..camera };
         let colour = pipeline.colour_camera().map_or(ColourPlace::Unknown, ColourPlace::Beside);
         let device = which.map_or_else(|| NAME.to_owned(), |which| format!("{NAME} {which}"));
         let info = CameraInfo { device, camera, rate_hz, placed: None, colour };
@@ -371,7 +371,7 @@ impl Frames {
     }
 
     /// The camera of a depth frame, and its rate (Hz).
-    fn camera(&self) -> Result<(Camera, f32), CameraError> {
+    fn camera(&self) -> Result<(DepthCamera, f32), CameraError> {
         let (api, what) = (self.1, "its lens cannot be read");
         let (profile, kind) = self.profile().zip(self.kind()).ok_or_else(|| refused(what))?;
         let mut k = RsIntrinsics::default();
@@ -380,7 +380,10 @@ impl Frames {
         // SAFETY: a depth frame that is valid.
         let units = api.call(what, |e| unsafe { (api.rs2_depth_frame_get_units)(self.0, e) })?;
         let mm_per_unit = if units > 0.0 { units * 1e3 } else { 1.0 };
-        Ok((Camera { distortion: k.lens(), mm_per_unit, ..Camera::pinhole(k.intrinsics()) }, kind.rate.max(1) as f32))
+        Ok((
+            DepthCamera { distortion: k.lens(), mm_per_unit, ..DepthCamera::pinhole(k.intrinsics()) },
+            kind.rate.max(1) as f32,
+        ))
     }
 
     /// The rows of a video frame of so many bytes a pixel, with its width and height.

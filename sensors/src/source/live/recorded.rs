@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use super::error::CameraError;
 use super::live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourImage, ColourPlace, LiveCamera};
-use crate::source::camera::Camera;
+use crate::source::camera::DepthCamera;
 use crate::source::{self, OpenOptions};
 use toile_base::clock::SECOND_NS;
 use toile_base::frame::DepthFrame;
@@ -36,7 +36,7 @@ impl RecordedCamera {
                 "{path} holds no depth, so that it cannot be played as a camera; give another"
             ))
         })?;
-        let camera = Camera { quarter_turns: options.quarter_turns, ..Camera::pinhole(first.intrinsics) };
+        let camera = DepthCamera { quarter_turns: options.quarter_turns, ..DepthCamera::pinhole(first.intrinsics) };
         let last_ns = session.depth.last().map_or(0, |f| f.time_ns - first.time_ns);
         let gap = if session.depth.len() > 1 {
             last_ns / (session.depth.len() as u64 - 1)

@@ -2,7 +2,7 @@
 //! have written.
 
 use super::error::CameraError;
-use super::frame_check::{CameraCounts, FrameCheck, Verdict};
+use super::frame_check::{CameraCounts, FrameCheck, FrameVerdict};
 use super::live_camera::{CameraFrame, CameraInfo};
 use crate::limits::MAX_DEPTH_FRAMES;
 use crate::session::Session;
@@ -34,7 +34,7 @@ impl CameraRecorder {
     /// # Errors
     /// A recording that has grown too long.
     pub fn take(&mut self, frame: &CameraFrame, arrived_ns: u64) -> Result<bool, CameraError> {
-        let Verdict::Good(time_ns) = self.check.judge(frame, arrived_ns) else { return Ok(false) };
+        let FrameVerdict::Good(time_ns) = self.check.judge(frame, arrived_ns) else { return Ok(false) };
         if self.taken >= MAX_DEPTH_FRAMES {
             return Ok(false);
         }
@@ -61,7 +61,7 @@ impl CameraRecorder {
     /// # Errors
     /// Where nothing was seen.
     pub fn finish(self, name: &str) -> Result<Session, CameraError> {
-        let told = |fault: crate::error::Fault| CameraError::Recording(fault.at(&self.device).to_string());
+        let told = |fault: crate::error::ReaderFault| CameraError::Recording(fault.at(&self.device).to_string());
         let mut session = self.sequence.finish().map_err(told)?;
         name.clone_into(&mut session.name);
         session.check().map_err(told)?;

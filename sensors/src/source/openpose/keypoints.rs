@@ -5,7 +5,7 @@ use serde::Deserialize;
 use toile_base::skeleton::Joint;
 
 use super::triangulate::Point;
-use crate::error::{Fault, Place};
+use crate::error::{FilePlace, ReaderFault};
 use crate::limits::MAX_VIEW_PEOPLE;
 use crate::source::joint_map::{Format, JointMap, middle};
 use toile_base::frame::{Joints, TrackedJoint};
@@ -47,13 +47,13 @@ struct KeypointBody {
 }
 
 /// The people of a file: those of the highest scores, where there are too many.
-pub fn read(bytes: &[u8]) -> Result<ViewPeople, Fault> {
-    let fault = |place, problem| Fault::new(place, problem, CURE);
+pub fn read(bytes: &[u8]) -> Result<ViewPeople, ReaderFault> {
+    let fault = |place, problem| ReaderFault::new(place, problem, CURE);
     let file: KeypointFile = serde_json::from_slice(bytes)
-        .map_err(|e| fault(Place::Line(e.line()), format!("not OpenPose keypoints: {e}")))?;
+        .map_err(|e| fault(FilePlace::Line(e.line()), format!("not OpenPose keypoints: {e}")))?;
     let mut people = Vec::with_capacity(file.people.len());
     for body in &file.people {
-        people.push(person(&body.pose_keypoints_2d).map_err(|problem| fault(Place::Whole, problem))?);
+        people.push(person(&body.pose_keypoints_2d).map_err(|problem| fault(FilePlace::Whole, problem))?);
     }
     let score = |p: &PersonKeypoints| p.iter().map(|k| k.score).sum::<f32>();
     people.sort_by(|a, b| score(b).total_cmp(&score(a)));

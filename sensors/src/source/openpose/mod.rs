@@ -1,9 +1,5 @@
 //! OpenPose keypoints of several calibrated cameras, triangulated: BODY_25 and BODY_25B.
 //!
-//! Reads: a folder of keypoints with its calibration. Writes: a session of joints.
-//! Budget: at load only; milliseconds a second of recording.
-//! Thread: the loading thread.
-//!
 //! A folder holds a calibration (`*.toml`) and a folder of JSON files for each camera, in the order of the calibration's
 //! cameras, in itself or one level below; a file is a frame, in the order of their names. In each frame the people that
 //! the cameras see are matched, the shopper is followed, and their keypoints become points in space by a
@@ -25,7 +21,7 @@ use super::files::{count_bytes, shown};
 use super::joint_map::JointMap;
 use super::tidy;
 use crate::calibration::Rig;
-use crate::error::{Fault, Place, SourceError};
+use crate::error::{FilePlace, ReaderFault, SourceError};
 use crate::limits::{CAMERA, KEYPOINTS, MAX_CAMERAS, MAX_JOINT_FRAMES};
 use crate::session::{Session, too_many};
 use keypoints::{ViewFrames, ViewPeople};
@@ -94,7 +90,7 @@ pub(super) fn open(folder: &Path) -> Result<Session, SourceError> {
 
 /// The cameras of a folder and what each saw.
 fn read_folder(folder: &Path) -> Result<(Rig, Vec<ViewFrames>), SourceError> {
-    let whole = |problem: String| Fault::new(Place::Whole, problem, CURE).at(&shown(folder));
+    let whole = |problem: String| ReaderFault::new(FilePlace::Whole, problem, CURE).at(&shown(folder));
     let toml = list(folder)?.into_iter().find(|p| has_extension(p, "toml"));
     let toml = toml.ok_or_else(|| whole("the folder holds no calibration (.toml)".to_owned()))?;
     let rig = crate::calibration::read_toml(&file::read(&toml, &CAMERA)?).map_err(|fault| fault.at(&shown(&toml)))?;
@@ -161,7 +157,7 @@ fn has_extension(path: &Path, extension: &str) -> bool {
 }
 
 /// A session of all cameras' frames. Frames past the end of the shortest recording are left out.
-fn session(rig: &Rig, views: &[ViewFrames]) -> Result<Session, Fault> {
+fn session(rig: &Rig, views: &[ViewFrames]) -> Result<Session, ReaderFault> {
     let frames = views.iter().map(Vec::len).min().unwrap_or(0);
     let rate = rig.frame_rate.unwrap_or(ASSUMED_RATE);
     let mut notes = Vec::new();

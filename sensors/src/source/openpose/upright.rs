@@ -3,12 +3,12 @@
 use glam::{Quat, Vec3};
 use toile_base::skeleton::Joint;
 
-use crate::error::{Fault, Place};
+use crate::error::{FilePlace, ReaderFault};
 use crate::source::align;
 use toile_base::frame::Joints;
 
 /// The axis of the cameras' world that is up: the one along which the head is above the feet.
-pub fn to_world(frames: &mut [Joints], notes: &mut Vec<String>) -> Result<(), Fault> {
+pub fn to_world(frames: &mut [Joints], notes: &mut Vec<String>) -> Result<(), ReaderFault> {
     let mut sum = Vec3::ZERO;
     for f in frames.iter() {
         let feet = [Joint::LeftAnkle, Joint::RightAnkle, Joint::Pelvis];
@@ -22,7 +22,7 @@ pub fn to_world(frames: &mut [Joints], notes: &mut Vec<String>) -> Result<(), Fa
     let (name, up) = axes.into_iter().rev().max_by(|a, b| a.1.dot(sum).total_cmp(&b.1.dot(sum))).unwrap_or(axes[0]);
     if sum == Vec3::ZERO {
         let cure = "record again with the shopper in full view of two cameras";
-        return Err(Fault::new(Place::Whole, "no frame shows head and feet of anybody to two cameras", cure));
+        return Err(ReaderFault::new(FilePlace::Whole, "no frame shows head and feet of anybody to two cameras", cure));
     }
     if up != Vec3::Y {
         notes.push(format!("the cameras' up axis is {name} (found from the shopper): turned to y"));

@@ -1,7 +1,7 @@
 //! A synthetic sensor: the depth of a posed mesh, with the noise of a real camera, and joints with the noise of a
 //! tracker.
 //!
-//! Reads: positions and triangles (world, m). Writes: `DepthFrame`, `Joints`. Budget: 10 ms a 640x480 frame, off line.
+//! Budget: 10 ms a 640x480 frame, off line.
 //! Thread: the loading thread, or the sensor thread of a test.
 
 mod joints;

@@ -19,7 +19,7 @@ const HALF: f32 = 3.0;
 const WALL: f32 = 2.6;
 
 /// A surface: positions (world, m) and triangles.
-pub type Surface<'a> = (&'a [Vec3], &'a [[u32; 3]]);
+pub type RoomSurface<'a> = (&'a [Vec3], &'a [[u32; 3]]);
 
 /// What a camera sees without noise.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,7 +31,7 @@ pub struct RoomView {
 }
 
 /// Looks at people in a room with a floor at y = 0 and a back wall at `back` (z, m).
-pub fn view(camera: &SyntheticCamera, back: f32, people: &[Surface<'_>]) -> RoomView {
+pub fn view(camera: &SyntheticCamera, back: f32, people: &[RoomSurface<'_>]) -> RoomView {
     let pixels = camera.intrinsics.pixels();
     let mut view = RoomView { z: vec![f32::INFINITY; pixels], label: vec![NOTHING; pixels] };
     let corner = |x: f32, y: f32, z: f32| Vec3::new(x * HALF, y, z);

@@ -1,7 +1,8 @@
 //! Virtual Motion Capture (VMC) protocol: a humanoid's bones as OSC messages over UDP.
 //!
-//! Reads: datagrams of a socket that never blocks. Writes: the latest `Joints`. Budget: some 60 messages a frame, under
-//! 100 us; at most [`MAX_PACKETS_A_POLL`](crate::limits::MAX_PACKETS_A_POLL) datagrams a call. Thread: the sensor thread.
+//! Budget: some 60 messages a frame, under 100 us; at most [`MAX_PACKETS_A_POLL`](crate::limits::MAX_PACKETS_A_POLL) datagrams
+//! a call.
+//! Thread: the sensor thread.
 //!
 //! `/VMC/Ext/Bone/Pos name px py pz qx qy qz qw` is a bone of Unity's humanoid relative to its parent, `/VMC/Ext/Root/Pos`
 //! the same of the figure, `/VMC/Ext/T t` the sender's time (s), `/VMC/Ext/OK loaded` whether there is a model.

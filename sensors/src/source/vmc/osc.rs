@@ -1,6 +1,4 @@
 //! The part of Open Sound Control 1.0 that a receiver of poses needs: packets, messages, and their numbers and texts.
-//!
-//! Reads: a datagram, whose size and nesting the caller has limited. Writes: messages that borrow it.
 
 /// A packet of OSC.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,4 +1,4 @@
-//! Laws of animations.
+//! Tests of animations.
 
 use std::io::Cursor;
 

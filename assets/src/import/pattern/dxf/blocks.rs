@@ -4,7 +4,7 @@ use std::str::Lines;
 
 use glam::DVec2;
 
-use super::super::error::Fault;
+use super::super::error::PatternFault;
 
 /// Metres of a millimetre, which metric files are in, and of an inch.
 const METRIC: f64 = 1e-3;
@@ -82,7 +82,7 @@ impl Entity {
 }
 
 /// Reads all blocks; texts may stand outside of them.
-pub fn read(text: &str) -> Result<Blocks, Fault> {
+pub fn read(text: &str) -> Result<Blocks, PatternFault> {
     let mut reader = Reader { blocks: Vec::new(), open: None, line: None, unit: None };
     let (mut header, mut variable) = (None, "");
     let mut entity = Entity::default();
@@ -121,7 +121,7 @@ pub fn read(text: &str) -> Result<Blocks, Fault> {
     }
     reader.take(&mut entity);
     if reader.open.is_some() || entity.kind != "EOF" {
-        return Err(Fault::Content("it ends before its EOF; the file is cut short, export it again".into()));
+        return Err(PatternFault::Content("it ends before its EOF; the file is cut short, export it again".into()));
     }
     let unit = reader.unit.or(header);
     Ok(Blocks { unit: unit.unwrap_or(METRIC), names_unit: unit.is_some(), blocks: reader.blocks })
@@ -133,7 +133,7 @@ fn shown(value: &str) -> String {
 }
 
 /// The next group code and value; `number` counts the lines.
-fn next_pair<'t>(lines: &mut Lines<'t>, number: &mut usize) -> Result<Option<(u32, &'t str)>, Fault> {
+fn next_pair<'t>(lines: &mut Lines<'t>, number: &mut usize) -> Result<Option<(u32, &'t str)>, PatternFault> {
     let Some(code) = lines.next() else { return Ok(None) };
     *number += 1;
     let line = *number;

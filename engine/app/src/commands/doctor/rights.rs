@@ -1,6 +1,6 @@
 //! What the kernel lets this process do: real-time priority, locked memory.
 
-use toile_engine::frame_loop::thread_roles::{self, Placement, ThreadRole};
+use toile_engine::frame_loop::thread_roles::{self, RolePlacement, ThreadRole};
 
 use super::check::{Check, field, kernel_file};
 
@@ -52,7 +52,7 @@ pub fn placement() -> Check {
 const PLACEMENT: &str = "pinning";
 const PLACEMENT_FOR: &str = "a kiosk's deadlines";
 
-fn placed(placement: &Placement) -> Check {
+fn placed(placement: &RolePlacement) -> Check {
     let core = placement.core.map_or_else(|| "not pinned".to_owned(), |core| format!("pinned to core {core}"));
     let priority = placement.priority.map_or_else(|| "no real-time priority".to_owned(), |p| format!("priority {p}"));
     let found = format!("physics {core}, {priority}");
@@ -155,11 +155,11 @@ mod tests {
 
     #[test]
     fn a_place_that_was_refused_is_told_with_its_cure() {
-        let all = Placement { role: ThreadRole::Physics, core: Some(1), priority: Some(40), refused: Vec::new() };
+        let all = RolePlacement { role: ThreadRole::Physics, core: Some(1), priority: Some(40), refused: Vec::new() };
         let fine = placed(&all);
         assert_eq!((fine.found.as_str(), fine.cure), ("physics pinned to core 1, priority 40", None));
         let refused = vec!["the physics thread has no real-time priority (no; reason); raise the limit".to_owned()];
-        let check = placed(&Placement { priority: None, refused, ..all });
+        let check = placed(&RolePlacement { priority: None, refused, ..all });
         assert_eq!(check.found, "physics pinned to core 1, no real-time priority");
         assert_eq!(check.cure.as_deref(), Some("raise the limit"));
     }

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use toile_base::fabric::Fabric;
 use toile_base::fabric::friction_element::read_loop;
-use toile_base::fabric::link_law::LinkLaw;
+use toile_base::fabric::link_curve::LinkCurve;
 use toile_base::fabric::stretch_curve::StretchCurve;
 use toile_cli::exit::AppError;
 use toile_view::plot::axis::Axis;
@@ -90,7 +90,7 @@ impl LoopReport {
 }
 
 /// A loop with its law in SI units, its stiffness as measured and its width.
-type MeasuredLoop = (LoopKind, LinkLaw, [f64; 2]);
+type MeasuredLoop = (LoopKind, LinkCurve, [f64; 2]);
 
 /// The loops that a fabric has, of bending, of shear and of stretch.
 fn laws(fabric: &Fabric) -> [Vec<MeasuredLoop>; 3] {
@@ -98,7 +98,7 @@ fn laws(fabric: &Fabric) -> [Vec<MeasuredLoop>; 3] {
     let of = |kind: LoopKind, stiffness: f32, width: f32| {
         let measured = [f64::from(stiffness), f64::from(width)];
         let [stiffness, width] = [0, 1].map(|k| measured[k] / kind.of_si[k]);
-        (kind, LinkLaw { half_width: 0.5 * width, ..LinkLaw::plain(stiffness) }, measured)
+        (kind, LinkCurve { half_width: 0.5 * width, ..LinkCurve::plain(stiffness) }, measured)
     };
     let warp = of(bending("bending, warp"), fabric.bend_warp_un_m, widths.bend_warp_mn);
     let weft = of(bending("bending, weft"), fabric.bend_weft_un_m, widths.bend_weft_mn);
@@ -111,7 +111,7 @@ fn laws(fabric: &Fabric) -> [Vec<MeasuredLoop>; 3] {
     let curves = [("stretch, warp", fabric.stretch.warp), ("stretch, weft", fabric.stretch.weft)];
     let curves = curves.into_iter().filter_map(|(name, curve)| {
         let curve = curve?;
-        Some((stretch(name, &curve), curve.law(), [curve.below_n_m(), curve.hysteresis_n_m].map(f64::from)))
+        Some((stretch(name, &curve), curve.link_curve(), [curve.below_n_m(), curve.hysteresis_n_m].map(f64::from)))
     });
     [
         [warp, weft].into_iter().filter(rubs).collect(),
@@ -127,8 +127,8 @@ pub fn any(fabric: &Fabric) -> bool {
 
 /// The loops of a fabric's law, read.
 pub fn readings(fabric: &Fabric) -> Vec<LoopReport> {
-    let of = |(kind, mut law, measured): MeasuredLoop| {
-        let read = read_loop(kind.most[1], kind.read, |d| law.force(d));
+    let of = |(kind, mut link_curve, measured): MeasuredLoop| {
+        let read = read_loop(kind.most[1], kind.read, |d| link_curve.force(d));
         let [slope, width] = kind.of_si;
         LoopReport { name: kind.name, measured, read: [read.slope * slope, read.width * width], unit: kind.unit }
     };
@@ -140,12 +140,12 @@ const POINTS: i32 = 250;
 
 /// A loop from the virgin state to its far end, to the other and back, in the units of the axes. Stretch ends where nothing pulls any
 /// more.
-fn curve(kind: &LoopKind, law: &mut LinkLaw) -> Vec<[f64; 2]> {
+fn curve(kind: &LoopKind, link_curve: &mut LinkCurve) -> Vec<[f64; 2]> {
     let [low, high] = kind.most.map(|end| (end / kind.most[1] * f64::from(POINTS)) as i32);
     let at = |k: i32| kind.most[1] * f64::from(k) / f64::from(POINTS);
     let mut points = Vec::new();
     for k in (0..=high).chain((low..high).rev()).chain((low + 1..=high).filter(|_| low < 0)) {
-        let force = law.force(at(k));
+        let force = link_curve.force(at(k));
         if low == 0 && force < 0.0 {
             break;
         }
@@ -155,8 +155,9 @@ fn curve(kind: &LoopKind, law: &mut LinkLaw) -> Vec<[f64; 2]> {
 }
 
 /// Where the measured lines pass: stiffness and half of the width on both sides, at the two deformations at which they are read.
-fn measured(kind: &LoopKind, law: &LinkLaw) -> Vec<[f64; 2]> {
-    let at = |d: f64, side: f64| [d * kind.scale[0], (law.slope * d + side * law.half_width) * kind.scale[1]];
+fn measured(kind: &LoopKind, link_curve: &LinkCurve) -> Vec<[f64; 2]> {
+    let at =
+        |d: f64, side: f64| [d * kind.scale[0], (link_curve.slope * d + side * link_curve.half_width) * kind.scale[1]];
     let both = |d: f64| if kind.most[0] < 0.0 { vec![d, -d] } else { vec![d] };
     kind.read.into_iter().flat_map(both).flat_map(|d| [at(d, 1.0), at(d, -1.0)]).collect()
 }
@@ -193,9 +194,9 @@ fn drawing(fabric: &Fabric) -> Drawing {
 
 fn chart(title: String, labels: [&'static str; 2], loops: Vec<MeasuredLoop>) -> Chart {
     let mut series = Vec::new();
-    for ((kind, mut law, figures), colour) in loops.into_iter().zip(SERIES_COLOURS) {
-        let rings = measured(&kind, &law);
-        let points = curve(&kind, &mut law);
+    for ((kind, mut link_curve, figures), colour) in loops.into_iter().zip(SERIES_COLOURS) {
+        let rings = measured(&kind, &link_curve);
+        let points = curve(&kind, &mut link_curve);
         series.push(Series { name: kind.name.into(), points, style: SeriesStyle::line(colour, 2.0) });
         let [stiffness, width] = kind.symbols;
         let name =

@@ -16,7 +16,7 @@ use toile_view::cloth_look::GarmentLook;
 use toile_view::contact_sheet;
 use toile_view::figure::Figure;
 use toile_view::image::{Image, Size, linear};
-use toile_view::scene::{Camera, Colours, Material, Scene, Surface};
+use toile_view::scene::{Colours, Material, OrbitCamera, PictureScene, PictureSurface};
 use toile_view::trace::{TraceQuality, TracedScene};
 
 /// A picture of one side.
@@ -53,7 +53,7 @@ fn sides(figure: &Figure, cloth: &Cloth<'_>, title: &str) -> Image {
     let Cloth { at, triangles, colour, ref look } = *cloth;
     let mut normals = vec![Vec3::ZERO; at.len()];
     vertex_normals(at, triangles, &mut normals);
-    let skin = Surface {
+    let skin = PictureSurface {
         positions: &figure.rest,
         normals: &figure.normals,
         triangles: &figure.triangles,
@@ -61,7 +61,7 @@ fn sides(figure: &Figure, cloth: &Cloth<'_>, title: &str) -> Image {
         material: Material::Skin,
         look: Some(figure.look.shown()),
     };
-    let cloth = Surface {
+    let cloth = PictureSurface {
         positions: at,
         normals: &normals,
         triangles,
@@ -70,9 +70,9 @@ fn sides(figure: &Figure, cloth: &Cloth<'_>, title: &str) -> Image {
         look: Some(look.shown()),
     };
     let surfaces = [skin, cloth];
-    let scene = TracedScene::build(Scene { surfaces: &surfaces, floor: true });
+    let scene = TracedScene::build(PictureScene { surfaces: &surfaces, floor: true });
     let look = |yaw: f32| {
-        let camera = Camera::framing(&scene.bounds(), yaw, STILL.width as f32 / STILL.height as f32);
+        let camera = OrbitCamera::framing(&scene.bounds(), yaw, STILL.width as f32 / STILL.height as f32);
         scene.render(&camera, STILL, TraceQuality::Still)
     };
     let (front, back) = (look(0.0), look(PI));

@@ -3,16 +3,16 @@
 use toile_assets::wardrobe::own;
 use toile_fitting::dress::garment_source::FittedGarment;
 
-use crate::report::Recommendation;
+use crate::report::RecommendationReport;
 
 /// What is said of each garment.
-pub fn recommendations(worn: &[FittedGarment]) -> Vec<Recommendation> {
+pub fn recommendations(worn: &[FittedGarment]) -> Vec<RecommendationReport> {
     let said = |worn: &FittedGarment| match &worn.fit {
         Some(fit) => fit.clone().into(),
-        None => Recommendation {
+        None => RecommendationReport {
             garment: worn.mesh.as_ref().map(|mesh| mesh.file.clone()).unwrap_or_default(),
             size: own::UNKNOWN.to_owned(),
-            ..Recommendation::default()
+            ..RecommendationReport::default()
         },
     };
     worn.iter().map(said).collect()

@@ -200,8 +200,8 @@ fn damped_zigzags_have_the_same_bits_at_every_width() {
 /// The links of a garment in both forms, from the same start.
 #[test]
 fn by_records_links_have_the_bits_that_they_have_in_columns() {
-    use crate::cloth::record_links::{RecordLinks, SolveRecordLinks};
-    use crate::cloth::records::{FillRecords, ReadRecords};
+    use crate::cloth::links::record_links::{RecordLinks, SolveRecordLinks};
+    use crate::cloth::links::records::{FillRecords, ReadRecords};
     use crate::lanes::{RECORD, Store};
     use toile_assets::scene::skirt::{self, Stretch};
     use toile_bake::bake;
@@ -225,10 +225,11 @@ fn by_records_links_have_the_bits_that_they_have_in_columns() {
             for width in Width::ALL.into_iter().filter(|w| w.available()) {
                 let (mut one, mut other) = (State::new(&positions, weights), State::new(&positions, weights));
                 let mut tensions = [links.tuples.count, records.len()].map(Store::zeros);
-                let mut room = Store::zeros(RECORD * (positions.len() + 2));
-                let (c, room, spans) = (other.columns(), room.column(), [(0, positions.len() as u32)]);
+                let mut scratch_columns = Store::zeros(RECORD * (positions.len() + 2));
+                let (c, scratch_columns, spans) =
+                    (other.columns(), scratch_columns.column(), [(0, positions.len() as u32)]);
                 let [in_columns, in_records] = tensions.each_mut().map(|t| soft.then(|| (t.column(), per_dt2)));
-                width.run(FillRecords { from: c.x, w: c.w, spans: &spans, records: room });
+                width.run(FillRecords { from: c.x, w: c.w, spans: &spans, records: scratch_columns });
                 for ((number, set), owner) in links
                     .tuples
                     .sets
@@ -245,11 +246,11 @@ fn by_records_links_have_the_bits_that_they_have_in_columns() {
                         links: &records,
                         set: number,
                         owner,
-                        records: room,
+                        records: scratch_columns,
                         tension: in_records,
                     });
                 }
-                width.run(ReadRecords { columns: c, spans: &spans, records: room });
+                width.run(ReadRecords { columns: c, spans: &spans, records: scratch_columns });
                 assert_eq!(one.positions(), other.positions(), "{width} lanes, soft {soft}");
             }
         }

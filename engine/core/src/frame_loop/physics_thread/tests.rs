@@ -39,7 +39,7 @@ impl Toy {
     }
 }
 
-impl Scene for Toy {
+impl LoopScene for Toy {
     fn step(&mut self, joints: &Joints, times: SnapshotTimes, _: &impl Clock) {
         let x = joints.joints[4].position.x;
         self.path.borrow_mut().push(x);
@@ -47,8 +47,8 @@ impl Scene for Toy {
         self.clock.spend(((self.cost)(times.scheduled_ns) as f32 * self.share) as u64);
     }
 
-    fn set_rung(&mut self, rung: &Rung) {
-        self.share = rung.substep_share;
+    fn set_level(&mut self, level: &QualityLevel) {
+        self.share = level.substep_share;
     }
 
     fn measure(&mut self) {}
@@ -59,7 +59,7 @@ impl Scene for Toy {
         self.hash
     }
 
-    fn troubles(&self) -> [u64; 2] {
+    fn fault_counts(&self) -> [u64; 2] {
         [0; 2]
     }
 }
@@ -163,8 +163,8 @@ fn quality_is_given_up_before_deadlines_and_comes_back_when_the_load_is_gone() {
         drained.iter().filter_map(|e| if let EventKind::Quality(c) = e.what { Some(c.to) } else { None }).collect();
     assert_eq!(changes, [1, 2, 1, 0], "each change is told");
     assert!(gauges.missed <= 8, "{} steps were late until quality was given up", gauges.missed);
-    assert_eq!(gauges.rungs.iter().sum::<u64>(), 1_200);
-    assert_eq!(rig.physics.rung(), 0);
+    assert_eq!(gauges.level_steps.iter().sum::<u64>(), 1_200);
+    assert_eq!(rig.physics.level(), 0);
 }
 
 #[test]
@@ -187,7 +187,7 @@ fn a_recorded_run_is_taken_again_bit_for_bit_and_a_difference_is_found_where_it_
     rig.run(10 * SECOND_NS);
     let entries: Vec<Entry> = std::iter::from_fn(|| rig.recording.pop()).collect();
     let steps = rig.physics.gauges.steps;
-    assert!(rig.physics.gauges.dropped > 0 && rig.physics.gauges.rungs[1] > 0, "a run with trouble in it");
+    assert!(rig.physics.gauges.dropped > 0 && rig.physics.gauges.level_steps[1] > 0, "a run with trouble in it");
     let again = |entries: &[Entry]| {
         let clock = SimClock::default();
         replay(&mut SceneStepper::new(Toy::new(&clock, |_| 0)), entries, &clock)
@@ -229,7 +229,7 @@ fn another_scene_takes_the_place_between_two_steps_and_in_the_replay_too() {
         rig.run(number * 2 * SECOND_NS + SECOND_NS);
         let before = giver.returned().expect("the scene before");
         assert!(before.scene.path.borrow().len() >= 200 && before.number == number);
-        assert_eq!(rig.physics.stepper.scene.share, 0.5, "the rung goes on");
+        assert_eq!(rig.physics.stepper.scene.share, 0.5, "the level goes on");
     }
     let drained: Vec<EventKind> = rig.drained().into_iter().map(|e| e.what).collect();
     assert_eq!(drained, (1..=4).map(EventKind::Changed).collect::<Vec<_>>());

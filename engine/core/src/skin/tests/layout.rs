@@ -33,13 +33,13 @@ fn a_loop_over_what_is_laid_gives_the_kernels_bits() {
         assert_eq!((laid.position, laid.vertex), (crowd.positions[laid.vertex], laid.vertex));
         let bones = runs[laid.run];
         let base = duals[usize::from(bones[0])];
-        let (mut real, mut twin) = (base.real, base.dual);
+        let (mut real, mut dual) = (base.real, base.dual);
         for (bone, weight) in bones[1..].iter().zip(laid.weights) {
             let bone = duals[usize::from(*bone)];
             real += (bone.real - base.real) * weight;
-            twin += (bone.dual - base.dual) * weight;
+            dual += (bone.dual - base.dual) * weight;
         }
-        let (v, w, u, s) = (real.truncate(), real.w, twin.truncate(), twin.w);
+        let (v, w, u, s) = (real.truncate(), real.w, dual.truncate(), dual.w);
         let squared = v.x * v.x + v.y * v.y + v.z * v.z + w * w;
         let moved = v.cross(v.cross(laid.position) + laid.position * w + u) + (u * w - v * s);
         assert_eq!(got.position(laid.vertex), laid.position + moved * (2.0 / squared), "vertex {}", laid.vertex);

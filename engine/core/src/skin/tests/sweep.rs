@@ -1,4 +1,4 @@
-//! Laws of the sweep: nothing moves at rest, the same input gives the same bits, and a bent limb keeps its volume better.
+//! Tests of the sweep: nothing moves at rest, the same input gives the same bits, and a bent limb keeps its volume better.
 
 use glam::{Affine3A, Quat, Vec3};
 use toile_assets::body::{En, Wanted};

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use toile_engine::cloth::bending_matrix::BendingMatrix;
+use toile_engine::cloth::forces::bending_matrix::BendingMatrix;
 
 use super::GarmentSpan;
 

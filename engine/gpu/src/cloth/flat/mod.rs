@@ -1,8 +1,4 @@
 //! Baked garments flattened into the kernels' arrays, one behind the other, in workgroups of 64.
-//!
-//! Reads: baked garments. Writes: the numbers of every buffer, and the workgroups of every dispatch.
-//! Budget: at load only, some milliseconds a garment.
-//! Thread: the loading thread.
 
 mod bending;
 mod diagonals;
@@ -14,8 +10,8 @@ mod wind;
 mod workgroups;
 
 use toile_base::garment::Garment;
-use toile_engine::cloth::bending_matrix::BendingMatrix;
-use toile_engine::cloth::contact::reach;
+use toile_engine::cloth::contact::body::reach;
+use toile_engine::cloth::forces::bending_matrix::BendingMatrix;
 use toile_engine::colliders::Colliders;
 
 pub use bending::FlatBending;

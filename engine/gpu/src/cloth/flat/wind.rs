@@ -1,7 +1,7 @@
 //! Wind: triangles, and for each particle those around it, in the order in which the CPU adds them up.
 
 use toile_base::garment::Garment;
-use toile_engine::cloth::wind::Faces;
+use toile_engine::cloth::forces::wind::Faces;
 
 use super::{GarmentSpan, Workgroups};
 

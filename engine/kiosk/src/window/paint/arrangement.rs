@@ -4,7 +4,7 @@
 use egui::{Pos2, Rect, pos2};
 
 use super::qr_code;
-use super::theme::Look;
+use super::theme::ScreenStyle;
 use crate::visitor::screen::{Block, BodyView, Screen};
 
 /// Most of a standing display's height that a panel below the body covers.
@@ -41,7 +41,7 @@ pub enum Arrangement {
 
 impl Arrangement {
     /// What is tried first, if anything is, and what is taken otherwise.
-    pub fn of(screen: &Screen, look: Look) -> (Option<Self>, Self) {
+    pub fn of(screen: &Screen, look: ScreenStyle) -> (Option<Self>, Self) {
         if look.landscape {
             return (None, Self::Beside);
         }
@@ -55,7 +55,7 @@ impl Arrangement {
     }
 
     /// Whether a code, where there is one, can be read from a column of a standing display.
-    fn holds_codes(screen: &Screen, look: Look) -> bool {
+    fn holds_codes(screen: &Screen, look: ScreenStyle) -> bool {
         let column = look.display[0] * STANDING_SIDE - 2.0 * look.margin();
         screen.blocks.iter().all(|block| match block {
             Block::Code { side, .. } => column >= LEAST_MODULE * qr_code::modules(*side),
@@ -64,12 +64,12 @@ impl Arrangement {
     }
 
     /// Whether the panel is a column of a standing display.
-    pub fn is_narrow(self, look: Look) -> bool {
+    pub fn is_narrow(self, look: ScreenStyle) -> bool {
         self == Self::Beside && !look.landscape
     }
 
     /// Width of the panel (pixels).
-    pub fn column(self, look: Look) -> f32 {
+    pub fn column(self, look: ScreenStyle) -> f32 {
         let [w, _] = look.display;
         match self {
             Self::Beside if look.landscape => (w * SIDE).round(),
@@ -79,7 +79,7 @@ impl Arrangement {
     }
 
     /// Widths of what is read and of what can be pressed, within the panel (pixels).
-    pub fn shares(self, inner: f32, look: Look) -> [f32; 2] {
+    pub fn shares(self, inner: f32, look: ScreenStyle) -> [f32; 2] {
         match self {
             Self::Beside | Self::Below => [inner; 2],
             Self::Wide => {
@@ -90,7 +90,7 @@ impl Arrangement {
     }
 
     /// Most that the panel should be high (pixels).
-    pub fn most_panel(self, look: Look) -> f32 {
+    pub fn most_panel(self, look: ScreenStyle) -> f32 {
         let [_, h] = look.display;
         match self {
             Self::Beside => h,
@@ -100,7 +100,7 @@ impl Arrangement {
     }
 
     /// What a panel leaves of the display.
-    pub fn free(self, panel: Rect, look: Look) -> Rect {
+    pub fn free(self, panel: Rect, look: ScreenStyle) -> Rect {
         let [w, h] = look.display;
         match self {
             Self::Beside => Rect::from_min_max(Pos2::ZERO, pos2(panel.left(), h)),

@@ -4,7 +4,7 @@ use egui::{FontId, Painter, Pos2, Rect, Vec2, vec2};
 
 use super::qr_code;
 use super::text::{SetText, left_aligned};
-use super::theme::Look;
+use super::theme::ScreenStyle;
 use crate::visitor::screen::{Block, ScreenPicture};
 
 /// Most of the display's height that a code takes.
@@ -25,14 +25,14 @@ pub struct PlacedBlock {
 }
 
 /// Width and height of a logo: two lines of the heading high, and no wider than part of the panel.
-pub fn logo_size(logo: &ScreenPicture, width: f32, look: Look) -> Vec2 {
+pub fn logo_size(logo: &ScreenPicture, width: f32, look: ScreenStyle) -> Vec2 {
     let [w, h] = [logo.0.width.max(1) as f32, logo.0.height.max(1) as f32];
     let share = (look.body * 3.4 * look.squeeze / h).min(width * LOGO_WIDTH / w);
     vec2(w * share, h * share).round()
 }
 
 /// The heading, a little smaller where that saves it a second line.
-pub fn head(painter: &Painter, text: &str, look: Look, width: f32) -> SetText {
+pub fn head(painter: &Painter, text: &str, look: ScreenStyle, width: f32) -> SetText {
     let set = |share: f32| {
         let font = look.heading();
         left_aligned(painter, text, FontId { size: (font.size * share).round(), ..font }, look.palette.ink, width)
@@ -45,7 +45,7 @@ pub fn head(painter: &Painter, text: &str, look: Look, width: f32) -> SetText {
 }
 
 /// A block at the origin.
-pub fn block(index: usize, block: &Block, width: f32, look: Look, painter: &Painter) -> PlacedBlock {
+pub fn block(index: usize, block: &Block, width: f32, look: ScreenStyle, painter: &Painter) -> PlacedBlock {
     let text = |text: &str, room: f32| left_aligned(painter, text, look.text(), look.palette.ink, room);
     let (height, set) = match block {
         Block::Text(paragraph) => {
@@ -89,11 +89,11 @@ fn clock(seconds: u32) -> String {
 }
 
 /// Width of the scale before a zone's fit.
-pub fn gauge_width(look: Look) -> f32 {
+pub fn gauge_width(look: ScreenStyle) -> f32 {
     (look.body * 4.0).round()
 }
 
 /// Type of the seconds that are left.
-fn big(look: Look) -> FontId {
+fn big(look: ScreenStyle) -> FontId {
     FontId { size: (look.body * 2.4).round(), ..look.heading() }
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use egui::{FontId, Painter, Pos2, Rect, Vec2, pos2, vec2};
 
 use super::text::{SetText, centred, is_ideograph, left_aligned};
-use super::theme::Look;
+use super::theme::ScreenStyle;
 use crate::visitor::screen::{Control, ControlStyle};
 
 /// Most columns of a grid.
@@ -50,12 +50,12 @@ impl ButtonBox {
 struct Column<'a> {
     controls: &'a [Control],
     width: f32,
-    look: Look,
+    look: ScreenStyle,
     painter: &'a Painter,
 }
 
 /// Buttons in a column of this width, from the origin down, and how high they are together.
-pub fn lay(controls: &[Control], width: f32, look: Look, painter: &Painter) -> (Vec<ButtonBox>, f32) {
+pub fn lay(controls: &[Control], width: f32, look: ScreenStyle, painter: &Painter) -> (Vec<ButtonBox>, f32) {
     let column = Column { controls, width, look, painter };
     let (mut buttons, mut y) = (Vec::with_capacity(controls.len()), 0.0);
     for run in runs(controls) {
@@ -130,7 +130,7 @@ impl Column<'_> {
 }
 
 /// Least width at which a control looks well: its longest word in one piece, and its label in two lines.
-fn natural(control: &Control, look: Look, painter: &Painter) -> f32 {
+fn natural(control: &Control, look: ScreenStyle, painter: &Painter) -> f32 {
     let font = font(control, look);
     let wide = |text: &str, font: FontId| left_aligned(painter, text, font, look.palette.ink, f32::INFINITY).size().x;
     // In a column, lines may end between any two ideographs, as they do in paragraphs.
@@ -142,13 +142,13 @@ fn natural(control: &Control, look: Look, painter: &Painter) -> f32 {
 }
 
 /// The second line of a control, unless there is no room for it.
-fn detail(control: &Control, look: Look) -> Option<&String> {
+fn detail(control: &Control, look: ScreenStyle) -> Option<&String> {
     let is_left_out = control.is_detail_spare && look.narrow && look.squeeze < SPARE;
     control.detail.as_ref().filter(|_| !is_left_out)
 }
 
 /// Type of a control's words.
-fn font(control: &Control, look: Look) -> FontId {
+fn font(control: &Control, look: ScreenStyle) -> FontId {
     match control.style {
         ControlStyle::Swatch(_) | ControlStyle::Tile(_) => look.small(),
         ControlStyle::Quiet => look.text(),
@@ -158,7 +158,7 @@ fn font(control: &Control, look: Look) -> FontId {
 }
 
 /// What the mark of a choice takes beside the words.
-pub fn aside(control: &Control, look: Look) -> f32 {
+pub fn aside(control: &Control, look: ScreenStyle) -> f32 {
     if is_row(control, look) {
         picture_width(look) + pad(look)
     } else if matches!(control.style, ControlStyle::Swatch(_) | ControlStyle::Tile(_)) || !control.chosen {
@@ -169,32 +169,32 @@ pub fn aside(control: &Control, look: Look) -> f32 {
 }
 
 /// Diameter of the disc that shows a colour.
-pub fn disc(look: Look) -> f32 {
+pub fn disc(look: ScreenStyle) -> f32 {
     (look.body * 1.7 * look.squeeze).max(look.target * 0.6).round()
 }
 
 /// Height of the photograph on a tile.
-pub fn picture_height(look: Look) -> f32 {
+pub fn picture_height(look: ScreenStyle) -> f32 {
     let lines = if look.narrow { NARROW_TILE_LINES } else { TILE_LINES };
     (look.body * lines * look.squeeze).max(look.target).round()
 }
 
 /// Width of the photograph on a tile whose words stand beside it.
-pub fn picture_width(look: Look) -> f32 {
+pub fn picture_width(look: ScreenStyle) -> f32 {
     (picture_height(look) * NARROW_TILE).round()
 }
 
 /// Whether a control has its words beside its photograph.
-fn is_row(control: &Control, look: Look) -> bool {
+fn is_row(control: &Control, look: ScreenStyle) -> bool {
     look.narrow && matches!(control.style, ControlStyle::Tile(_))
 }
 
 /// Air within a button, left and right.
-pub fn pad(look: Look) -> f32 {
+pub fn pad(look: ScreenStyle) -> f32 {
     (look.body * 0.7 * look.squeeze).round()
 }
 
-fn button(control: &Control, index: usize, width: f32, look: Look, painter: &Painter) -> ButtonBox {
+fn button(control: &Control, index: usize, width: f32, look: ScreenStyle, painter: &Painter) -> ButtonBox {
     let room = width - aside(control, look) - 2.0 * pad(look);
     let dark = matches!(control.style, ControlStyle::Primary);
     let (ink, soft) =

@@ -15,7 +15,7 @@ use glam::{Affine3A, Vec2};
 use painted_face::{PaintedHead, Shot};
 use toile_base::body::Sex;
 use toile_base::frame::Joints;
-use toile_engine::frame::{Frame, Snapshot};
+use toile_engine::world::{Snapshot, World};
 use toile_fitting::dress::session;
 use toile_fitting::dress::try_on::DressedWorld;
 use toile_pose::files::{self, NetworkPackage};
@@ -56,15 +56,15 @@ fn face(folder: &Path) -> Arc<OwnHead> {
 }
 
 /// A frame in which a dress hangs, and its snapshot.
-fn hanging() -> (Frame, Snapshot) {
+fn hanging() -> (World, Snapshot) {
     let stock = Stock::read(&Config::parse("k.toml", "[wear]\ngarments = [\"strap-dress\"]\n").unwrap()).unwrap();
     let pose: Joints = session::standing(&session::open(None, None).unwrap()).unwrap()[0];
-    let DressedWorld { mut frame, mut reader, .. } = stock.first.on_mannequin(&pose).unwrap();
+    let DressedWorld { mut world, mut reader, .. } = stock.first.on_mannequin(&pose).unwrap();
     (0..STEPS).for_each(|_| {
-        frame.step(&pose);
+        world.step(&pose);
     });
     let snapshot = reader.latest().clone();
-    (frame, snapshot)
+    (world, snapshot)
 }
 
 /// The page on which the face is, or is not yet.
@@ -120,9 +120,9 @@ fn a_picture_of_somebody_becomes_the_face_on_the_page() {
         eprintln!("skipped, did not run: install mesa-vulkan-drivers");
         return;
     };
-    let (frame, snapshot) = hanging();
+    let (world, snapshot) = hanging();
     let face = face(&files::folder());
-    let model = |face: Option<&OwnHead>| BodyModel::of(&frame, Appearance::default(), face);
+    let model = |face: Option<&OwnHead>| BodyModel::of(&world, Appearance::default(), face);
     let before = drawn(&gpu, &page(false), &model(None), &snapshot);
     let after = drawn(&gpu, &page(true), &model(Some(&face)), &snapshot);
     println!("skin on {:.4} of the page, {:.4} with the face", skin(&before), skin(&after));

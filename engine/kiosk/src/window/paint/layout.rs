@@ -6,7 +6,7 @@ use super::arrangement::{Arrangement, MOST_PANEL};
 use super::blocks::{self, PlacedBlock};
 use super::controls::{self, ButtonBox};
 use super::text::{SetText, breaks_a_word};
-use super::theme::Look;
+use super::theme::ScreenStyle;
 use crate::visitor::screen::Screen;
 
 /// How tight the panel may get, in the order of trying.
@@ -19,7 +19,7 @@ const READ_WITH_EASE: f32 = 0.8;
 #[derive(Debug, Clone)]
 pub struct ScreenLayout {
     /// The sizes that it came to, and its colours.
-    pub look: Look,
+    pub look: ScreenStyle,
     /// Rectangle of the panel (pixels).
     pub panel: Rect,
     /// What the panel leaves of the display.
@@ -41,7 +41,7 @@ pub struct ScreenLayout {
 }
 
 /// Lays a screen out on a display: the first arrangement in which everything has its place, and the last one at any rate.
-pub fn lay(screen: &Screen, look: Look, painter: &Painter) -> ScreenLayout {
+pub fn lay(screen: &Screen, look: ScreenStyle, painter: &Painter) -> ScreenLayout {
     let (preferred, last) = Arrangement::of(screen, look);
     let tries = SQUEEZES.into_iter().map(|squeeze| look.squeezed(squeeze));
     let whole = preferred.and_then(|arrangement| {
@@ -52,7 +52,7 @@ pub fn lay(screen: &Screen, look: Look, painter: &Painter) -> ScreenLayout {
 }
 
 /// In one arrangement, as tight as it has to be.
-fn lay_as(screen: &Screen, look: Look, arrangement: Arrangement, painter: &Painter) -> ScreenLayout {
+fn lay_as(screen: &Screen, look: ScreenStyle, arrangement: Arrangement, painter: &Painter) -> ScreenLayout {
     let (mut last, most) = (None, arrangement.most_panel(look));
     for squeeze in SQUEEZES {
         let laid = lay_at(screen, look.squeezed(squeeze), arrangement, painter);
@@ -71,9 +71,9 @@ fn lay_as(screen: &Screen, look: Look, arrangement: Arrangement, painter: &Paint
     last.unwrap_or_else(|| lay_at(screen, look, arrangement, painter))
 }
 
-fn lay_at(screen: &Screen, look: Look, arrangement: Arrangement, painter: &Painter) -> ScreenLayout {
+fn lay_at(screen: &Screen, look: ScreenStyle, arrangement: Arrangement, painter: &Painter) -> ScreenLayout {
     let [w, h] = look.display;
-    let look = Look { narrow: arrangement.is_narrow(look), ..look };
+    let look = ScreenStyle { narrow: arrangement.is_narrow(look), ..look };
     let (margin, gap, air) = (look.margin(), look.gap(), look.air());
     let column = arrangement.column(look);
     let inner = column - 2.0 * margin;

@@ -1,6 +1,5 @@
 //! Paint: a screen as shapes.
 //!
-//! Reads: a [`Screen`] with its theme and its photographs, the display's size, what a finger does. Writes: triangles and changes of textures; what was pressed.
 //! Budget: 2 ms a picture of the render thread's core; no picture waits for it, nor does physics.
 //! Thread: render.
 //!
@@ -29,7 +28,7 @@ use crate::visitor::screen::{Action, Screen, ScreenTheme};
 use layout::ScreenLayout;
 use palette::Palette;
 use pictures::PictureTextures;
-use theme::Look;
+use theme::ScreenStyle;
 use touch::{TouchEvent, TouchTracker};
 
 /// A display: its pixels, and the size of one (mm).
@@ -111,7 +110,7 @@ impl ScreenPainter {
         let time = Some(self.begun.elapsed().as_secs_f64());
         self.context.begin_pass(RawInput { screen_rect: Some(whole), time, ..RawInput::default() });
         let painter = self.context.layer_painter(LayerId::background());
-        let look = Look::of([w, h], display.pixel_mm, screen.type_scale, self.palette);
+        let look = ScreenStyle::of([w, h], display.pixel_mm, screen.type_scale, self.palette);
         self.textures.hold(&self.context, screen);
         let laid = layout::lay(screen, look, &painter);
         self.finger.follow(&laid, screen);

@@ -8,7 +8,7 @@ use super::controls::{ButtonBox, aside, disc, pad, picture_height, picture_width
 use super::layout::ScreenLayout;
 use super::pictures::PictureTextures;
 use super::text::SetText;
-use super::theme::{self, Look};
+use super::theme::{self, ScreenStyle};
 use super::{figure, qr_code, turn_guide};
 use crate::visitor::screen::{Block, Control, ControlStyle, Screen};
 use toile_view::fit_map;
@@ -78,7 +78,7 @@ fn scroll_bar(laid: &ScreenLayout, scrolled: f32, painter: &Painter) {
     painter.rect_filled(bar(scrolled, scrolled + window.height()), wide * 0.5, look.palette.soft);
 }
 
-fn paint_block(block: &Block, placed: &PlacedBlock, look: Look, painter: &Painter) {
+fn paint_block(block: &Block, placed: &PlacedBlock, look: ScreenStyle, painter: &Painter) {
     let (rect, words) = (placed.rect, &placed.words);
     match block {
         Block::Text(_) => words.iter().for_each(|w| put(painter, rect.min, w)),
@@ -100,7 +100,7 @@ fn put(painter: &Painter, at: Pos2, words: &SetText) {
     painter.galley(at.round(), words.clone(), theme::LIGHT);
 }
 
-fn progress(share: f32, rect: Rect, words: &[SetText], look: Look, painter: &Painter) {
+fn progress(share: f32, rect: Rect, words: &[SetText], look: ScreenStyle, painter: &Painter) {
     let tall = (look.body * 0.6).round();
     let bar = Rect::from_min_max(pos2(rect.left(), rect.bottom() - tall), rect.max);
     if let [label, percent] = words {
@@ -119,7 +119,7 @@ fn step(i: usize) -> Color32 {
 }
 
 /// Eight cells from loose to tight; all of one grey where the fit is not known.
-fn cells(rect: Rect, known: bool, look: Look, painter: &Painter) -> impl Fn(usize) -> Rect + use<> {
+fn cells(rect: Rect, known: bool, look: ScreenStyle, painter: &Painter) -> impl Fn(usize) -> Rect + use<> {
     let count = fit_map::STEPS.len();
     let cell = move |i: usize| {
         let x = |i: usize| rect.left() + rect.width() * i as f32 / count as f32;
@@ -130,7 +130,7 @@ fn cells(rect: Rect, known: bool, look: Look, painter: &Painter) -> impl Fn(usiz
 }
 
 /// A scale with a mark at the step, so that place and form say what the colour says; then the words.
-fn fit(tightness: Option<f32>, rect: Rect, words: &[SetText], look: Look, painter: &Painter) {
+fn fit(tightness: Option<f32>, rect: Rect, words: &[SetText], look: ScreenStyle, painter: &Painter) {
     let line = words.first().map_or(look.body, |w| w.rows.first().map_or(look.body, |r| r.height()));
     let tall = (look.body * 0.42).round();
     let scale = Rect::from_min_size(
@@ -152,7 +152,7 @@ fn fit(tightness: Option<f32>, rect: Rect, words: &[SetText], look: Look, painte
     }
 }
 
-fn legend(rect: Rect, words: &[SetText], look: Look, painter: &Painter) {
+fn legend(rect: Rect, words: &[SetText], look: ScreenStyle, painter: &Painter) {
     let tall = (look.body * 0.7).round();
     _ = cells(Rect::from_min_size(rect.min, vec2(rect.width(), tall)), true, look, painter);
     if let [loose, tight] = words {
@@ -163,14 +163,14 @@ fn legend(rect: Rect, words: &[SetText], look: Look, painter: &Painter) {
 }
 
 /// What is typed, as a display of its own.
-fn entry(rect: Rect, words: &[SetText], look: Look, painter: &Painter) {
+fn entry(rect: Rect, words: &[SetText], look: ScreenStyle, painter: &Painter) {
     let Some(length) = words.first() else { return };
     painter.rect_filled(rect, look.round(), look.palette.plain);
     painter.rect_stroke(rect, look.round(), Stroke::new(look.line() * 2.0, look.palette.ink), StrokeKind::Inside);
     put(painter, rect.center() - length.size() * 0.5, length);
 }
 
-fn countdown(rect: Rect, words: &[SetText], look: Look, painter: &Painter) {
+fn countdown(rect: Rect, words: &[SetText], look: ScreenStyle, painter: &Painter) {
     let Some(number) = words.first() else { return };
     let tall = rect.height();
     let pill = Rect::from_center_size(rect.center(), vec2((number.size().x + tall * 0.6).max(tall), tall));
@@ -191,7 +191,7 @@ fn paint_button(
     button: &ButtonBox,
     rect: Rect,
     state: ButtonState,
-    look: Look,
+    look: ScreenStyle,
     (painter, textures): (&Painter, &PictureTextures),
 ) {
     let round = look.round();
@@ -221,7 +221,7 @@ fn tile(
     (control, colour): (&Control, [f32; 3]),
     button: &ButtonBox,
     rect: Rect,
-    look: Look,
+    look: ScreenStyle,
     (painter, textures): (&Painter, &PictureTextures),
 ) {
     let air = pad(look);
@@ -262,7 +262,7 @@ fn beside(button: &ButtonBox, rect: Rect, x: f32, painter: &Painter) {
 }
 
 /// What stands on a button: disc or mark, words, second line.
-fn face(control: &Control, button: &ButtonBox, rect: Rect, look: Look, painter: &Painter) {
+fn face(control: &Control, button: &ButtonBox, rect: Rect, look: ScreenStyle, painter: &Painter) {
     let first_text = button.label.size().y + button.detail.as_ref().map_or(0.0, |d| d.size().y);
     let mut top = rect.center().y - first_text * 0.5;
     let mut middle = rect.center().x;
@@ -288,7 +288,7 @@ fn face(control: &Control, button: &ButtonBox, rect: Rect, look: Look, painter: 
 }
 
 /// A disc of a colour; its edge sets light and dark ones off from the panel.
-fn swatch(painter: &Painter, centre: Pos2, radius: f32, colour: [f32; 3], chosen: bool, look: Look) {
+fn swatch(painter: &Painter, centre: Pos2, radius: f32, colour: [f32; 3], chosen: bool, look: ScreenStyle) {
     let [r, g, b] = colour.map(|c| c.clamp(0.0, 1.0));
     let fill = Color32::from(Rgba::from_rgb(r, g, b));
     painter.circle(centre, radius, fill, Stroke::new(look.line() * 1.5, look.palette.ink));

@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use super::theme::{LEAST_LINE, Look, TARGET_MM};
+use super::theme::{LEAST_LINE, ScreenStyle, TARGET_MM};
 use super::*;
 use crate::visitor::screen::{Block, BodyView, Control, ControlStyle, Page, ScreenPicture};
 use egui::{Color32, FontFamily, FontId, Rgba};
@@ -97,7 +97,7 @@ fn no_line_is_smaller_than_a_sixtieth_of_the_display() {
     for display in DISPLAYS {
         let size = display.size.map(|n| n as f32);
         for squeeze in [1.0, 0.8, 0.6] {
-            let look = Look::of(size, display.pixel_mm, 1.0, OWN).squeezed(squeeze);
+            let look = ScreenStyle::of(size, display.pixel_mm, 1.0, OWN).squeezed(squeeze);
             for font in [look.text(), look.label(), look.small(), look.heading()] {
                 assert!(font.size >= (size[1] * LEAST_LINE).floor(), "{display:?} at {squeeze}: {}", font.size);
             }

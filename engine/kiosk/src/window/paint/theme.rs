@@ -28,7 +28,7 @@ pub const BODY: FontFamily = FontFamily::Proportional;
 
 /// Sizes in pixels, and colours.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Look {
+pub struct ScreenStyle {
     /// The display's width and height.
     pub display: [f32; 2],
     /// Type of a paragraph.
@@ -47,7 +47,7 @@ pub struct Look {
     pub palette: Palette,
 }
 
-impl Look {
+impl ScreenStyle {
     /// Of a display of so many pixels, of which one measures so much (mm), with type so much larger than ordinary.
     pub fn of(display: [f32; 2], pixel_mm: f32, type_scale: f32, palette: Palette) -> Self {
         let [w, h] = display;

@@ -1,4 +1,4 @@
-//! Laws of the decoder: frames are complete, time runs forwards, and whatever is wrong is counted.
+//! Tests of the decoder: frames are complete, time runs forwards, and whatever is wrong is counted.
 
 use rosc::{OscBundle, OscMessage, OscPacket, OscTime, OscType, encoder};
 use toile_base::skeleton::Joint;

@@ -1,0 +1,416 @@
+//! What each worker does in each phase of a step of several garments.
+//!
+//! Between two phases the workers meet. Within one, what a worker writes belongs to it alone: particles to the worker of their
+//! owner's share, or of their garment where one worker owns it whole; contacts to the worker whose half of the particles they are of;
+//! what contacts do to particles to the worker of one half of those that are touched.
+
+use std::marker::PhantomData;
+use std::sync::atomic::AtomicU64;
+use std::sync::atomic::Ordering::Relaxed;
+use std::time::Instant;
+
+use toile_base::garment::layout::OWNERS;
+use toile_base::limits::MAX_GARMENTS;
+
+use super::bearing::{Bearing, GarmentBearing, give_way};
+use super::contact::{Resting, VERTICES};
+use super::contact_list::ContactList;
+use super::garment_surface::{GarmentMotion, GarmentSurface};
+use super::pace::{PairPace, Search};
+use super::pair::{GarmentPair, PairScene, Wearing};
+use super::pair_share::PairShare;
+use super::phases::{LayerPhase, LayerPhases};
+use super::touch::TouchLists;
+use super::turns::{Turn, Turns};
+use crate::cloth::state::ParticleColumns;
+use crate::cloth::step::program::{LAYERS_METERED, METERED_STAGES, Stage};
+use crate::cloth::step::work::StepWork;
+use crate::lanes::Width;
+
+/// Things of which each belongs to one worker at a time.
+struct Cells<'a, T> {
+    data: *mut T,
+    len: usize,
+    owner: PhantomData<&'a mut [T]>,
+}
+
+// SAFETY: it hands out `&mut T` and `&T` to whoever keeps to the rules of `own` and `read`, and T may go to other threads.
+unsafe impl<T: Send + Sync> Sync for Cells<'_, T> {}
+
+impl<'a, T> Cells<'a, T> {
+    fn new(items: &'a mut [T]) -> Self {
+        Self { data: items.as_mut_ptr(), len: items.len(), owner: PhantomData }
+    }
+
+    /// # Safety
+    /// Until the workers next meet, nobody else reads or writes the item.
+    #[expect(clippy::mut_from_ref, reason = "each item is one worker's")]
+    unsafe fn own(&self, i: usize) -> &mut T {
+        assert!(i < self.len, "there is no such item");
+        // SAFETY: within the slice; see above.
+        unsafe { &mut *self.data.add(i) }
+    }
+
+    /// # Safety
+    /// Until the workers next meet, nobody else reads or writes any of them.
+    #[expect(clippy::mut_from_ref, reason = "all are one worker's")]
+    unsafe fn own_all(&self) -> &mut [T] {
+        // SAFETY: the slice that it was made of; see above.
+        unsafe { std::slice::from_raw_parts_mut(self.data, self.len) }
+    }
+
+    /// # Safety
+    /// Until the workers next meet, nobody writes the item.
+    unsafe fn read(&self, i: usize) -> &T {
+        assert!(i < self.len, "there is no such item");
+        // SAFETY: within the slice; see above.
+        unsafe { &*self.data.add(i) }
+    }
+}
+
+/// Everything that the phases of a step share.
+pub struct LayerWork<'a> {
+    works: &'a [StepWork<'a>],
+    surfaces: &'a [GarmentSurface],
+    pairs: &'a [GarmentPair],
+    paces: &'a [PairPace],
+    worker: &'a [usize],
+    turns: Turns,
+    motions: Cells<'a, GarmentMotion>,
+    shares: Cells<'a, PairShare>,
+    touching: Cells<'a, TouchLists>,
+    resting: heapless::Vec<Cells<'a, Resting>, MAX_GARMENTS>,
+    bearing: heapless::Vec<Cells<'a, Bearing>, MAX_GARMENTS>,
+    substeps: usize,
+    /// Time of the stages of all garments (ns), where they are timed.
+    times: [AtomicU64; METERED_STAGES.len()],
+}
+
+/// What of the layers a step works on.
+pub struct LayerParts<'a> {
+    /// Surfaces of the garments.
+    pub surfaces: &'a [GarmentSurface],
+    /// The pairs.
+    pub pairs: &'a [GarmentPair],
+    /// What this step does to find the contacts of each.
+    pub paces: &'a [PairPace],
+    /// Who steps which garment.
+    pub worker: &'a [usize],
+    /// The turns of a substep.
+    pub turns: Turns,
+    /// Motions of the garments.
+    pub motions: &'a mut [GarmentMotion],
+    /// Shares of the pairs.
+    pub shares: &'a mut [PairShare],
+    /// Touches of the garments.
+    pub touching: &'a mut [TouchLists],
+    /// What holds their particles, and what these bear.
+    pub bearing: &'a mut [GarmentBearing],
+}
+
+impl<'a> LayerWork<'a> {
+    /// The work of a step.
+    pub fn new(works: &'a [StepWork<'a>], parts: LayerParts<'a>, substeps: usize) -> Self {
+        let LayerParts { surfaces, pairs, paces, worker, turns, motions, shares, touching, bearing } = parts;
+        let (motions, shares, touching) = (Cells::new(motions), Cells::new(shares), Cells::new(touching));
+        let (resting, bearing) =
+            bearing.iter_mut().map(|b| (Cells::new(&mut b.resting), Cells::new(&mut b.bearing))).unzip();
+        Self {
+            works,
+            surfaces,
+            pairs,
+            paces,
+            worker,
+            turns,
+            motions,
+            shares,
+            touching,
+            resting,
+            bearing,
+            substeps,
+            times: Default::default(),
+        }
+    }
+
+    /// Time of the stages of all garments (ns), where they are timed.
+    pub fn times(&self) -> [u64; METERED_STAGES.len()] {
+        self.times.each_ref().map(|t| t.load(Relaxed))
+    }
+
+    /// Does something that counts towards a metered stage.
+    fn meter(&self, stage: usize, act: impl FnOnce()) {
+        let begun = self.works[0].step.settings.timed.then(Instant::now);
+        act();
+        if let Some(begun) = begun {
+            // Relaxed: a sum that is read when all is done.
+            self.times[stage].fetch_add(begun.elapsed().as_nanos() as u64, Relaxed);
+        }
+    }
+
+    /// Does one worker's share of a phase; no share of a phase is done twice.
+    pub fn run(&self, phase: LayerPhase, share: usize) {
+        match phase {
+            LayerPhase::Motions => self.meter(LAYERS_METERED, || {
+                self.each_garment(share, |g| {
+                    self.give_way(g);
+                    self.motion(g);
+                });
+            }),
+            LayerPhase::Find => self.meter(LAYERS_METERED, || {
+                self.each_pair(share, |p, own| match self.paces[p].search {
+                    Search::Anew(steps) => own.find(&self.pairs[p], &self.scene(p, steps)),
+                    Search::Keep => own.asked = 0,
+                    Search::Off => own.rest(),
+                });
+            }),
+            LayerPhase::Lists => self.meter(LAYERS_METERED, || self.each_garment(share, |g| self.fill_lists(g))),
+            LayerPhase::Before(stage) => (0..self.works.len()).for_each(|g| self.stage(g, stage, 0, share)),
+            LayerPhase::Finish(g, substep) => self.finish_before(g, substep, share),
+            LayerPhase::Stage(g, at, substep) => self.stage(g, self.stages(g).1[at], substep, share),
+            LayerPhase::Whole(substep) => (0..self.works.len()).filter(|&g| !self.is_shared(g)).for_each(|g| {
+                self.finish_before(g, substep, share);
+                self.stages(g).1.iter().for_each(|&stage| self.stage(g, stage, substep, share));
+            }),
+            LayerPhase::Solve(substep, at) => self.meter(LAYERS_METERED, || self.turn(substep, at, share)),
+            LayerPhase::Apply(at) => self.meter(LAYERS_METERED, || {
+                (0..self.works.len()).for_each(|g| self.apply(g, self.turns.at(at), share));
+            }),
+            LayerPhase::End => (0..self.works.len()).for_each(|g| self.finish(g, self.substeps - 1, share)),
+        }
+    }
+
+    /// The phases of the step.
+    pub fn phases(&self) -> LayerPhases {
+        let all = || 0..self.works.len();
+        let shared = all().filter(|&g| self.is_shared(g)).map(|g| (g, self.stages(g).1.len())).collect();
+        let whole = all().any(|g| !self.is_shared(g));
+        LayerPhases { shared, whole, turns: self.turns.count(), substeps: self.substeps }
+    }
+
+    /// Whether both workers own particles of a garment.
+    fn is_shared(&self, garment: usize) -> bool {
+        !self.works[garment].garment.layout().spans[1].is_empty()
+    }
+
+    /// The last stage of a garment's substep, which is contact with the body, and those before.
+    fn stages(&self, garment: usize) -> (Stage, &[Stage]) {
+        let stages = self.works[garment].prepared.program.of_substep();
+        stages.split_last().map_or((Stage::ContactAndVelocities, stages), |(last, others)| (*last, others))
+    }
+
+    fn each_garment(&self, share: usize, act: impl Fn(usize)) {
+        (0..self.works.len()).filter(|&g| self.worker[g] == share).for_each(act);
+    }
+
+    fn each_pair(&self, share: usize, act: impl Fn(usize, &mut PairShare)) {
+        for p in 0..self.pairs.len() {
+            // SAFETY: the shares of pairs are written in the phases that call this, by the worker of the share alone, and
+            // read in the others.
+            act(p, unsafe { self.shares.own(share * self.pairs.len() + p) });
+        }
+    }
+
+    /// Particles of a garment. In a phase that writes some, each worker opens what it owns; in one that only reads them, all.
+    fn particles(&self, garment: usize) -> ParticleColumns<'_> {
+        // SAFETY: positions and velocities are written in `Before`, `Stage`, `Whole`, `Finish` and `End`, where each worker writes the
+        // particles of its owner's share, as `StepWork::run` says, or of the garments that are its own, and in `Apply`, where each
+        // writes those of its part; `Motions` writes what the body gives, by the garment's
+        // worker; they are read by both in `Find`, `Lists` and `Solve`, in which nobody writes them.
+        unsafe { self.works[garment].columns.open() }.particles
+    }
+
+    fn width(&self) -> Width {
+        self.works[0].width
+    }
+
+    /// What the last step has shown of where the body is in its own way.
+    fn give_way(&self, garment: usize) {
+        let seconds = self.works[0].step.settings.step_seconds;
+        let (given, touching) = (self.particles(garment).given, self.touching(garment));
+        if touching.gives || touching.any() {
+            // SAFETY: in this phase the garment's worker alone has them.
+            touching.gives = give_way(given, unsafe { self.bearing[garment].own_all() }, seconds);
+        }
+    }
+
+    fn motion(&self, garment: usize) {
+        let looks = |(pair, pace): (&GarmentPair, &PairPace)| {
+            matches!(pace.search, Search::Anew(_)) && (pair.particles == garment || pair.faces == garment)
+        };
+        if !self.pairs.iter().zip(self.paces).any(looks) {
+            return;
+        }
+        // SAFETY: written in this phase by the garment's worker, read in the next.
+        let motion = unsafe { self.motions.own(garment) };
+        let meets = self.works.len() > 1 && self.works[0].step.settings.contact.layers > 0;
+        motion.take(&self.surfaces[garment], self.particles(garment), self.width(), meets);
+    }
+
+    /// What a pair is found from, for so many steps.
+    fn scene(&self, pair: usize, steps: u8) -> PairScene<'_> {
+        let GarmentPair { particles, faces, .. } = self.pairs[pair];
+        PairScene {
+            columns: [particles, faces].map(|g| self.particles(g)),
+            surfaces: [particles, faces].map(|g| &self.surfaces[g]),
+            // SAFETY: written in the phase before.
+            motions: [particles, faces].map(|g| unsafe { self.motions.read(g) }),
+            step_seconds: self.works[0].step.settings.step_seconds * f32::from(steps),
+            tick: self.paces[pair].number,
+            width: self.width(),
+        }
+    }
+
+    /// The contacts of a list, in phases that do not write them.
+    fn contacts(&self, list: usize) -> &ContactList {
+        // SAFETY: contacts are written in `Find` and `Solve`, which do not call this.
+        unsafe { &self.shares.read(list).contacts }
+    }
+
+    fn fill_lists(&self, garment: usize) {
+        let touching = self.touching(garment);
+        touching.fill(self.pairs, |list| self.contacts(list).contacts());
+        // SAFETY: in this phase the garment's worker alone has them.
+        let all = unsafe { (self.bearing[garment].own_all(), self.resting[garment].own_all()) };
+        for (i, (bearing, resting)) in all.0.iter_mut().zip(all.1).enumerate() {
+            if !touching.touches(i) {
+                bearing.rest(resting);
+            }
+        }
+    }
+
+    /// The touches of a garment, in phases in which its worker alone has them.
+    #[expect(clippy::mut_from_ref, reason = "each garment is one worker's")]
+    fn touching(&self, garment: usize) -> &mut TouchLists {
+        // SAFETY: written in `Motions` and `Lists` by the garment's worker, read in the others.
+        unsafe { self.touching.own(garment) }
+    }
+
+    /// The same in phases that write none.
+    fn touches(&self, garment: usize) -> &TouchLists {
+        // SAFETY: see above.
+        unsafe { self.touching.read(garment) }
+    }
+
+    /// A worker's share of a stage: of a garment that is one worker's all or nothing.
+    fn stage(&self, garment: usize, stage: Stage, substep: usize, share: usize) {
+        let run = |owner: usize| self.works[garment].run(stage, substep as u32, owner);
+        match self.is_shared(garment) {
+            true => self.meter(stage.metered(), || run(share)),
+            false if self.worker[garment] == share => self.meter(stage.metered(), || (0..OWNERS).for_each(run)),
+            false => {}
+        }
+    }
+
+    /// The end of the substep before this one, if there is one.
+    fn finish_before(&self, garment: usize, substep: usize, share: usize) {
+        substep.checked_sub(1).into_iter().for_each(|before| self.finish(garment, before, share));
+    }
+
+    /// Contact with the body and the velocities, and what was seen of what holds what. Of a shared garment one owner's particles,
+    /// which nobody else's depend on.
+    fn finish(&self, garment: usize, substep: usize, share: usize) {
+        self.stage(garment, self.stages(garment).0, substep, share);
+        let note = |part: usize| {
+            self.each_touched(garment, part, |i, resting, bearing, columns| bearing.note_support(resting, i, columns));
+        };
+        match self.is_shared(garment) {
+            true => self.meter(LAYERS_METERED, || note(share)),
+            false if self.worker[garment] == share => self.meter(LAYERS_METERED, || (0..OWNERS).for_each(note)),
+            false => {}
+        }
+    }
+
+    /// Does something to each particle of a part of a garment that anything touches.
+    fn each_touched(
+        &self,
+        garment: usize,
+        part: usize,
+        act: impl Fn(usize, &mut Resting, &mut Bearing, ParticleColumns<'_>),
+    ) {
+        let (touches, columns) = (self.touches(garment), self.particles(garment));
+        for touched in touches.touched(touches.own_level(), part) {
+            let i = touched.particle as usize;
+            // SAFETY: each particle is in one part, whose worker alone has them in the phases that call this: `Apply`,
+            // `Finish`, `Whole` and `End`.
+            let (resting, bearing) = unsafe { (self.resting[garment].own(i), self.bearing[garment].own(i)) };
+            act(i, resting, bearing, columns);
+        }
+    }
+
+    /// What the contacts of a turn do to the particles of a part of a garment; after the last turn these get what they bear.
+    fn apply(&self, garment: usize, turn: Turn, part: usize) {
+        self.gather(garment, turn, part);
+        if turn == self.turns.last() {
+            self.each_touched(garment, part, |i, _, bearing, columns| bearing.bear(i, columns));
+        }
+    }
+
+    fn gather(&self, garment: usize, turn: Turn, part: usize) {
+        let (touches, columns) = (self.touches(garment), self.particles(garment));
+        let is_own = turn.level == touches.own_level();
+        if !turn.up && touches.height() == turn.level {
+            return self.each_touched(garment, part, |_, _, bearing, _| bearing.let_go());
+        }
+        if !turn.up && touches.height() > turn.level {
+            return;
+        }
+        for touched in touches.touched(turn.level, part) {
+            let i = touched.particle as usize;
+            // SAFETY: as in `each_touched`.
+            let (resting, bearing) = unsafe { (self.resting[garment].own(i), self.bearing[garment].own(i)) };
+            let own = touches.of(touched);
+            match turn.up {
+                true => bearing.gather(resting, i, own, is_own, columns, |list| self.contacts(list.into()).pushes()),
+                false => own.iter().for_each(|touch| {
+                    let contacts = self.contacts(touch.list.into()).contacts();
+                    bearing.take_over(touch, &contacts[touch.contact as usize]);
+                }),
+            }
+        }
+    }
+
+    /// One turn's share of the contacts.
+    fn turn(&self, substep: usize, at: usize, share: usize) {
+        let turn = self.turns.at(at);
+        self.each_pair(share, |p, own| match (self.pairs[p].level == turn.level, turn.up) {
+            (false, _) => {}
+            (true, true) => self.solve(p, own, substep == 0),
+            (true, false) => self.pass(p, own),
+        });
+    }
+
+    fn pass(&self, pair: usize, own: &mut PairShare) {
+        let pair = &self.pairs[pair];
+        if pair.is_fold() {
+            return;
+        }
+        let (above, of) = if pair.wearing == Wearing::Outer { (0, pair.particles) } else { (1, pair.faces) };
+        let borne = |i: u32| {
+            // SAFETY: nobody writes them in `Solve`.
+            let bearing = unsafe { self.bearing[of].read(i as usize) };
+            (bearing.owed, bearing.held_by)
+        };
+        own.contacts.pairs_mut().for_each(|(contact, push)| contact.pass(push, above, borne));
+    }
+
+    fn solve(&self, pair: usize, own: &mut PairShare, first: bool) {
+        let GarmentPair { particles, faces, level, .. } = self.pairs[pair];
+        let of = [particles, faces];
+        let columns = of.map(|g| self.particles(g));
+        if first {
+            let load = of.map(|g| self.touches(g).load(level));
+            own.contacts.pairs_mut().for_each(|(contact, _)| contact.weigh(columns, load));
+        }
+        let settings = self.works[0].step.settings;
+        let law = self.pairs[pair].law(settings.step_seconds / self.substeps as f32, settings.static_friction);
+        let resting = of.map(|g| &self.resting[g]);
+        for (contact, push) in own.contacts.pairs_mut() {
+            let mut rest = [Resting::default(); VERTICES];
+            for (k, rest) in rest.iter_mut().enumerate() {
+                // SAFETY: nobody writes them in `Solve`.
+                *rest = *unsafe { resting[contact.side(k)].read(contact.vertices[k] as usize) };
+            }
+            contact.solve(columns, &rest, law, push);
+        }
+    }
+}
