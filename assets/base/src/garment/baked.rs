@@ -4,8 +4,7 @@ use std::ops::{Deref, DerefMut};
 
 use super::check::{self, LayoutError};
 use super::data::GarmentData;
-use super::layout::{self, Layout};
-use super::link_curves::ONE_SLOPE;
+use super::layout::Layout;
 
 /// One garment in one size, baked: what the cloth borrows and never changes.
 ///
@@ -51,62 +50,6 @@ impl Garment {
     /// The constraints between its particles, as they lie in memory.
     pub fn layout(&self) -> &Layout {
         &self.layout
-    }
-
-    /// Takes away the resistance to bending: to see what bending is worth.
-    pub fn leave_out_bending(&mut self) {
-        let layout = &mut self.layout;
-        (layout.bends, layout.skewed, layout.hubs) = (Default::default(), Default::default(), Default::default());
-        layout.friction = Default::default();
-    }
-
-    /// Takes away the friction in shear and stretch.
-    pub fn leave_out_link_friction(&mut self) {
-        self.layout.link_curves.change(|[lower, below, upper, above, _]| [lower, below, upper, above, 0.0]);
-    }
-
-    /// Takes away the second slopes of stretch and shear; threads that buckle still do.
-    pub fn leave_out_second_slopes(&mut self) {
-        let [_, _, far, one, _] = ONE_SLOPE;
-        self.layout.link_curves.change(|[lower, below, _, above, friction]| {
-            let locks = below > 1.0;
-            let [lower, below] = if locks && above > 1.0 { [-far, one] } else { [lower, below] };
-            [lower, below, far, one, friction]
-        });
-    }
-
-    /// Lets threads that are pushed together bear as much as they pull.
-    pub fn leave_out_buckling(&mut self) {
-        let [far, one, ..] = ONE_SLOPE;
-        self.layout.link_curves.change(|[lower, below, upper, above, friction]| {
-            let [lower, below] = if below < 1.0 { [far, one] } else { [lower, below] };
-            [lower, below, upper, above, friction]
-        });
-    }
-
-    /// Takes away the friction in bending: to see what it is worth.
-    pub fn leave_out_bend_friction(&mut self) {
-        self.layout.friction = Default::default();
-    }
-
-    /// Takes away the resistance to shear.
-    pub fn leave_out_shear(&mut self) {
-        (self.layout.diagonals, self.layout.shear) = (Default::default(), Default::default());
-        (self.layout.link_curves.diagonals, self.layout.link_curves.shear) = (Default::default(), Default::default());
-    }
-
-    /// Makes threads that do not stretch.
-    pub fn make_inextensible(&mut self) {
-        let layout = &mut self.layout;
-        let threads = [&mut layout.link_curves.weft, &mut layout.link_curves.fibers, &mut layout.link_curves.crossing];
-        threads.into_iter().for_each(|link_curves| *link_curves = Default::default());
-        let all = [&mut layout.weft.compliance, &mut layout.fibers.compliance, &mut layout.crossing.compliance];
-        all.into_iter().flat_map(|c| c.iter_mut()).filter(|c| **c < layout::ENDED).for_each(|c| *c = 0.0);
-    }
-
-    /// Compliance of each link of the load-bearing fibers (m/N, in the layout's order), for a hard case that softens some.
-    pub fn fiber_compliance_mut(&mut self) -> &mut [f32] {
-        &mut self.layout.fibers.compliance
     }
 
     /// Number of particles.

@@ -73,16 +73,4 @@ impl LinkCurves {
     pub fn bytes(&self) -> usize {
         self.tables().iter().map(|t| t.len() * size_of::<CurveParameters>()).sum()
     }
-
-    /// Changes each law: to see what a part of it is worth.
-    pub fn change(&mut self, change: impl Fn(CurveParameters) -> CurveParameters) {
-        for table in [&mut self.diagonals, &mut self.shear, &mut self.weft, &mut self.fibers, &mut self.crossing] {
-            for at in 0..table.len() {
-                let CurveTable { lower, lower_slope, upper, upper_slope, friction } = table;
-                let columns = [lower, lower_slope, upper, upper_slope, friction];
-                let link_curve = change(columns.each_ref().map(|c| c[at]));
-                columns.into_iter().zip(link_curve).for_each(|(c, value)| c[at] = value);
-            }
-        }
-    }
 }

@@ -5,6 +5,7 @@
 pub mod calibrate;
 pub mod cost;
 mod fit;
+mod left_out;
 pub mod reach;
 pub mod report;
 pub mod scene;
@@ -14,6 +15,7 @@ pub mod work;
 
 use thiserror::Error;
 use toile_assets::scene_file::SceneError;
+use toile_base::garment::LayoutError;
 use toile_engine::colliders::ColliderError;
 use toile_engine::skin::SkinError;
 use toile_engine::workers::WorkerPoolError;
@@ -24,6 +26,9 @@ use crate::scene::RunError;
 /// Why a scene cannot be planned.
 #[derive(Debug, Error)]
 pub enum PlanError {
+    /// Constraints that do not fit together once a model is left out.
+    #[error(transparent)]
+    Layout(#[from] LayoutError),
     /// Colliders that the engine does not take.
     #[error(transparent)]
     Colliders(#[from] ColliderError),

@@ -8,13 +8,14 @@ use std::time::Instant;
 use glam::Vec3A;
 use serde::Serialize;
 use toile_base::fabric::Fabric;
-use toile_base::garment::Garment;
+use toile_base::garment::{Garment, Layout, LayoutError};
 use toile_base::numeric::statistics::{quantile, quantile_of};
 use toile_engine::cloth::{Cloth, Quality, Settings, Step, Wind};
 use toile_engine::workers::WorkerPool;
 
 use super::PlanError;
 use super::calibrate::quartile;
+use super::left_out;
 use super::scene::{PlannedScene, Playing};
 use super::work::STAGES;
 use crate::scene::contact::ContactReport;
@@ -75,7 +76,7 @@ struct Variant {
 /// Where the workers cannot be started.
 pub fn play(scene: &PlannedScene, workers: usize) -> Result<Played, PlanError> {
     let mut pool = WorkerPool::new(workers)?;
-    let variants = variants(scene);
+    let variants = variants(scene)?;
     let mut tallies: Vec<Tally> = variants.iter().map(|_| Tally::default()).collect();
     let mut playing = Playing::new(scene);
     let steps = scene.steps();
@@ -105,58 +106,59 @@ pub fn play(scene: &PlannedScene, workers: usize) -> Result<Played, PlanError> {
 }
 
 /// The scene as it is, then each model left out that it has, then each added that it has not.
-fn variants(scene: &PlannedScene) -> Vec<Variant> {
+fn variants(scene: &PlannedScene) -> Result<Vec<Variant>, LayoutError> {
     let mut all = Vec::new();
-    let mut add = |model, on, garment: &dyn Fn(&mut Garment), settings: &dyn Fn(&mut Settings)| {
-        let (mut garments, mut with) = (scene.garments.clone(), scene.settings.clone());
-        garments.iter_mut().for_each(garment);
+    let mut add = |model, on, garment: &dyn Fn(&mut Fabric, &mut Layout), settings: &dyn Fn(&mut Settings)| {
+        let garments = scene.garments.iter().map(|g| left_out::changed(g, garment)).collect::<Result<_, _>>()?;
+        let mut with = scene.settings.clone();
         with.iter_mut().for_each(settings);
         all.push(Variant { model, on, garments, settings: with });
+        Ok(())
     };
-    let (same, alike) = (|_: &mut Garment| (), |_: &mut Settings| ());
-    add("as it is", true, &same, &alike);
+    let (same, alike) = (|_: &mut Fabric, _: &mut Layout| (), |_: &mut Settings| ());
+    add("as it is", true, &same, &alike)?;
     let (wind, tethers) = (scene.settings[0].wind, scene.settings[0].tethers);
     let quality = scene.settings[0].quality;
-    add("bending", true, &Garment::leave_out_bending, &alike);
+    add("bending", true, &|_, layout| left_out::bending(layout), &alike)?;
     if scene.garments.iter().any(|g| !g.layout().friction.slots.is_empty()) {
-        add("friction in bending", true, &Garment::leave_out_bend_friction, &alike);
+        add("friction in bending", true, &|_, layout| left_out::bend_friction(layout), &alike)?;
     }
     let fabrics = || scene.garments.iter().map(|g| &g.fabric);
     if fabrics().any(|f| f.stretch.warp.is_some() || f.stretch.weft.is_some() || f.shear_lock.is_some()) {
-        add("second slopes of stretch and shear", true, &Garment::leave_out_second_slopes, &alike);
+        add("second slopes of stretch and shear", true, &|_, layout| left_out::second_slopes(layout), &alike)?;
     }
     if fabrics().any(Fabric::rubs_in_links) {
-        add("friction in shear and stretch", true, &Garment::leave_out_link_friction, &alike);
+        add("friction in shear and stretch", true, &|_, layout| left_out::link_friction(layout), &alike)?;
     }
     if fabrics().any(|f| f.buckling) {
-        add("threads that buckle", true, &Garment::leave_out_buckling, &alike);
+        add("threads that buckle", true, &|_, layout| left_out::buckling(layout), &alike)?;
     }
-    add("shear", true, &Garment::leave_out_shear, &alike);
-    add("friction", true, &|g| g.fabric.friction = 0.0, &alike);
-    add("continuous contact", true, &same, &|s| s.continuous = false);
-    add("damping by air", true, &|g| g.fabric.damping_per_s = 0.0, &alike);
+    add("shear", true, &|_, layout| left_out::shear(layout), &alike)?;
+    add("friction", true, &|fabric, _| fabric.friction = 0.0, &alike)?;
+    add("continuous contact", true, &same, &|s| s.continuous = false)?;
+    add("damping by air", true, &|fabric, _| fabric.damping_per_s = 0.0, &alike)?;
     let [skin, layers, folds] = models(scene);
     if scene.skinning.is_some() {
-        add("the skin that is seen, in place of cones", skin, &same, &|s| s.contact.skin = u8::from(!skin));
+        add("the skin that is seen, in place of cones", skin, &same, &|s| s.contact.skin = u8::from(!skin))?;
     }
     if scene.garments.len() > 1 {
-        add("garments over one another", layers, &same, &|s| s.contact.layers = u8::from(!layers));
+        add("garments over one another", layers, &same, &|s| s.contact.layers = u8::from(!layers))?;
     }
-    add("a garment against itself", folds, &same, &|s| s.contact.folds = u8::from(!folds));
+    add("a garment against itself", folds, &same, &|s| s.contact.folds = u8::from(!folds))?;
     match wind {
-        Some(_) => add("wind", true, &same, &|s| s.wind = None),
-        None => add("still air on each triangle", false, &same, &|s| s.wind = Some(still())),
+        Some(_) => add("wind", true, &same, &|s| s.wind = None)?,
+        None => add("still air on each triangle", false, &same, &|s| s.wind = Some(still()))?,
     }
     if quality != Quality::Draft {
-        add("repeated passes over hoops and fibers", true, &same, &|s| s.quality = Quality::Draft);
+        add("repeated passes over hoops and fibers", true, &same, &|s| s.quality = Quality::Draft)?;
         let model_name = if tethers { "tethers" } else { "tethers in every substep" };
-        add(model_name, tethers, &same, &|s| s.tethers = !tethers);
+        add(model_name, tethers, &same, &|s| s.tethers = !tethers)?;
     }
     if quality != Quality::Fine {
-        add("three times the substeps, shear in each (fine)", false, &same, &|s| s.quality = Quality::Fine);
+        add("three times the substeps, shear in each (fine)", false, &same, &|s| s.quality = Quality::Fine)?;
     }
-    add("threads that do not give (zero stretch)", false, &Garment::make_inextensible, &alike);
-    all
+    add("threads that do not give (zero stretch)", false, &|_, layout| left_out::stretch(layout), &alike)?;
+    Ok(all)
 }
 
 /// Whether a scene has skin, layers and folds.
