@@ -6,7 +6,7 @@ use serde::Deserialize;
 use super::fitting::{FittingLevel, StretchLimits, check_registration};
 use super::limits::MAX_PIXELS;
 use super::package::is_plain;
-use super::picture::Picture;
+use super::picture::{self, Picture};
 
 toile_base::named! {
     /// In which layer a garment is worn, the innermost first.
@@ -186,14 +186,11 @@ impl CollageView {
 
 /// Width and height of a picture in a file.
 fn size(bytes: &[u8]) -> Result<[f32; 2], String> {
-    let size = imagesize::blob_size(bytes).map_err(|_| "it is no picture in PNG or JPEG; convert it".to_owned())?;
-    if size.width.max(size.height) > MAX_PIXELS {
-        return Err(format!(
-            "it has {} x {} pixels, and at most {MAX_PIXELS} are shown; make it smaller",
-            size.width, size.height
-        ));
+    let size @ [width, height] = picture::size(bytes)?;
+    if width.max(height) > MAX_PIXELS {
+        return Err(format!("it has {width} x {height} pixels, and at most {MAX_PIXELS} are shown; make it smaller"));
     }
-    Ok([size.width as f32, size.height as f32])
+    Ok(size.map(|n| n as f32))
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ use zip::{CompressionMethod, ZipArchive, ZipWriter};
 use super::error::CatalogueError;
 use super::limits::{MAX_FILES, MAX_PACKAGE_BYTES, MAX_PICTURE_PIXELS, MAX_PIXELS, MAX_TOML_BYTES, MAX_UNPACKED_BYTES};
 use super::manifest::GarmentManifest;
+use super::picture;
 use crate::adapt::source;
 use crate::file::{self, FileKind};
 
@@ -141,16 +142,13 @@ impl GarmentPackage {
 
     fn check_picture(&mut self, file: &str) -> Result<(), CatalogueError> {
         let bytes = self.bytes(file, MAX_PACKAGE_BYTES)?;
-        let size = imagesize::blob_size(&bytes)
-            .map_err(|_| self.content(file, "it is no picture in PNG or JPEG; convert it".into()))?;
-        if size.width.max(size.height) > MAX_PIXELS || size.width.min(size.height) == 0 {
-            let reason = format!(
-                "it has {} x {} pixels, and 1 to {MAX_PIXELS} are shown; make it smaller",
-                size.width, size.height
-            );
+        let [width, height] = picture::size(&bytes).map_err(|e| self.content(file, e))?;
+        if width.max(height) > MAX_PIXELS {
+            let reason =
+                format!("it has {width} x {height} pixels, and {MAX_PIXELS} are shown at most; make it smaller");
             return Err(self.content(file, reason));
         }
-        let pixels = size.width as u64 * size.height as u64;
+        let pixels = width as u64 * height as u64;
         if pixels > MAX_PICTURE_PIXELS {
             let reason =
                 format!("it has {pixels} pixels, and a photograph has {MAX_PICTURE_PIXELS} at most; make it smaller");

@@ -7,6 +7,7 @@ use glam::{Vec2, Vec3};
 use serde::Deserialize;
 
 use super::fitting::{FittingLevel, StretchLimits, check_registration};
+use super::picture;
 use crate::texture::Atlas;
 use toile_base::body::{Body, Measures};
 use toile_base::garment::Garment;
@@ -77,12 +78,11 @@ impl PhotographedGarment {
         self.check()?;
         let mut one = |name: &str| {
             let bytes = file(name)?;
-            let size =
-                imagesize::blob_size(&bytes).map_err(|_| format!("{name} is no picture in PNG or JPEG; convert it"))?;
+            let size = picture::size(&bytes).map_err(|e| format!("{name}: {e}"))?;
             let texture = crate::texture::decode(&bytes).map_err(|e| format!("{name}: {e}"))?;
             let view = PhotographView::of(texture)
                 .ok_or_else(|| format!("{name} shows nothing: all of it is transparent; cut the garment out again"))?;
-            Ok::<_, String>((Vec2::new(size.width as f32, size.height as f32), view))
+            Ok::<_, String>((Vec2::from_array(size.map(|n| n as f32)), view))
         };
         let (size, front) = one(&self.front)?;
         if self.points.iter().any(|p| p[0] > size.x || p[1] > size.y) {

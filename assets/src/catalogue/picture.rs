@@ -80,6 +80,17 @@ impl Picture {
     }
 }
 
+/// Width and height (pixels) that the header of a PNG or JPEG picture states.
+///
+/// # Errors
+/// Bytes that are no such picture.
+pub(super) fn size(bytes: &[u8]) -> Result<[usize; 2], String> {
+    let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().ok();
+    let size = reader.and_then(|reader| reader.into_dimensions().ok());
+    let (width, height) = size.ok_or_else(|| "it is no picture in PNG or JPEG; convert it".to_owned())?;
+    Ok([width as usize, height as usize])
+}
+
 fn premultiplied([r, g, b, a]: [u8; 4]) -> [u8; 4] {
     let times = |c: u8| ((u16::from(c) * u16::from(a) + 127) / 255) as u8;
     [times(r), times(g), times(b), a]

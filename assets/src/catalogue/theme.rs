@@ -10,7 +10,7 @@ use super::error::CatalogueError;
 use super::font;
 use super::limits::{LOGO_SIDE, MAX_FONT_BYTES, MAX_LOGO_BYTES, MAX_LOGO_SIDE, MIN_CONTRAST};
 use super::package::is_plain;
-use super::picture::Picture;
+use super::picture::{self, Picture};
 use crate::export::linear;
 use crate::file::{self, FileKind};
 
@@ -114,12 +114,10 @@ impl ShopTheme {
 }
 
 fn logo(bytes: &[u8]) -> Result<Picture, String> {
-    let none = |_| "it is no picture in PNG or JPEG; convert it".to_owned();
-    let size = imagesize::blob_size(bytes).map_err(none)?;
-    if size.width.max(size.height) > MAX_LOGO_SIDE || size.width.min(size.height) == 0 {
+    let [width, height] = picture::size(bytes)?;
+    if width.max(height) > MAX_LOGO_SIDE {
         return Err(format!(
-            "it has {} x {} pixels, and a logo has 1 to {MAX_LOGO_SIDE}; save it smaller",
-            size.width, size.height
+            "it has {width} x {height} pixels, and a logo has {MAX_LOGO_SIDE} at most; save it smaller"
         ));
     }
     Picture::decode(bytes, LOGO_SIDE)
