@@ -1,7 +1,6 @@
 //! The evidence: what a part of the engine costs, and how exact it is at that cost.
 
 // Modules in the order of the data: each imports only from the groups above its own (tests/tests/layers.rs).
-pub mod agreement;
 pub mod backend;
 pub mod depth;
 pub mod distance;

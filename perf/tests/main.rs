@@ -3,7 +3,6 @@
 /// The program that the tests run.
 const PROGRAM: &str = env!("CARGO_BIN_EXE_toile-perf");
 
-mod agreement;
 mod ansur;
 #[cfg(feature = "gpu")]
 mod backend;

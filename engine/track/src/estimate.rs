@@ -29,14 +29,6 @@ impl Estimate {
     }
 }
 
-/// Fuses two estimates of one length; one alone is returned as it is.
-pub fn fuse(a: Option<Estimate>, b: Option<Estimate>) -> Option<Estimate> {
-    match (a, b) {
-        (Some(a), Some(b)) => Some(a.fuse(b)),
-        (one, other) => one.or(other),
-    }
-}
-
 /// A sample farther from the median than this many robust standard deviations is an outlier.
 const OUTLIER: f32 = 3.0;
 

@@ -6,14 +6,12 @@ pub mod estimate;
 pub mod correlated;
 pub mod gesture;
 pub mod point_cloud;
-pub mod section;
 
 pub mod anthropometry;
 pub mod fit;
 pub mod measures;
 
 mod joints;
-pub mod silhouette;
 pub mod tape_readings;
 
 pub mod child;

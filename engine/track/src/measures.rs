@@ -2,7 +2,7 @@
 
 use toile_assets::sizes::Population;
 
-use crate::estimate::{Estimate, fuse};
+use crate::estimate::Estimate;
 
 /// What is known beforehand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,7 +23,7 @@ impl Default for Hint {
 /// parametric body follows. A girth is the convex hull of a horizontal slice of the torso without arms, or of one thigh.
 pub fn definition(name: &str) -> &'static str {
     match name {
-        "stature" => "crown to floor; the body fit leaves out what it takes for hair and shoes, sections count both",
+        "stature" => "crown to floor; the body fit leaves out what it takes for hair and shoes",
         "shoulder_breadth" => "between the acromions (biacromial), not over the deltoids",
         "arm_length" => "acromion over the bent elbow to the wrist bone",
         "leg_length" | "inseam" => "crotch to floor (inside leg height)",
@@ -69,18 +69,5 @@ impl Measures {
             ("inseam", self.inseam),
             ("arm_length", self.arm_length),
         ]
-    }
-
-    /// Both readings of each measure as one, weighted by their errors.
-    pub(crate) fn fused(self, other: Self) -> Self {
-        Self {
-            stature: fuse(self.stature, other.stature),
-            shoulder_breadth: fuse(self.shoulder_breadth, other.shoulder_breadth),
-            chest_girth: fuse(self.chest_girth, other.chest_girth),
-            waist_girth: fuse(self.waist_girth, other.waist_girth),
-            hip_girth: fuse(self.hip_girth, other.hip_girth),
-            inseam: fuse(self.inseam, other.inseam),
-            arm_length: fuse(self.arm_length, other.arm_length),
-        }
     }
 }

@@ -14,8 +14,6 @@ use toile_fitting::timing::OnCore;
 use toile_track::estimate::Estimate;
 use toile_track::fit::measuring::{self, FittedMeasures, MEASURES, model_error};
 use toile_track::fit::{self, BodyFit};
-use toile_track::measure;
-use toile_track::measures::Hint;
 use toile_track::point_cloud::PersonFinder;
 
 use super::makehuman::{FamilyError, SurveyRanges, makehuman_person};
@@ -101,8 +99,6 @@ pub struct MeasuredPerson {
     pub turned: Estimates,
     /// Frames that were looked at, and those in which nobody else was seen.
     pub frames: [usize; 2],
-    /// By section and outline, proportions and the mean over the frames.
-    pub sections: Estimates,
     /// How likely the fit took them for a woman.
     pub woman: Option<f32>,
     /// The surfaces, if they are asked for and can be had.
@@ -186,8 +182,6 @@ pub struct MeasuringStudy {
     pub fit: Vec<MeasuringAgreement>,
     /// By the body fit once they have turned all round; empty where they did not.
     pub turned: Vec<MeasuringAgreement>,
-    /// By sections, proportions and the mean over time.
-    pub sections: Vec<MeasuringAgreement>,
     /// Share of the frames in which nobody else was seen.
     pub alone: f64,
     /// Sizes recommended from the front, and once they have turned.
@@ -308,15 +302,6 @@ fn measured(person: &StudyPerson, options: &MeasuringOptions, rng: &mut SplitMix
     let surfaces =
         surfaces.and_then(|f| PersonSurfaces::new(person, (f, ends[0]), turned.as_ref().map(|t| (t, ends[1]))));
     let estimates = |f: &FittedMeasures| f.measures.map(Some);
-    let sections = measure::measure(&[], &frames, &Hint::default()).ok();
-    let sections = sections.map_or([None; MEASURES.len()], |m| {
-        let s = &m.measures;
-        let mut all = [None; MEASURES.len()];
-        let places = [0, 1, 2, 3, 6, 8, 9];
-        let values = [s.stature, s.shoulder_breadth, s.arm_length, s.inseam, s.chest_girth, s.waist_girth, s.hip_girth];
-        places.into_iter().zip(values).for_each(|(i, v)| all[i] = v);
-        all
-    });
     let (start, followed) = follow(person, &alone);
     MeasuredPerson {
         start,
@@ -327,7 +312,6 @@ fn measured(person: &StudyPerson, options: &MeasuringOptions, rng: &mut SplitMix
         fit: fitted.as_ref().map_or([None; MEASURES.len()], estimates),
         turned: turned.as_ref().map_or([None; MEASURES.len()], estimates),
         frames: count,
-        sections,
         woman: fitted.map(|f| f.woman),
         surfaces,
         times: [front_s, turned_s],
@@ -407,7 +391,6 @@ fn summed(cases: &[MeasuredPerson], options: &MeasuringOptions) -> MeasuringStud
         following: following(cases),
         fit: agreements(cases, |c| &c.fit),
         turned: agreements(cases, |c| &c.turned),
-        sections: agreements(cases, |c| &c.sections),
         alone: share(|c| c.frames[1], |c| c.frames[0]),
         sizes: [
             sizes(cases.iter().map(|c| (c.sex, &c.truth, &c.fit))),

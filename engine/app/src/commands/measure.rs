@@ -99,14 +99,12 @@ fn draw(out: &mut OutputFolder, measured: &MeasuredSubject, fitted: &FittedMeasu
 }
 
 fn methods(measured: &MeasuredSubject) -> Vec<MethodMeasures> {
-    let sections = measured.sections.measures.named();
-    let sections = sections.into_iter().filter_map(|(name, e)| Some(defined(name, e?))).collect();
-    let mut all = vec![MethodMeasures { method: "sections and proportions", measures: sections }];
     if let Some(fitted) = &measured.fitted {
         let measures = MEASURES.iter().zip(&fitted.measures).map(|(t, e)| defined(t.0, *e)).collect();
-        all.push(MethodMeasures { method: "the body fit", measures });
+        return vec![MethodMeasures { method: "the body fit", measures }];
     }
-    all
+    let measures = measured.best.measures.named().into_iter().filter_map(|(name, e)| Some(defined(name, e?))).collect();
+    vec![MethodMeasures { method: "proportions", measures }]
 }
 
 fn defined(name: &'static str, estimate: Estimate) -> DefinedMeasure {

@@ -5,13 +5,17 @@ use toile_assets::sizes::Population;
 use toile_base::body::{Body, Sex};
 use toile_base::frame::{DepthFrame, Joints};
 use toile_base::mesh::SkinWeights;
+use toile_base::numeric::statistics::median_of;
 use toile_base::skeleton::{BONES, Pose};
 use toile_engine::body::palette;
 use toile_sensors::source::Session;
 use toile_track::fit::measuring::FRAMES;
 use toile_track::fit::measuring::{self, FittedMeasures};
 use toile_track::fit::{FitOptions, tracker};
-use toile_track::point_cloud::{PersonCloud, PersonFinder};
+use toile_track::measure::MeasureError;
+use toile_track::point_cloud::{FARTHEST, PersonCloud, PersonFinder};
+
+use crate::FittingError;
 
 /// Longest that is looked at for a turn after the first second, and how far apart its frames are taken (ns): a slow turn takes six
 /// seconds, and in a fifteenth of one it goes on by four degrees.
@@ -28,6 +32,12 @@ pub struct DepthSurface {
     pub after: Vec<DepthFrame>,
     /// Height of the floor (m); `None` where the picture cuts the shopper off above it.
     pub ground: Option<f32>,
+    /// Depth pixels on the shopper, median over the frames of the first second.
+    pub pixels: usize,
+    /// People in view, median over the same frames.
+    pub people: usize,
+    /// Distance of somebody who stands too far away to be measured (m).
+    pub too_far: Option<f32>,
 }
 
 impl DepthSurface {
@@ -39,12 +49,19 @@ impl DepthSurface {
     /// The same with the turn up to a time of the session (ns).
     pub fn until(session: &Session, until_ns: u64) -> Self {
         let (mut cut, mut frames, mut after) = (0, Vec::new(), Vec::new());
+        let (mut pixels, mut people, mut too_far) = (Vec::new(), Vec::new(), None);
         let mut finder = PersonFinder::default();
         let mut next = 0;
         for (i, frame) in session.depth.iter().enumerate() {
             if i < FRAMES {
-                let Some(alone) = finder.push(frame).alone else { continue };
-                cut += usize::from(PersonCloud::of(&alone).is_some_and(|c| c.cut_below));
+                let view = finder.push(frame);
+                too_far = too_far.or(view.too_far);
+                let Some(alone) = view.alone else { continue };
+                if let Some(cloud) = PersonCloud::of(&alone) {
+                    cut += usize::from(cloud.cut_below);
+                    pixels.push(cloud.points.len() as f32);
+                    people.push(view.people as f32);
+                }
                 next = frame.time_ns + APART_NS;
                 frames.push((frame.clone(), alone));
             } else if frame.time_ns.saturating_sub(session.depth[0].time_ns) > TURN_NS || frame.time_ns > until_ns {
@@ -55,7 +72,25 @@ impl DepthSurface {
             }
         }
         let ground = (2 * cut < frames.len()).then_some(0.0);
-        Self { frames, after, ground }
+        let median = |counts: Vec<f32>| median_of(counts.into_iter()).unwrap_or(0.0);
+        let (pixels, people) = (median(pixels) as usize, median(people).round() as usize);
+        Self { frames, after, ground, pixels, people, too_far }
+    }
+
+    /// The reason why nobody can be measured in the depth of a session in which no body fits.
+    pub fn refusal(&self, session: &Session) -> FittingError {
+        if self.frames.is_empty() {
+            let frames = session.depth.len().min(FRAMES);
+            return FittingError::input(match self.too_far {
+                Some(distance) => MeasureError::TooFar { distance, limit: FARTHEST },
+                None if frames == 0 => MeasureError::Empty,
+                None => MeasureError::Nobody { frames },
+            });
+        }
+        FittingError::Input(format!(
+            "no body fits the depth of session {}; record somebody who stands alone, facing the camera, arms slightly out",
+            session.name
+        ))
     }
 
     /// How a body is fitted to it.

@@ -1,4 +1,5 @@
-//! The shopper measured, and a body of these measures. There is one way to measure: by the body fitted to their depth where one fits, by sections and proportions otherwise.
+//! The shopper measured, and a body of these measures. There is one way to measure: by the body fitted to their depth where one fits, by the
+//! proportions of their joints otherwise.
 //!
 //! Whose proportions apply is given by the caller, or found by the fit; what is worn does not decide it, so that the same session gives the
 //! same measures whatever is tried on.
@@ -13,7 +14,7 @@ use toile_sensors::source::Session;
 use toile_track::child::child_odds;
 use toile_track::estimate::Estimate;
 use toile_track::fit::measuring::{FittedMeasures, MEASURES};
-use toile_track::measure::{self, Measurements, Source};
+use toile_track::measure::{self, MeasureError, Measurements, Source};
 use toile_track::measures::{Hint, Measures};
 use toile_track::tape_readings::{self, BodyEstimate, TapeReadings};
 
@@ -95,8 +96,21 @@ impl TryFrom<FactsText> for ShopperFacts {
 ///
 /// # Errors
 /// Any other name.
-pub(super) fn sex_of(name: &str) -> Result<Sex, String> {
+fn sex_of(name: &str) -> Result<Sex, String> {
     Sex::ALL.into_iter().find(|sex| sex.name() == name).ok_or_else(|| format!("{name} is neither female nor male"))
+}
+
+/// A sex by its name.
+pub(super) mod sex_name {
+    use super::*;
+
+    pub fn serialize<S: serde::Serializer>(sex: &Sex, to: S) -> Result<S::Ok, S::Error> {
+        to.serialize_str(sex.name())
+    }
+
+    pub fn deserialize<'de, D: serde::Deserializer<'de>>(from: D) -> Result<Sex, D::Error> {
+        sex_of(&String::deserialize(from)?).map_err(serde::de::Error::custom)
+    }
 }
 
 /// What was measured of a shopper.
@@ -104,9 +118,7 @@ pub(super) fn sex_of(name: &str) -> Result<Sex, String> {
 pub struct MeasuredSubject {
     /// The best that is known: every report, size and body follows from it.
     pub best: Measurements,
-    /// The same by sections and proportions alone.
-    pub sections: Measurements,
-    /// The same by the body fit, where there is depth and a body fits it.
+    /// All that the body fit gives, where there is depth and a body fits it.
     pub fitted: Option<FittedMeasures>,
     /// The shopper's surface; empty without depth.
     pub surface: DepthSurface,
@@ -155,13 +167,16 @@ pub fn measure(session: &Session, facts: ShopperFacts) -> Result<MeasuredSubject
     let surface = DepthSurface::until(session, facts.until_ns);
     let fitted = surface.measure(Population::from(facts.sex), facts.clothed);
     let population = population(facts.sex, fitted.as_ref());
-    let sections = by_sections(session, population)?;
-    let best = fitted.as_ref().map_or_else(|| sections.clone(), |fitted| preferred(&sections, fitted));
+    let best = match &fitted {
+        Some(fitted) => by_fit(session, &surface, fitted),
+        None if session.joints.is_empty() => return Err(surface.refusal(session)),
+        None => by_proportions(&session.joints, session.raw_scale_known, population)?,
+    };
     let mut best = with_tape(best, fitted.as_ref().map(|f| &f.all), population, &facts.tape);
     let child = child(&best, facts);
     best.notes.extend(child.filter(|odds| *odds >= 0.5).map(child_note));
     let depth_alone = session.joints.is_empty() && facts.tape.is_empty();
-    Ok(MeasuredSubject { best, sections, fitted, surface, population, child, depth_alone })
+    Ok(MeasuredSubject { best, fitted, surface, population, child, depth_alone })
 }
 
 /// The filtered joints of a session from the moment on at which the shopper can be dressed. Without joints the fitted body is followed
@@ -201,14 +216,13 @@ pub fn add_joints(session: &mut Session, measured: &MeasuredSubject) -> Result<(
 
 fn seated(session: &Session, facts: ShopperFacts) -> Result<MeasuredSubject, FittingError> {
     let population = Population::from(facts.sex);
-    let above = session::of_joints(session.joints.iter().map(above_the_chair).collect());
-    let mut sections = by_sections(&above, population)?;
-    (sections.measures.hip_girth, sections.measures.inseam) = (None, None);
-    let surface = DepthSurface { frames: Vec::new(), after: Vec::new(), ground: None };
-    let best = with_tape(sections.clone(), None, population, &facts.tape);
+    let above: Vec<Joints> = session.joints.iter().map(above_the_chair).collect();
+    let mut seen = by_proportions(&above, true, population)?;
+    (seen.measures.hip_girth, seen.measures.inseam) = (None, None);
+    let surface = DepthSurface::of(&session::of_joints(Vec::new()));
+    let best = with_tape(seen, None, population, &facts.tape);
     Ok(MeasuredSubject {
         best,
-        sections,
         fitted: None,
         surface,
         population,
@@ -217,9 +231,11 @@ fn seated(session: &Session, facts: ShopperFacts) -> Result<MeasuredSubject, Fit
     })
 }
 
-fn by_sections(session: &Session, population: Population) -> Result<Measurements, FittingError> {
-    let hint = Hint { population, scale_known: session.raw_scale_known };
-    measure::measure(&session.joints, &session.depth, &hint).map_err(FittingError::input)
+fn by_proportions(joints: &[Joints], scale_known: bool, population: Population) -> Result<Measurements, FittingError> {
+    if joints.is_empty() {
+        return Err(FittingError::input(MeasureError::Empty));
+    }
+    measure::by_proportions(joints, &Hint { population, scale_known }).map_err(FittingError::input)
 }
 
 /// As it is known, or as the stature lets expect.
@@ -290,10 +306,16 @@ fn in_words(of: impl Fn(&str) -> Option<Estimate>) -> Measures {
     }
 }
 
-/// What the body fit says in place of what sections and proportions say.
-fn preferred(sections: &Measurements, fitted: &FittedMeasures) -> Measurements {
-    let measures = in_words(|name| fitted.named(name));
-    Measurements { measures, ..sections.clone() }
+/// The measures of the body fit, with what was seen of the shopper.
+fn by_fit(session: &Session, surface: &DepthSurface, fitted: &FittedMeasures) -> Measurements {
+    Measurements {
+        measures: in_words(|name| fitted.named(name)),
+        valid_pixels: surface.pixels,
+        people: surface.people,
+        frames: surface.frames.len(),
+        source: if session.joints.is_empty() { Source::Depth } else { Source::Both },
+        notes: Vec::new(),
+    }
 }
 
 /// A frame without what a chair hides.

@@ -52,7 +52,7 @@ pub enum Wearer {
     /// A body of these measures.
     Body {
         /// The sex of its drawing.
-        #[serde(with = "sex_name")]
+        #[serde(with = "measured::sex_name")]
         sex: Sex,
         /// Its measures (m). A recording holds their bits.
         #[serde(with = "measure_bits")]
@@ -421,19 +421,6 @@ mod quality_name {
 
     pub fn deserialize<'de, D: serde::Deserializer<'de>>(from: D) -> Result<Quality, D::Error> {
         String::deserialize(from)?.parse().map_err(serde::de::Error::custom)
-    }
-}
-
-/// A sex by its name.
-mod sex_name {
-    use super::*;
-
-    pub fn serialize<S: serde::Serializer>(sex: &Sex, to: S) -> Result<S::Ok, S::Error> {
-        to.serialize_str(sex.name())
-    }
-
-    pub fn deserialize<'de, D: serde::Deserializer<'de>>(from: D) -> Result<Sex, D::Error> {
-        measured::sex_of(&String::deserialize(from)?).map_err(serde::de::Error::custom)
     }
 }
 

@@ -33,11 +33,11 @@ const MAX_FRAMES: u64 = 300;
 /// The word for every camera.
 const BOTH: &str = "both";
 
-/// Measure synthetic people before synthetic cameras, and report the errors of both ways of measuring.
+/// Measure synthetic people before synthetic cameras, and report the errors.
 ///
 /// Draws random people of ANSUR II, gives each a shape of their own, renders a second of them swaying before a Kinect v1 at 2
-/// to 3 m and before a camera like the Azure Kinect at 2 to 2.5 m, and measures them by the body fit and by sections and
-/// proportions. Limits are those of ISO 20685 for the mean error; it is synthetic agreement, not accuracy on people. An
+/// to 3 m and before a camera like the Azure Kinect at 2 to 2.5 m, and measures them by the body fit.
+/// Limits are those of ISO 20685 for the mean error; it is synthetic agreement, not accuracy on people. An
 /// interval beyond its limit makes the exit code 3.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(
@@ -214,9 +214,7 @@ fn table(study: &MeasuringStudy, paint: Paint) -> String {
     let mut text = String::new();
     let title = format!("{}, {}: {} people, {} frames each", study.family, study.sensor, study.people, study.frames);
     let _ = writeln!(text, "{}", paint.tone(&title, Tone::Strong));
-    for (way, rows) in
-        [("body fit", &study.fit), ("body fit, turned", &study.turned), ("sections and proportions", &study.sections)]
-    {
+    for (way, rows) in [("body fit", &study.fit), ("body fit, turned", &study.turned)] {
         if rows.is_empty() {
             continue;
         }
