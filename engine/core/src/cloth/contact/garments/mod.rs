@@ -1,7 +1,6 @@
 //! Layers: garments over one another, stepped together so that the outer one stays outside.
 //!
-//! Budget: 1 ms a step for 10,000 particles that lie on each other, shared by two workers; no allocation after load.
-//! Thread: physics; two workers share a step.
+//! A step of 10,000 particles that lie on each other may take 1 ms, shared by two workers. Nothing is allocated after load.
 //!
 //! The side of a contact comes from the wearing order alone: a particle of an outer garment belongs in front of an inner
 //! garment's face, one of an inner garment behind an outer garment's. So an order that was lost comes back. Within a substep each
