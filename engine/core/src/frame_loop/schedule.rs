@@ -2,8 +2,8 @@
 
 use toile_base::clock::SECOND_NS;
 
-/// Most steps that a late wake-up makes up for: 33 ms of a body's motion. What is more would take the next steps their
-/// time too, and somebody who stands before a mirror is better served by now than by then.
+/// Most steps that a late wake-up makes up for: 33 ms of a body's motion. More would take time from the next steps too,
+/// and a shopper before a mirror wants to see the present rather than the past.
 pub const MOST_CATCH_UP: u64 = 4;
 
 /// Times at a fixed rate, on a clock in ns. Counted in ticks, so that no error accumulates.

@@ -26,7 +26,7 @@ const LEAST_SEQUENCE: usize = 8;
 /// lengths and masses.
 const SAME: f32 = 1e-5;
 
-/// Where a row is that nobody has: a particle that is fixed, or that nothing bends.
+/// Row index of a particle without a row: one that is fixed, or that nothing bends.
 const NO_ROW: u32 = u32::MAX;
 
 /// Rows `first..first + len`, of which row `t` reads the particles `first + t + offsets`.

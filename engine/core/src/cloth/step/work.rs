@@ -98,7 +98,7 @@ impl StepWork<'_> {
         //   which are fixed and not written);
         // - a row of the bending matrix is its particle's owner's, and what bends is not what is pushed; a slot of friction is the
         //   owner's of the particle in its middle, a row that it pushes its own particle's;
-        // - the laws of links write to columns of their places, of which each is one owner's, and only read particles;
+        // - the curves of links write to columns of their places, of which each is one owner's, and only read particles;
         // - constraints of one set and different owners share no particle (`garment::layout`), and each has its own tension;
         //   links by records fill up with one spare record an owner;
         // - each owner has a scratch of its own, and half of the tensions to clear.

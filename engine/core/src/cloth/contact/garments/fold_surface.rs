@@ -56,7 +56,7 @@ pub struct FoldSurface {
     /// Where each cluster's near ones begin in `near`, and the end of the last `[clusters + 1]`.
     near_start: Box<[u32]>,
     near: Box<[NearCluster]>,
-    /// Who is joined with whom, of near clusters; the first is nobody with nobody.
+    /// Particles of near clusters that are joined with each other; the first entry joins none.
     joined: Box<[Joined]>,
 }
 
@@ -119,7 +119,7 @@ impl FoldSurface {
         &self.near[self.near_start[cluster] as usize..self.near_start[cluster + 1] as usize]
     }
 
-    /// Who of a cluster is joined with whom of one that is near to it; nobody where none is.
+    /// Particles of a cluster that are joined with those of a near one; no pair if `near` is `None`.
     #[inline(always)]
     pub fn joined(&self, near: Option<&NearCluster>) -> &Joined {
         &self.joined[near.map_or(0, |n| n.joined as usize)]
