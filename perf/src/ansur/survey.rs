@@ -79,7 +79,7 @@ impl Survey {
         }
     }
 
-    /// One measure of everybody (mm).
+    /// One measure of all people (mm).
     ///
     /// # Errors
     /// [`SurveyError::NoColumn`], [`SurveyError::NoNumber`].

@@ -27,7 +27,7 @@ toile_base::named! {
         NanJoints = "NaN joints",
         /// Half of the joints are infinite or beyond all measure.
         Infinite = "infinite joints",
-        /// The skeleton of somebody else, who stands beside.
+        /// The skeleton of another person, who stands beside.
         Swapped = "another's skeleton",
         /// Stamps from the next day.
         StampsAhead = "stamps a day ahead",

@@ -117,12 +117,12 @@ pub struct SceneStepper<S> {
 }
 
 impl<S: LoopScene> SceneStepper<S> {
-    /// A scene that has not seen anybody move yet.
+    /// A scene that has not seen a person move yet.
     pub fn new(scene: S) -> Self {
         Self { scene, intake: MotionInput::default(), newest: (0, 0), level: 0 }
     }
 
-    /// From the next step on. A level that there is not is the last.
+    /// From the next step on. Levels beyond the last are clamped to it.
     pub fn set_level(&mut self, level: u8) {
         if level != self.level {
             self.level = level;

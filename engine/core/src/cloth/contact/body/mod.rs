@@ -42,7 +42,7 @@ pub struct ContactCounts {
     pub swept: u64,
     /// Capsules that could not be believed, summed over the steps.
     pub ignored: u64,
-    /// Most pairs of a block of particles and a capsule in one step, and those that there is room for: all there are.
+    /// Most pairs of a block of particles and a capsule in one step, and their capacity, which is all possible pairs.
     pub most_pairs: [u64; 2],
 }
 
