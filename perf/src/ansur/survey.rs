@@ -1,4 +1,4 @@
-//! The survey's files: who was measured, in millimetres.
+//! The survey's files: the measured people, in millimetres.
 
 use std::path::{Path, PathBuf};
 

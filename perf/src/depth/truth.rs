@@ -1,4 +1,4 @@
-//! What is known of the scene, and how far the stages are from it.
+//! The truth of the scene, and the errors of the stages against it.
 
 use glam::{Quat, Vec3};
 use serde::Serialize;

@@ -123,7 +123,7 @@ fn one(
     network: Option<&Path>,
     keep: &mut dyn FnMut(KeptPicture),
 ) -> Result<Vec<(Seer, Record)>, OwnPictureError> {
-    // They are measured by what they show in the first second; then the scene begins anew, with everybody dressed.
+    // Both are measured in their first second; then the scene begins anew, with both dressed.
     let mut standing = Vec::new();
     let mut bare = Actor::new(motion, &[])?;
     for number in 0..STANDING {

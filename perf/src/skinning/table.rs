@@ -143,7 +143,7 @@ impl SkinningTable {
         let [linear, dual] = TARGETS;
         put_line!(
             text,
-            "\nTargets, one thread, as shares of the reference time: linear {linear}, dual quaternions {dual}. Peers on four \
+            "\nTargets, one thread, as shares of the reference time Y: linear {linear}, dual quaternions {dual}. Peers on four \
              influences, linear: ozz-animation 0.45, OGRE 0.47; the least memory traffic alone takes 0.05.\n"
         );
     }

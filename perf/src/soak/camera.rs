@@ -1,4 +1,4 @@
-//! Camera: what a sensor of 30 Hz makes of the shopper, and what becomes of it when something is wrong with it.
+//! Camera: the joints of the shopper from a sensor of 30 Hz, and their faults.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! What can go wrong in a soak, and by what it is seen to be over.
+//! Kinds of faults of a soak, and the sign by which each is over.
 
 use toile_base::numeric::random::SplitMix64;
 use toile_sensors::source::live::fault_injection::CameraFault;

@@ -69,7 +69,7 @@ pub struct SoakVisit {
 impl SoakVisit {
     /// Where their joints are at a time, as they are in truth (m).
     pub fn joints(&self, ns: u64) -> [Vec3; JOINTS] {
-        // Forth and back, as nobody jumps.
+        // Forth and back, because shoppers do not jump.
         let length = f64::from(scene::LENGTH_S);
         let seconds = ns.saturating_sub(self.from_ns) as f64 * 1e-9;
         let along = (seconds * self.pace) % (2.0 * length);

@@ -1,4 +1,4 @@
-//! Queue: a bounded lock-free queue that says how full it was and what did not fit.
+//! Queue: a bounded lock-free queue that counts its high-water mark and the entries that did not fit.
 //!
 //! The queue is crossbeam's `ArrayQueue`: all places are made at load; pushing and popping is one exchange each.
 

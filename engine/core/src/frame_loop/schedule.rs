@@ -1,4 +1,4 @@
-//! Schedule: which step is due, how late it is, and what is dropped where too many are.
+//! Schedule: the step that is due, its delay, and the number of dropped steps if too many are due.
 
 use toile_base::clock::SECOND_NS;
 

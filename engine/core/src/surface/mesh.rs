@@ -1,4 +1,4 @@
-//! The mesh of a surface: who is whose neighbour. Made at load.
+//! The mesh of a surface: the neighbours of each triangle. Made at load.
 
 use std::collections::HashMap;
 

@@ -1,4 +1,4 @@
-//! Tests of links: what each link's rest length and compliance are in this substep.
+//! Curves of links: the rest length and compliance of each link in this substep.
 //!
 //! A link's force is that of `fabric::link_curve`: three slopes and a slider in series with a spring. By the strain that
 //! a link is about to have, as its ends are predicted, one of its slopes holds; by the strain at the start of the substep it

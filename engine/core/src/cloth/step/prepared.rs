@@ -1,4 +1,4 @@
-//! What depends on the settings: gains, the program's choice, how bending goes on.
+//! Data that depends on the settings: gains, the choice of program, the pace of bending.
 //!
 //! Made again in steps in which the settings have changed; the storage stays.
 

@@ -1,4 +1,4 @@
-//! The stages of a step: what each does with one owner's share of a garment.
+//! The stages of a step: the work of each on one owner's share of a garment.
 //!
 //! [`OwnerShare::run`] is the list of all stages; their order is [`program`](super::program)'s. A stage has two shares, one for
 //! each owner of particles, which may run at once; all of a stage is over before any of the next begins.
@@ -89,10 +89,10 @@ struct OwnerShare<'w, 'a> {
 }
 
 impl StepWork<'_> {
-    /// Does one owner's share of a stage. Between two stages the workers meet; no share of a stage is done twice.
+    /// Does one owner's share of a stage. A barrier of the workers stands between two stages; no share of a stage is done twice.
     pub fn run(&self, stage: Stage, substep: u32, owner: usize) {
-        // SAFETY: the threads of `WorkerPool::run` meet after each phase, which is one stage, and each share of it is done
-        // once: what was written before is seen. Within a stage no place that one owner writes is touched by the other:
+        // SAFETY: `WorkerPool::run` has a barrier after each phase, which is one stage, and each share of it is done
+        // once: earlier writes are seen. Within a stage no place that one owner writes is touched by the other:
         // - the ranges of `Layout::spans` hold each particle once (wind, root motion, prediction, contact, velocities,
         //   tethers, records filled and read back, and turns of stiff bending write nothing else; a tether reads anchors,
         //   which are fixed and not written);

@@ -1,4 +1,4 @@
-//! One contact between a particle and a face, or two edges: what a substep makes of it.
+//! One contact between a particle and a face, or two edges, and its solution in a substep.
 //!
 //! A contact acts on positions, as contact with the body does ([`push`](crate::cloth::contact::body)): what came too near in this
 //! substep is moved back and loses that speed, what was too near before is moved apart without gaining any, and friction holds

@@ -1,4 +1,4 @@
-//! Folds of a garment: what keeps its particles apart.
+//! Folds of a garment: the contacts that keep its particles apart.
 //!
 //! Particles of one garment that are not joined keep as far apart as the edges of their triangles ask for: then no two of its
 //! triangles can cross (Wu et al. 2020, "A safe and fast repulsion method for GPU-based cloth self collisions", theorem 1), and no
@@ -43,7 +43,7 @@ const FACING: f32 = -0.3;
 /// What folds of one garment are found from.
 #[derive(Clone, Copy)]
 pub struct FoldScene<'a> {
-    /// How far who keeps from whom.
+    /// Distances that the particles keep from each other.
     pub surface: &'a FoldSurface,
     /// Where the clusters are and how they move.
     pub motion: &'a FoldMotion,

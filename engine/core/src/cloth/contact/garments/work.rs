@@ -1,8 +1,8 @@
-//! What each worker does in each phase of a step of several garments.
+//! Work of each worker in each phase of a step of several garments.
 //!
-//! Between two phases the workers meet. Within one, what a worker writes belongs to it alone: particles to the worker of their
-//! owner's share, or of their garment where one worker owns it whole; contacts to the worker whose half of the particles they are of;
-//! what contacts do to particles to the worker of one half of those that are touched.
+//! A barrier of the workers stands between two phases. Within a phase a worker alone writes its data. Particles belong to the worker
+//! of their owner's share, or of their garment if one worker owns it whole. Contacts belong to the worker of their half of the
+//! particles. Pushes of contacts on particles belong to the worker of one half of the touched particles.
 
 use std::marker::PhantomData;
 use std::sync::atomic::AtomicU64;
