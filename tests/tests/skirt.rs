@@ -258,7 +258,7 @@ fn bending_that_rubs_gives_the_same_bits_by_one_worker_and_two_and_others_than_w
 }
 
 #[test]
-fn curved_links_give_the_same_bits_at_every_width() {
+fn curved_links_give_equal_bits_at_every_width() {
     let play = |threads: usize, lanes: Width, curved: bool| {
         let mut scene = scene(&SkirtOptions {
             verts: 9_216,

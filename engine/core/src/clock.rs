@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn a_real_clock_never_goes_back_or_wakes_early() {
+    fn real_clock_never_goes_back_or_wakes_early() {
         let clock = RealClock::starting_at(414 * 86_400 * 1_000_000_000);
         let copy = clock;
         let before = clock.now_ns();

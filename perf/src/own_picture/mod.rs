@@ -123,7 +123,7 @@ fn one(
     network: Option<&Path>,
     keep: &mut dyn FnMut(KeptPicture),
 ) -> Result<Vec<(Seer, Record)>, OwnPictureError> {
-    // Both are measured in their first second; then the scene begins anew, with both dressed.
+    // Each sensor measures the shopper in the first second; then the scene begins anew, with the shopper dressed.
     let mut standing = Vec::new();
     let mut bare = Actor::new(motion, &[])?;
     for number in 0..STANDING {

@@ -132,7 +132,7 @@ mod tests {
     use toile_base::body::{Measures, Sex};
 
     #[test]
-    fn walking_keeps_its_speed_and_the_limbs_their_length() {
+    fn walking_keeps_its_speed_and_limb_lengths() {
         let body = toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
         let skeleton = &body.skeleton;
         for motion in OwnMotion::ALL {

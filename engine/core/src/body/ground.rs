@@ -111,7 +111,7 @@ impl Ground {
         self.clearance += if first { step } else { step.clamp(-JUMP_SPEED * dt, JUMP_SPEED * dt) };
     }
 
-    /// Confidence in the legs, 0 to 1: 0 if both feet are seen higher than a person can jump.
+    /// Confidence in the legs, 0 to 1: it falls while both feet are seen higher than a person can jump.
     pub fn legs_trust(&self) -> f32 {
         self.trust
     }

@@ -240,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn an_overlong_step_gives_up_a_level_at_once() {
+    fn an_overlong_step_drops_a_level_at_once() {
         let (changes, missed) = play(&mut QualityControl::default(), 500, |_| 80.0);
         let last = QUALITY_LEVELS.len() as u8 - 1;
         assert_eq!(changes, (0..last).map(|k| (u64::from(k), k + 1)).collect::<Vec<_>>());

@@ -12,7 +12,7 @@ fn knee() -> LinkCurve {
 }
 
 #[test]
-fn a_chain_with_a_knee_hangs_by_its_curve() {
+fn chain_with_a_knee_hangs_by_its_curve() {
     let (links, rest, mass) = (20, 0.05, 1e-3);
     for slope in [1.0, 1e4] {
         let link_curve = LinkCurve { slope: knee().slope * slope, ..knee() };
