@@ -1,4 +1,5 @@
-// Stage combine: what comes before the forces of a stage of stiff bending, and behind the last. CPU reference: `ApplyStiffBending` in `cloth/forces/stiff_bending.rs`.
+// Stage combine: what comes before the forces of a stage of stiff bending, and behind the last.
+// CPU reference: `ApplyStiffBending` in `cloth/forces/stiff_bending.rs`.
 //
 // Three more parts of the state are its scratch columns: r, the sum of all else that changes the velocity, and two changes of
 // velocity.
