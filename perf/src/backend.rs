@@ -1,4 +1,4 @@
-//! Backend: what the garments of a run were stepped by, as reports have it.
+//! Backend: the device that stepped the garments of a run, as reports have it.
 
 use serde::Serialize;
 use toile_gpu::backend::Backends;

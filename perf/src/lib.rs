@@ -1,4 +1,4 @@
-//! The evidence: what a part of the engine costs, and how exact it is at that cost.
+//! The evidence: the time of each part of the engine, and its error at that time.
 
 // Modules in the order of the data: each imports only from the groups above its own (tests/tests/layers.rs).
 pub mod backend;

@@ -80,7 +80,7 @@ fn measured(girths: Girths, sigmas: Girths) -> Measurements {
     Measurements { measures, valid_pixels: 1, people: 1, frames: 1, source: Source::Depth, notes: Vec::new() }
 }
 
-/// Recommends to everybody twice: by their true girths, and by girths with errors of `sigma` (m).
+/// Recommends to each person twice: by their true girths, and by girths with errors of `sigma` (m).
 ///
 /// # Errors
 /// Those of [`recommend`].
@@ -143,7 +143,7 @@ fn made(table: &SizeTable) -> Result<(Vec<MadeSize>, [EaseRange; 3]), SizeError>
     Ok((sizes, ease))
 }
 
-/// A size that somebody gets, held against the one that their true girths get.
+/// A person's recommended size, compared with the size by their true girths.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SizeCheck {
     /// How probable it was stated to be the best one.

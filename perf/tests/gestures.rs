@@ -1,4 +1,4 @@
-//! Gestures held against simulated shoppers, laws that they must obey, and what real sensors recorded.
+//! Gestures against simulated shoppers, against their rules, and against recordings of real sensors.
 
 use crate::recordings;
 use glam::{Quat, Vec3};
@@ -17,7 +17,7 @@ fn recorded(folder: &std::path::Path, file: &str) -> (usize, Vec<GestureEvent>) 
     (frames.len(), events(&frames))
 }
 
-/// Recordings in which nobody gestures at the mirror: jumping, dabbing, walking like a zombie, jumping jacks, bends and
+/// Recordings without a gesture at the mirror: jumping, dabbing, walking like a zombie, jumping jacks, bends and
 /// squats, arms raised to the sides; two wave, which is no gesture of ours, and one weighs with both hands.
 const NO_GESTURE: [(&str, usize); 9] = [
     ("skeleton/labanotation-kinect2/joints.csv", 371),
@@ -32,7 +32,7 @@ const NO_GESTURE: [(&str, usize); 9] = [
 ];
 
 #[test]
-fn recordings_in_which_nobody_gestures_give_no_event() {
+fn recordings_without_gestures_give_no_event() {
     let Some(root) = recordings::folder() else { return };
     for (file, frames) in NO_GESTURE {
         let (seen, found) = recorded(&root, file);
@@ -41,7 +41,7 @@ fn recordings_in_which_nobody_gestures_give_no_event() {
     }
 }
 
-/// Somebody draws lines into the air with the right hand: long straight strokes are what a swipe is.
+/// A person draws lines into the air with the right hand: each long straight stroke counts as a swipe.
 #[test]
 fn lines_drawn_into_the_air_are_swipes() {
     let Some(root) = recordings::folder() else { return };

@@ -74,7 +74,7 @@ fn people_of_another_family_are_measured_from_the_front_and_from_all_sides() {
     person.stand(Moment { time: 0.0, turned: 0.0 }, &mut rng, &mut early);
     person.stand(Moment { time: 1.5, turned: std::f32::consts::PI }, &mut rng, &mut late);
     let top = |p: &[glam::Vec3]| p.iter().map(|p| p.y).fold(0.0, f32::max);
-    assert!((top(&early) - top(&late)).abs() < 0.01, "nobody grows by turning");
+    assert!((top(&early) - top(&late)).abs() < 0.01, "a person does not grow by turning");
     assert!(early.iter().zip(&late).any(|(a, b)| a.distance(*b) > 0.2), "a turn moves the hands");
 
     let family = Family::Makehuman(makehuman);
@@ -106,10 +106,7 @@ fn people_of_another_family_are_measured_from_the_front_and_from_all_sides() {
     }
     let [front, after] = found.sizes;
     assert!(front.people == 8 && after.people == 8, "{front:?} {after:?}");
-    assert!(
-        (0.1..0.9).contains(&front.stated) && front.right > 0.2,
-        "nobody is sure of a size from the front: {front:?}"
-    );
+    assert!((0.1..0.9).contains(&front.stated) && front.right > 0.2, "no size is certain from the front: {front:?}");
     assert!(found.alone > 0.99, "one person is one: {}", found.alone);
     let crossed = crossed(&[&found], &[&found]);
     assert_eq!(crossed.iter().filter(|c| c.turned).count(), found.turned.len());

@@ -1,4 +1,4 @@
-//! Cloth by itself: sheets of one cell size, a fabric of which only what a law is about is left, and steps in an empty
+//! Cloth by itself: sheets of one cell size, a fabric with only the properties under test, and steps in an empty
 //! world.
 
 use glam::{Affine3A, DVec3, Vec3, Vec3A};
@@ -30,7 +30,7 @@ pub fn sheet(columns: u32, rows: u32, cell: f32, top: Vec3, pinned: bool) -> Sha
     shape
 }
 
-/// A fabric of which only what a law is about is left: no bending, hardly any shear, no air unless asked.
+/// A fabric with only the properties under test: no bending, hardly any shear, no air unless asked.
 ///
 /// # Panics
 /// Never: its base is built in.

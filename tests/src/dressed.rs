@@ -49,7 +49,7 @@ pub fn dress(name: &str, body: &Body) -> Garment {
     style.dress(&nearest_size(&style, body), body).expect("a garment that can be worn")
 }
 
-/// The same with threads so far apart that a step costs little: for laws that hold on any mesh.
+/// The same with threads so far apart that a step costs little: for rules that hold on any mesh.
 ///
 /// # Panics
 /// Where there is no such garment.

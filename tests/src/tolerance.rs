@@ -1,4 +1,4 @@
-//! How far from a law a figure of f32 may be, each with its reason.
+//! Tolerances of the tests: the distance of an f32 figure from the exact rule, each with its reason.
 
 /// Momentum that may come from nothing, as a share of all momenta added up regardless of their direction (1): each of
 /// some thousand corrections a step is rounded to 6e-8, and half a second has 60 steps.

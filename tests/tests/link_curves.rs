@@ -11,7 +11,7 @@ use toile_tests::cloth::{Alone, sheet};
 const CELLS: [u32; 2] = [5, 7];
 const CELL_M: f32 = 0.03;
 
-/// Steps of 1/120 s, and substeps of each: with twice as many, what f32 rounds away of a position is more than what the laws are off.
+/// Steps of 1/120 s, and substeps of each: with twice as many, the rounding of a position to f32 exceeds the error of the curves.
 const STEPS: u32 = 36;
 const SUBSTEPS: u32 = 24;
 
@@ -24,14 +24,14 @@ const ALL: &str = "[hysteresis]\nshear_n_m = 0.06\n[stretch.warp]\nknee_percent 
     hysteresis_n_m = 0.05\n[stretch.weft]\nknee_percent = 0.6\nknee_n_m = 0.2\nbeyond_n_m = 400.0\n\
     [shear_lock]\ndegrees = 2.0\nbeyond_n_m = 20.0\n";
 
-fn garment(laws: &str) -> Garment {
+fn garment(curves: &str) -> Garment {
     let text = format!(
-        "name = \"law\"\ntitle = \"Law\"\nbase = \"cotton-lawn\"\ndensity_kg_m2 = 0.3\nstretch_warp_n_m = 33.3\nstretch_weft_n_m = 33.3\nshear_n_m = 2.0\n\
-        bend_warp_un_m = 0.0\nbend_weft_un_m = 0.0\nfriction = 0.3\ndamping_per_s = 1.0\ncontact_offset_mm = 3.0\n{laws}"
+        "name = \"curve\"\ntitle = \"Curve\"\nbase = \"cotton-lawn\"\ndensity_kg_m2 = 0.3\nstretch_warp_n_m = 33.3\nstretch_weft_n_m = 33.3\nshear_n_m = 2.0\n\
+        bend_warp_un_m = 0.0\nbend_weft_un_m = 0.0\nfriction = 0.3\ndamping_per_s = 1.0\ncontact_offset_mm = 3.0\n{curves}"
     );
-    let fabric = toile_assets::fabric::parse("law", &text).expect("figures that cloth can have");
+    let fabric = toile_assets::fabric::parse("curve", &text).expect("figures that cloth can have");
     let top = Vec3::new(-0.5 * CELLS[0] as f32 * CELL_M, 0.0, 0.0);
-    bake("law", "one", &sheet(CELLS[0], CELLS[1], CELL_M, top, true), &fabric).expect("a sheet can be baked")
+    bake("curve", "one", &sheet(CELLS[0], CELLS[1], CELL_M, top, true), &fabric).expect("a sheet can be baked")
 }
 
 /// Turned about the upper edge, and sheared.
@@ -72,17 +72,17 @@ fn apart(a: &[DVec3], b: &[DVec3]) -> f64 {
 }
 
 #[test]
-fn cloth_with_laws_swings_as_the_oracle_does() {
+fn cloth_with_curves_swings_as_the_oracle_does() {
     let plain = by_the_oracle(&garment(""));
     let own = apart(&by_the_engine(&garment("")), &plain);
     eprintln!("plain links: {:.3} mm apart", own * 1e3);
     assert!(own < 3e-5, "{own}");
-    for (which, laws) in [("knees", KNEES), ("friction", FRICTION), ("shear that locks", LOCK), ("all", ALL)] {
-        let garment = garment(laws);
+    for (which, curves) in [("knees", KNEES), ("friction", FRICTION), ("shear that locks", LOCK), ("all", ALL)] {
+        let garment = garment(curves);
         let exact = by_the_oracle(&garment);
         let (off, worth) = (apart(&by_the_engine(&garment), &exact), apart(&plain, &exact));
-        eprintln!("{which}: {:.3} mm apart, where the law is worth {:.3} mm", off * 1e3, worth * 1e3);
-        assert!(worth > 1e-4, "{which}: the law acts, {worth}");
+        eprintln!("{which}: {:.3} mm apart, where the curve changes {:.3} mm", off * 1e3, worth * 1e3);
+        assert!(worth > 1e-4, "{which}: the curve acts, {worth}");
         assert!(off < 0.03 * worth + own, "{which}: {off} of {worth}");
     }
 }

@@ -24,7 +24,7 @@ fn lawn() -> Fabric {
 }
 
 fn baked(shape: &Shape, fabric: &Fabric) -> Garment {
-    bake("law", "one", shape, fabric).expect("a sheet can be baked")
+    bake("motion", "one", shape, fabric).expect("a sheet can be baked")
 }
 
 /// A sheet about the origin, where f32 is finest.
@@ -171,8 +171,8 @@ fn the_mirror_image_of_a_cloth_moves_as_its_mirror_image() {
     // Left and right are solved one after the other.
     let sides = swung(&garment, Vec3::new(-1.0, 1.0, 1.0));
     let columns = CELLS[0] as usize + 1;
-    let twin = |v: usize| v / columns * columns + columns - 1 - v % columns;
-    let off = |v: usize| (sides[twin(v)] * Vec3::new(-1.0, 1.0, 1.0)).distance(plain[v]);
+    let mirrored = |v: usize| v / columns * columns + columns - 1 - v % columns;
+    let off = |v: usize| (sides[mirrored(v)] * Vec3::new(-1.0, 1.0, 1.0)).distance(plain[v]);
     let off = (0..plain.len()).map(off).fold(0.0, f32::max) / (CELLS[1] as f32 * CELL_M);
     eprintln!("left and right differ by {off:.1e} of the length");
     assert!(off < tolerance::MIRROR, "left and right differ by {off} of the length");

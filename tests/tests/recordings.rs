@@ -113,7 +113,7 @@ fn judge((file, worn, most): (&str, &[&str], f32), world: &World, figures: &Figu
 fn real_recordings_neither_jump_nor_harm_the_cloth() {
     let Some(data) = recordings::folder() else { return };
     let waiting = Mutex::new(TRY_ONS.into_iter().collect::<VecDeque<_>>());
-    let next = || waiting.lock().expect("nobody panics while holding it").pop_front();
+    let next = || waiting.lock().expect("no thread panics while holding it").pop_front();
     thread::scope(|scope| {
         for _ in 0..2 {
             scope.spawn(|| {

@@ -258,15 +258,15 @@ fn bending_that_rubs_gives_the_same_bits_by_one_worker_and_two_and_others_than_w
 }
 
 #[test]
-fn links_of_several_slopes_that_rub_and_buckle_give_the_same_bits_by_both_workers_and_at_every_width() {
-    let play = |threads: usize, lanes: Width, laws: bool| {
+fn curved_links_give_equal_bits_at_every_width() {
+    let play = |threads: usize, lanes: Width, curved: bool| {
         let mut scene = scene(&SkirtOptions {
             verts: 9_216,
             threads,
             lanes: Some(lanes),
             stretch: Stretch::Physical,
-            curves: laws,
-            buckling: laws,
+            curves: curved,
+            buckling: curved,
             ..SkirtOptions::default()
         });
         for _ in 0..GOLDEN_STEPS {
@@ -276,7 +276,7 @@ fn links_of_several_slopes_that_rub_and_buckle_give_the_same_bits_by_both_worker
         scene.state_hash()
     };
     let one = play(1, Width::widest(), true);
-    assert_ne!(play(1, Width::widest(), false), one, "laws change nothing");
+    assert_ne!(play(1, Width::widest(), false), one, "the curves change nothing");
     for width in Width::ALL.into_iter().filter(|w| w.available()) {
         assert_eq!(play(2, width, true), one, "{width:?}");
     }

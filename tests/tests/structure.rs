@@ -24,7 +24,7 @@ const UNSAFE_FILES: [(&str, &str); 44] = [
     ("engine/c/src/scene/picture.rs", "the same"),
     ("engine/c/src/scene/snapshot.rs", "the same"),
     ("engine/python/src/views.rs", "numpy shows memory that a Python object keeps"),
-    ("engine/core/src/workers/per_share.rs", "what belongs to a share is lent to whoever works on it"),
+    ("engine/core/src/workers/per_share.rs", "the data of a share is lent to its worker"),
     ("engine/core/src/workers/mod.rs", "a job that borrows the caller's stack is handed to another thread"),
     ("engine/core/src/cloth/step/work.rs", "the workers of a step share its columns"),
     ("engine/core/src/cloth/contact/garments/work.rs", "the workers of a step share the contacts"),

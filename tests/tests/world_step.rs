@@ -1,4 +1,4 @@
-//! Tests of the whole step, through what the engine shows to everybody.
+//! Tests of the whole step, through the engine's public interface.
 
 use glam::{Affine3A, Vec3, Vec3A};
 use toile_bake::bake;
@@ -34,7 +34,7 @@ fn alone(garment: &Garment, settings: &Settings, steps: u32) -> Cloth {
 fn free_fall_is_that_of_galileo_and_of_the_air() {
     let settings = Settings::default();
     // Half a second within the height of a room: velocities come from differences of positions, whose last bit is worth
-    // 1e-4 m/s there, and a hundred times that where nobody stands.
+    // 1e-4 m/s there, and a hundred times that far away from any shopper.
     let steps = STEP_HZ / 2;
     for k in [0.0f32, 1.05] {
         let shape = sheet(6, 6, 0.05, Vec3::new(0.3, 1.0, -0.2), false);
@@ -168,7 +168,7 @@ fn joints_that_are_no_numbers_leave_no_trace() {
         let turns = pose.local.iter().zip(&frame.pose().local).map(|(a, b)| a.angle_between(*b));
         off = turns.fold(pose.root.distance(frame.pose().root), f32::max);
     }
-    assert_eq!(frame.cloths()[0].events.rolled_back, 0, "the door before the cloth keeps it out");
+    assert_eq!(frame.cloths()[0].events.rolled_back, 0, "the checks before the cloth keep it out");
     assert!(off < 0.05, "two and a half seconds later the pose is still {off} (m or rad) off");
     let strain = measure::strain(&mut frame.cloths()[0].clone(), &frame.garments()[0]);
     assert!(strain.max < 0.5, "the dress has not recovered: {strain:?}");

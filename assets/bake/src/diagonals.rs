@@ -189,9 +189,9 @@ mod tests {
     #[test]
     fn fibers_that_cross_go_to_families_of_their_own_and_a_knot_is_left_out() {
         let rail = |from: u32, by: u32| (0..6u32).map(move |t| (from + t) as usize + by as usize * 100);
-        let ladder: Vec<BiasFiber> =
+        let parallel: Vec<BiasFiber> =
             (0..6u32).map(|t| BiasFiber { towards: true, links: vec![(t as usize, [t, 6 + t])] }).collect();
-        let mut crossed = ladder.clone();
+        let mut crossed = parallel.clone();
         crossed.extend((0..6u32).map(|t| BiasFiber { towards: false, links: vec![(6 + t as usize, [t, 12 + t])] }));
         let (laid, ..) = lay_out(&crossed, &[0; 18], &|_, _| false);
         assert_eq!(laid.families.len(), 2);

@@ -36,7 +36,7 @@ impl CurveMaker {
         }
     }
 
-    /// The law of an edge as part of a fiber of the given direction.
+    /// Curve of an edge as part of a fiber of the given direction.
     pub fn link_curve(&self, edge: &Edge, fiber: Direction) -> CurveParameters {
         let f = &self.fabric;
         match fiber {

@@ -42,7 +42,7 @@ impl BakeInput<'_> {
         self.weights[self.order.source[particle as usize] as usize]
     }
 
-    /// Whether links along the bias, or along threads, have laws: then none is like another, because each has a state.
+    /// Whether links along the bias, or along threads, have curves: then none is like another, because each has a state.
     fn curved(&self, bias: bool) -> bool {
         self.link_curves.is_some_and(|maker| maker.acts(bias))
     }
@@ -175,7 +175,7 @@ fn diagonals<'a>(
         let ends = fiber.vertices.windows(2).map(|v| [particle(v[0]), particle(v[1])]);
         let links: Vec<_> = fiber.edges.iter().map(|&e| e as usize).zip(ends).collect();
         let (sin, cos) = portable::sin_cos(baking.edges[links[0].0].angle);
-        // Links between two fixed particles are nobody's.
+        // Links between two fixed particles belong to no fiber.
         for part in links.split(|l| !open[l.0]).filter(|p| !p.is_empty()) {
             fibers.push(BiasFiber { towards: sin * cos > 0.0, links: part.to_vec() });
         }

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use super::fibers::{Direction, Edge, Fiber};
 use toile_base::garment::layout::{MAX_LISTED, OWNERS};
 
-/// Garments with fewer particles than this are not shared between workers: meeting would cost what sharing saves.
+/// Garments with fewer particles than this are not shared between workers: the barriers would cost as much as sharing saves.
 pub const SHARE_FROM: usize = 8_192;
 
 /// Fewest columns of a strip.

@@ -17,8 +17,9 @@ pub struct RunPlaces {
 }
 
 /// Lays constraints over `K` particles out; `apart` demands that no two of a set share a particle. Gives the tuples and
-/// for each parameter place the constraint it belongs to, or one of those that are `alike`. Constraints that touch both owners' particles are the first
-/// owner's where sets are kept apart (nobody else touches them in that set), else they form a last set of their own.
+/// for each parameter place the constraint it belongs to, or one of those that are `alike`. Constraints that touch both owners'
+/// particles are the first owner's if sets are kept apart (no other constraint touches them in that set); otherwise they form a
+/// last set of their own.
 pub fn lay_out<const K: usize>(
     constraints: &[(Direction, [u32; K])],
     owner: &[u8],
@@ -196,7 +197,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sets_are_apart_nothing_is_lost_and_a_ladder_becomes_runs() {
+    fn sets_share_no_particle_and_lose_no_link() {
         // Two rails of 20 particles, the second rail's numbers after the first's.
         let straights = (0..20u32).map(|i| (Direction::Warp, [i, 20 + i]));
         let rails = (0..19u32).map(|i| (Direction::Weft, [i, i + 1]));

@@ -8,7 +8,7 @@
 //! * for every other edge, that of a strip cut at its angle t to the warp (the off-axis modulus of an orthotropic sheet
 //!   without Poisson's effect): 1 / E(t) = cos^4 t / E_warp + sin^4 t / E_weft + sin^2 t cos^2 t / G.
 //!
-//! In a rectangular cell with threads that hardly stretch, diagonals of this law have exactly the shear stiffness G,
+//! In a rectangular cell with threads that hardly stretch, diagonals of this modulus have exactly the shear stiffness G,
 //! whether there are two of them, each with half of the cell's area, or one, with all of it. They pull along the threads
 //! too: [`threads`] leaves them that part.
 

@@ -185,7 +185,7 @@ mod tests {
         assert_eq!((found.vertices, found.triangles, found.fixed, found.tethers), (72, 120, 12, 60));
         let Coverage { edges, warp, hoops, bias, loose, .. } = found.coverage;
         assert_eq!((edges, warp, hoops, bias, loose), (60 + 72 + 120, 60, 72, 120, 0));
-        // Twelve columns and the diagonals both ways; the fixed hoop is nobody's.
+        // Twelve columns and the diagonals both ways; the fixed hoop has no solver.
         assert_eq!(found.solvers[0], SolverCount { solver: Solver::SemiImplicit, fibers: 12 + 24, edges: 60 + 120 });
         assert_eq!(found.solvers[1].edges, edges - 60 - 120 - 12);
         assert_eq!(found.stencils, [48, 60, 0]);

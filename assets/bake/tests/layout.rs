@@ -25,8 +25,8 @@ fn one_particle_has_one_owner() {
     assert!(matches!(twice, Err(LayoutError::Owner { .. })), "{twice:?}");
     let other = changed(|_, layout| layout.owner[0] ^= 1);
     assert!(matches!(other, Err(LayoutError::Owner { .. })), "{other:?}");
-    let nobody = changed(|_, layout| layout.spans[0].clear());
-    assert!(matches!(nobody, Err(LayoutError::Owner { .. })), "{nobody:?}");
+    let unowned = changed(|_, layout| layout.spans[0].clear());
+    assert!(matches!(unowned, Err(LayoutError::Owner { .. })), "{unowned:?}");
 }
 
 #[test]

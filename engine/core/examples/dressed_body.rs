@@ -44,7 +44,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut shown = 0;
     for tick in 0..u64::from(SECONDS * STEP_HZ) {
         world.step(&joints(&body, tick));
-        // A display of 60 Hz takes every other snapshot; nobody waits for it.
+        // A display of 60 Hz takes every other snapshot; the step does not wait for it.
         if tick % 2 == 1 && reader.news().is_some() {
             shown += 1;
         }

@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let track: Vec<Joints> = session.joints.iter().map(|raw| filter.push(raw)).collect();
     let stands = track.iter().position(|seen| seen.at(Joint::Pelvis).is_believed());
     let track =
-        &track[stands.ok_or("nobody is seen in this session: its joints are too uncertain, or there are none")?..];
+        &track[stands.ok_or("no person is seen in this session: its joints are too uncertain, or there are none")?..];
     let [first, .., last] = track else { return Err("the session has a single frame; record a longer one".into()) };
     let span = (last.time_ns - first.time_ns).min(LONGEST_NS);
     println!(

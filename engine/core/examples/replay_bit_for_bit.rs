@@ -27,7 +27,7 @@ const LENGTH_NS: u64 = 2 * SECOND_NS;
 /// The recorded frame in which a joint is moved, and how far (m).
 const MOVED: (u64, f32) = (30, 1e-3);
 
-/// The scene as its text in the recording says: whoever replays makes the very same.
+/// Makes the scene that the text in the recording describes: a replay makes the very same.
 fn staged(size: &str, first: &Joints, workers: usize) -> Result<WorldScene, Box<dyn Error>> {
     let body = toile_assets::body::build(scene::SHOPPER.0, &scene::SHOPPER.1)?;
     let rig = toile_assets::rig::fit(&body);
@@ -60,7 +60,7 @@ fn record(frames: &[Joints]) -> Result<Vec<u8>, Box<dyn Error>> {
 
 /// The same steps again, by the same function, with so many workers.
 fn again(size: &str, entries: &[Entry], workers: usize) -> Result<Replayed, Box<dyn Error>> {
-    let Some(Entry::Dressed(first)) = entries.first() else { return Err("the recording dresses nobody".into()) };
+    let Some(Entry::Dressed(first)) = entries.first() else { return Err("the recording dresses no shopper".into()) };
     Ok(replay(&mut SceneStepper::new(staged(size, first, workers)?), entries, &SimClock::default()))
 }
 

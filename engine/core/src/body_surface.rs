@@ -1,7 +1,7 @@
 //! The body that is seen: its skinned triangles at the start and the end of a step, for cloth to lie on.
 //!
-//! Budget: 20 us a step for 15,000 vertices, all of it copying; nothing allocated after load.
-//! Thread: physics, between skin and cloth.
+//! A step of 15,000 vertices may take 20 us, all of it copying. Nothing is allocated after load. It runs on the physics thread,
+//! between skin and cloth.
 //!
 //! Each part of a garment meets a surface of its own, made of the limbs that it can touch: a nearest point that is walked to
 //! then never lies on the wrong side of an armpit or on the other leg.

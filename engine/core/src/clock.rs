@@ -1,7 +1,6 @@
 //! Time as the loop sees it: nanoseconds of a monotonic clock, real or simulated.
 //!
-//! Budget: 30 ns a look.
-//! Thread: any; what is scheduled against a simulated clock gives the same bits in every run.
+//! A look may take 30 ns, on any thread. Work that is scheduled against a simulated clock gives the same bits in every run.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
@@ -111,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn a_real_clock_never_goes_back_and_wakes_nobody_early() {
+    fn real_clock_never_goes_back_or_wakes_early() {
         let clock = RealClock::starting_at(414 * 86_400 * 1_000_000_000);
         let copy = clock;
         let before = clock.now_ns();

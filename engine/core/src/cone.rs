@@ -1,6 +1,6 @@
 //! The geometry of the collision body: spheres that follow bones, and the tapered capsule between two of them.
 //!
-//! Budget: 10 ns a distance.
+//! A distance may take 10 ns.
 
 use glam::{Vec3, Vec4, Vec4Swizzles};
 use toile_base::skeleton::Skeleton;

@@ -218,7 +218,7 @@ mod tests {
     use crate::colliders::RestSphere;
 
     #[test]
-    fn what_there_is_no_room_for_is_counted() {
+    fn lines_beyond_the_capacity_are_counted() {
         let mut lines = Lines::new(2);
         (0..5).for_each(|i| lines.push(Vec3::ZERO, Vec3::X * i as f32, Vec3::ONE));
         lines.push(Vec3::NAN, Vec3::X, Vec3::ONE);

@@ -1,6 +1,6 @@
 //! Meters: how long the stages of a step take, always on, against what each of them may take.
 //!
-//! Budget: 10 ns a value; 24 KiB a meter.
+//! A value may take 10 ns, and a meter 24 KiB.
 
 #[cfg(feature = "meters")]
 mod distribution;

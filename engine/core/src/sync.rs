@@ -11,8 +11,8 @@ pub use std::thread::{self, JoinHandle};
 /// Whether a pool may have a helper thread.
 pub const HAS_THREADS: bool = cfg!(feature = "threads");
 
-/// Looks at the other's progress before the caller takes over a share that nobody has begun: about 1 us, six times what
-/// a meeting takes.
+/// Looks at the other's progress before the caller takes over a share that was not begun: about 1 us, six times the
+/// duration of a barrier.
 pub const LOOKS_BEFORE_TAKING: u32 = 64;
 
 /// Looks before a waiting thread offers its core to others at every further look: about 15 us. On a machine whose cores
@@ -54,7 +54,7 @@ impl<T: Copy> Slot<T> {
     /// The value.
     ///
     /// # Safety
-    /// Nobody writes it meanwhile, and the last write happened before.
+    /// No thread writes it meanwhile, and the last write happened before.
     pub unsafe fn read(&self) -> T {
         // SAFETY: see above.
         unsafe { *self.0.get() }
@@ -63,7 +63,7 @@ impl<T: Copy> Slot<T> {
     /// Puts another value there.
     ///
     /// # Safety
-    /// Nobody reads or writes it meanwhile, and all that did happened before.
+    /// No thread reads or writes it meanwhile, and all earlier reads and writes happened before.
     pub unsafe fn write(&self, value: T) {
         // SAFETY: see above.
         unsafe { *self.0.get() = value };

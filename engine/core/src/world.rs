@@ -1,7 +1,7 @@
 //! The world: one step of the whole scene, stage after stage, and the snapshot that it publishes.
 //!
-//! Budget: 8,333 us a step, of which the cloth has the most; no allocation after [`World::new`].
-//! Thread: physics.
+//! A step may take 8,333 us, of which the cloth has the most. Nothing is allocated after [`World::new`]. It runs on the physics
+//! thread.
 
 mod meters;
 

@@ -372,7 +372,7 @@ mod tests {
         assert_eq!((stepper.backend(), stepper.fallback()), (Backend::Cpu, Some("no adapter")));
         assert_eq!(means.fallback(), Some("no adapter"));
         let asked = none(Backend::Cpu);
-        assert_eq!((asked.stepper().fallback(), asked.fallback()), (None, None), "nobody asked for a device");
+        assert_eq!((asked.stepper().fallback(), asked.fallback()), (None, None), "no device was asked for");
     }
     /// A sheet that can meet itself, what keeps it out of itself, and what surrounds it.
     fn sheet() -> (Garment, GarmentContact, Colliders) {
@@ -399,7 +399,7 @@ mod tests {
             assert_eq!((means.used(), stepper.backend()), ("cpu", Backend::Cpu));
         }
         let cpu = Backends::for_scene(Backend::Cpu, Some(&layers), &colliders, &settings);
-        assert_eq!(cpu.fallback(), None, "nobody asked for a device");
+        assert_eq!(cpu.fallback(), None, "no device was asked for");
         let off = Settings { contact: ContactRates { folds: 0, layers: 0, ..settings.contact }, ..settings };
         let means = Backends::for_scene(Backend::Gpu, Some(&layers), &colliders, &off);
         assert_ne!(means.fallback(), Some(CLOTH_ON_CLOTH), "nothing asks for it");

@@ -10,7 +10,7 @@ use wgpu::{Backends, DeviceType, Instance, Limits, MemoryHints, Surface};
 use crate::adapters::{self, describe};
 use crate::wait::block_on;
 
-/// Why a GPU cannot compute the cloth, or draw it. Whoever gets one for the cloth goes on with the CPU.
+/// Why a GPU cannot compute the cloth, or draw it. A caller that gets one for the cloth goes on with the CPU.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum GpuError {
     /// No driver answers, or none of the asked kind, or none that can show on the given surface.
@@ -76,7 +76,7 @@ pub enum AdapterChoice {
     Software,
 }
 
-/// Longest that a graphics card may take for a step (s): a hundred times what a frame has. Whoever waits for it goes on with
+/// Longest that a graphics card may take for a step (s): a hundred times what a frame has. The caller goes on with
 /// the CPU after that.
 const PATIENCE: Duration = Duration::from_secs(1);
 
@@ -215,7 +215,7 @@ impl Device {
     /// True once the device is gone: unplugged, reset by its driver, given up, or out of memory. Everything made by it has
     /// to be made anew by another.
     pub fn lost(&self) -> bool {
-        // Relaxed: the flag guards no other data; whoever draws or steps asks for it the next time.
+        // Relaxed: the flag guards no other data; the next drawing or step asks for it.
         self.lost.load(Ordering::Relaxed)
     }
 

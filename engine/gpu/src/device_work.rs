@@ -1,4 +1,4 @@
-//! What a step asks of a device, and what the device spent on it.
+//! Work that a step asks of a device, and the device's time for it.
 
 use toile_engine::cloth::step::program::METERED_STAGES;
 

@@ -1,6 +1,6 @@
 //! The GPUs of this machine, the cloth on them, and the choice between them and the processor.
 //!
-//! Thread: the one that calls; the physics thread of garments that the processor steps never submits to or waits for a GPU.
+//! The physics thread of garments that the processor steps never submits to a GPU or waits for one.
 
 /// Whether GPU support is built in (feature `wgpu`).
 pub const BUILT_IN: bool = cfg!(feature = "wgpu");

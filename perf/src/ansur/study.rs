@@ -57,9 +57,9 @@ pub enum StudyError {
         /// Which measure is outside of which range.
         source: BodyError,
     },
-    /// Nobody in the file.
+    /// The file has no people.
     #[error("the survey has no people: give a file of ANSUR II with one person a line")]
-    Nobody,
+    Empty,
 }
 
 /// Median, 95th percentile and greatest of some figures.
@@ -130,7 +130,7 @@ pub struct BodyStudy {
 }
 
 impl BodyStudy {
-    /// Whether every given measure is within its limit for everybody, and no body looks wrong.
+    /// Whether every given measure is within its limit for all people, and no body looks wrong.
     pub fn passes(&self) -> bool {
         self.measures.iter().all(|m| m.within.is_none_or(|w| w == 1.0)) && self.wrong == 0.0
     }
@@ -157,7 +157,7 @@ pub fn study(survey: &Survey, count: usize, seed: u64, progress: &dyn Fn()) -> R
     let sex = survey.sex()?;
     let columns: Vec<Vec<f64>> = GIVEN.iter().map(|g| survey.column(g.1)).collect::<Result<_, _>>()?;
     if survey.people() == 0 {
-        return Err(StudyError::Nobody);
+        return Err(StudyError::Empty);
     }
     let base = toile_assets::body::drawn(sex);
     let mut built = Vec::new();
@@ -257,7 +257,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nobody_is_drawn_twice() {
+    fn no_person_is_drawn_twice() {
         let mut rows = chosen(100, 60, 7);
         assert_eq!(rows, chosen(100, 60, 7), "by the seed");
         assert_ne!(rows, chosen(100, 60, 8));

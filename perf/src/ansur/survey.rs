@@ -1,4 +1,4 @@
-//! The survey's files: who was measured, in millimetres.
+//! The survey's files: the measured people, in millimetres.
 
 use std::path::{Path, PathBuf};
 
@@ -79,7 +79,7 @@ impl Survey {
         }
     }
 
-    /// One measure of everybody (mm).
+    /// One measure of all people (mm).
     ///
     /// # Errors
     /// [`SurveyError::NoColumn`], [`SurveyError::NoNumber`].

@@ -32,7 +32,7 @@ pub struct FlowRow {
     pub frames: usize,
     /// Mean, 95th percentile and largest distance of a vertex from where it was, over all frames (mm).
     pub error_mm: ErrorMm,
-    /// The same of the vertices that two cameras see in that frame, by the truth: what lies in a fold's hollow nobody can place.
+    /// The same of the vertices that two cameras see in that frame, by the truth: a vertex in a fold's hollow cannot be placed.
     pub seen_mm: ErrorMm,
     /// Share of the vertices that are seen so.
     pub seen: f64,

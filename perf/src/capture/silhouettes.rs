@@ -251,7 +251,7 @@ pub(super) fn rig(options: &SilhouetteStudyOptions, rng: &mut SplitMix64) -> Vec
         .collect()
 }
 
-/// The masks of somebody who stands and faces anywhere.
+/// The masks of a person who stands and faces any direction.
 fn masks(person: &StudyPerson, rig: &[(CalibratedCamera, CalibratedCamera)], rng: &mut SplitMix64) -> Vec<Mask> {
     let mut positions = Vec::new();
     let facing = rng.uniform() * std::f32::consts::TAU;

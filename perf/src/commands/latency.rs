@@ -71,7 +71,7 @@ pub struct LatencyArgs {
         value_parser = value_parser!(u32).range(0..=MOST_LOAD)
     )]
     pub load: Option<u32>,
-    /// Hold the quality on a level: 0 is all of it (default: governed)
+    /// Hold the quality on a level: 0 is all of it (default: set by quality control)
     #[arg(long, alias = "rung", value_name = "L", value_parser = value_parser!(u8).range(0..QUALITY_LEVELS.len() as i64))]
     pub level: Option<u8>,
     /// Record the run, without images, for `toile replay`
@@ -133,7 +133,7 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
     let measured = measured::measure(&session, request.facts())?;
     let request = request.sized_for(&session.name, &measured)?;
     let DressedWorld { world, reader, request, .. } = request.build(first)?;
-    // Only now: a helper with a real-time priority shares its core with nobody who waits for it.
+    // Only now: a helper with a real-time priority shares its core with no thread that waits for it.
     let clock = RealClock::default();
     let sex = world.body().sex;
     let mut own = None;

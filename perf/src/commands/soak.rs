@@ -248,10 +248,12 @@ fn second(options: &SoakOptions, hash: u64, kept: Option<&Path>, words: &Words) 
 /// Takes a soak's recording again: the last scene, and what came out.
 ///
 /// # Errors
-/// A recording that does not begin where somebody was dressed, and a scene that cannot be made.
+/// A recording that does not begin where a shopper was dressed, and a scene that cannot be made.
 pub fn again(plan: SoakPlan, entries: &[Entry], workers: usize) -> Result<(World, Replayed), AppError> {
     let Some((Entry::Changed { number, .. }, entries)) = entries.split_first() else {
-        return Err(AppError::Input("the recording does not begin where somebody was dressed; record it again".into()));
+        return Err(AppError::Input(
+            "the recording does not begin where a shopper was dressed; record it again".into(),
+        ));
     };
     let mut scene_maker = SceneMaker::new(Arc::new(Scenario::write(plan).map_err(refused)?));
     let (world, _reader) = scene_maker.make(*number).map_err(refused)?;

@@ -1,4 +1,4 @@
-//! A row of the table, and what can go wrong on the way to it.
+//! A row of the table, and the errors on the way to it.
 
 use serde::Serialize;
 use thiserror::Error;

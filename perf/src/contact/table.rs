@@ -1,4 +1,4 @@
-//! The table: every case, and what it came to.
+//! The table: every case and its result.
 
 use serde::Serialize;
 

@@ -26,7 +26,7 @@ pub(super) struct Outfit {
     within_ms: Option<[f64; 2]>,
 }
 
-/// An outfit of the shop, which has to keep its time, and a dress over all else, which nobody wears and is only reported.
+/// An outfit of the shop, which has to keep its time, and a dress over all else, which no shopper wears and is only reported.
 pub(super) const OUTFITS: [Outfit; 2] = [
     Outfit {
         name: "trousers, T-shirt and open jacket",

@@ -65,7 +65,7 @@ impl DepthTable {
     /// The table for a person to read.
     pub fn markdown(&self) -> String {
         let mut text = String::from(
-            "| image | find the shopper | fill | smooth the shopper | smooth the full image | plain twin | Gaussian | points and normals | all stages |\n\
+            "| image | find the shopper | fill | smooth the shopper | smooth the full image | scalar reference | Gaussian | points and normals | all stages |\n\
              |---|---|---|---|---|---|---|---|---|\n",
         );
         for row in &self.rows {
@@ -76,7 +76,7 @@ impl DepthTable {
         }
         text.push_str(
             "\nTimes in ms, median of many runs, one thread. The errors of the same run:\n\n\
-             | image | noise of the body: raw, edge-preserving, Gaussian (mm) | noise of a wall at 2.5 m: raw, edge-preserving, Gaussian (mm) | edge of 20 cm, 10 to 90 %: raw, edge-preserving, Gaussian (px) | twin differs in | leaked | missed |\n\
+             | image | noise of the body: raw, edge-preserving, Gaussian (mm) | noise of a wall at 2.5 m: raw, edge-preserving, Gaussian (mm) | edge of 20 cm, 10 to 90 %: raw, edge-preserving, Gaussian (px) | scalar reference differs in | leaked | missed |\n\
              |---|---|---|---|---|---|---|\n",
         );
         for row in &self.rows {

@@ -1,4 +1,4 @@
-//! What is known of the scene, and how far the stages are from it.
+//! The truth of the scene, and the errors of the stages against it.
 
 use glam::{Quat, Vec3};
 use serde::Serialize;
@@ -43,7 +43,7 @@ pub struct DepthErrors {
     pub wall_rms_mm: [f64; 3],
     /// Pixels over which an edge of 20 cm goes from 10 to 90 %.
     pub edge_px: [f64; 3],
-    /// Pixels in which the fast filter and its plain twin differ.
+    /// Pixels in which the fast filter and its scalar reference differ.
     pub twin_differs_px: usize,
     /// Pixels of the mask that show anything but the shopper.
     pub leaked_px: usize,

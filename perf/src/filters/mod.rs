@@ -34,7 +34,7 @@ pub struct FilterRow {
     pub us: f64,
 }
 
-/// What one filter does to a recording, whose truth nobody knows: compared with its own smooth course.
+/// Effect of one filter on a recording without known truth, compared with the recording's own smooth course.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RecordedFigures {
     /// Name of the recording.

@@ -52,7 +52,7 @@ fn see(motion: &JointMotion, seconds: f32, mut show: impl FnMut(&Joints) -> Join
     NoisyMotion { truth, seen }
 }
 
-/// Somebody who stands.
+/// A person who stands still.
 pub fn still(body: &Skeleton) -> impl Fn(f32) -> Joints + '_ {
     move |_| all(body.rest)
 }

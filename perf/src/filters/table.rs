@@ -13,7 +13,7 @@ use super::{FilterRow, FiltersError, FootSlide, NAMES, feet, measure, rows};
 const WAVES: [&str; 2] =
     ["skeleton/labanotation-kinect2/Ges01_wavehand.csv", "skeleton/kinectron-kinect2/recorded_skeleton.json"];
 
-/// Recordings of feet: a walk, jumps, jumping jacks with bends and squats, and somebody who waves and stands.
+/// Recordings of feet: a walk, jumps, jumping jacks with bends and squats, and a person who waves and stands.
 const FEET: [&str; 4] = [
     "mocap/animated-drawings/zombie.bvh",
     "mocap/animated-drawings/jumping.bvh",

@@ -15,7 +15,7 @@ use toile_fitting::scene::contact::{CROSSINGS_NAME, ContactReport, PAIRS_NAME};
 pub fn capacities(queues: &[Capacity], gauges: &LoopMeters, world: &World) -> Vec<Capacity> {
     let late = gauges.late.histogram().max() / PERIOD_NS;
     let most = |count: fn(&Cloth) -> usize| world.cloths().iter().map(count).max().unwrap_or(0);
-    let room = |constant, bound, high_water| Capacity { constant, bound, high_water, lost: 0 };
+    let filled = |constant, bound, high_water| Capacity { constant, bound, high_water, lost: 0 };
     let colliders = world.colliders();
     let mut all = queues.to_vec();
     all.push(Capacity {
@@ -25,22 +25,20 @@ pub fn capacities(queues: &[Capacity], gauges: &LoopMeters, world: &World) -> Ve
         lost: gauges.dropped,
     });
     all.extend([
-        room("MAX_SPHERES (spheres of the body)", MAX_SPHERES, colliders.start().len()),
-        room("MAX_CAPSULES (capsules of the body)", MAX_CAPSULES, colliders.capsules().len()),
-        room("MAX_PLANES (planes among the colliders)", MAX_PLANES, colliders.planes().len()),
-        room("MAX_SUBSTEPS (substeps of a step)", MAX_SUBSTEPS as usize, most(|c| c.substeps() as usize)),
-        room(
+        filled("MAX_SPHERES (spheres of the body)", MAX_SPHERES, colliders.start().len()),
+        filled("MAX_CAPSULES (capsules of the body)", MAX_CAPSULES, colliders.capsules().len()),
+        filled("MAX_PLANES (planes among the colliders)", MAX_PLANES, colliders.planes().len()),
+        filled("MAX_SUBSTEPS (substeps of a step)", MAX_SUBSTEPS as usize, most(|c| c.substeps() as usize)),
+        filled(
             "MAX_BENDING_STAGES (stages of bending a substep)",
             stiff_bending::MAX_BENDING_STAGES as usize,
             most(|c| c.bend_pace().stages as usize),
         ),
     ]);
     let pairs = world.cloths().iter().map(|c| c.contact_counts().most_pairs);
-    all.extend(
-        pairs.map(|[most, room_for]| {
-            room("pairs (blocks of particles near a capsule)", room_for as usize, most as usize)
-        }),
-    );
+    all.extend(pairs.map(|[most, capacity]| {
+        filled("pairs (blocks of particles near a capsule)", capacity as usize, most as usize)
+    }));
     if let Some(ContactReport { pairs_most, pairs_room, crowded, crossings_most, left_out, .. }) = contact(world) {
         let full = |constant, bound, most: u64, lost| Capacity { constant, bound, high_water: most as usize, lost };
         all.push(full(PAIRS_NAME, pairs_room as usize, pairs_most, crowded));

@@ -65,8 +65,8 @@ fn quality(page: &mut Page, report: &Latency) {
          {p99:.2} %, at worst {max:.1} %; deepest penetration {:.2} mm; {} steps rolled back.",
         q.name, q.substeps, q.particles, q.free, q.penetration_mm, q.nonfinite
     ));
-    let rungs = q.gives_up.iter().zip(&q.rungs).map(|(what, steps)| vec![Entry::words(*what), Entry::figure(steps)]);
-    page.table(&["given up", "steps"], rungs);
+    let levels = q.gives_up.iter().zip(&q.rungs).map(|(what, steps)| vec![Entry::words(*what), Entry::figure(steps)]);
+    page.table(&["given up", "steps"], levels);
 }
 
 fn stage(stage: &LatencyStage) -> Vec<Entry> {

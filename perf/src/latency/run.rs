@@ -45,7 +45,7 @@ const MOST_JITTER_S: u32 = 10;
 /// A snapshot is to be there so soon after a sensor frame's arrival, at the 99th percentile (us).
 const SNAPSHOT_US: f64 = 12_000.0;
 
-/// The same where the joints are fitted to the depth of a live camera (us): following somebody takes 6 to 12 ms.
+/// The same where the joints are fitted to the depth of a live camera (us): following a person takes 6 to 12 ms.
 const CAMERA_SNAPSHOT_US: f64 = 30_000.0;
 
 /// A picture is to be there so soon after a sensor frame's arrival (us): what 75 ms from motion to light leave beside a sensor of
@@ -68,7 +68,7 @@ pub struct LatencyOptions {
     pub seconds: u32,
     /// Threads of load beside the loop.
     pub load: usize,
-    /// A quality level that the run is held on; none lets it govern.
+    /// Quality level on which the run is held; `None` leaves it to quality control.
     pub level: Option<u8>,
 }
 
@@ -342,7 +342,7 @@ fn drain(queues: &mut LoopQueues, events: &mut LoopEvents) {
     while queues.frames.pop().is_some() {}
 }
 
-fn quality(frame: &World, rungs: &[u64], changes: Vec<[u64; 3]>) -> QualityFigures {
+fn quality(frame: &World, levels: &[u64], changes: Vec<[u64; 3]>) -> QualityFigures {
     let (meters, settings) = (frame.meters(), frame.settings());
     let strain = meters.strain();
     let whole = frame.garments().iter().map(|g| settings.quality.substeps(g.substeps)).max().unwrap_or(0);
@@ -352,7 +352,7 @@ fn quality(frame: &World, rungs: &[u64], changes: Vec<[u64; 3]>) -> QualityFigur
         substeps: whole,
         particles: frame.garments().iter().map(Garment::particles).sum(),
         free: frame.garments().iter().map(free).sum(),
-        rungs: rungs.to_vec(),
+        rungs: levels.to_vec(),
         gives_up: QUALITY_LEVELS.iter().map(|r| r.gives_up).collect(),
         changes,
         strain: [strain.mean, strain.p99, strain.max].map(f64::from),

@@ -82,11 +82,11 @@ pub enum FamilyError {
     /// The survey that says how people are.
     #[error(transparent)]
     Survey(#[from] SurveyError),
-    /// No mixture is like anybody of the survey.
+    /// No mixture is like a person of the survey.
     #[error(
-        "none of {TRIES} mixtures of MakeHuman's targets has the proportions of anybody in the survey; give its own files"
+        "none of {TRIES} mixtures of MakeHuman's targets has the proportions of a person in the survey; give its own files"
     )]
-    Nobody,
+    NoMatch,
 }
 
 /// What people of one sex are like: the ranges that mixtures are kept within.
@@ -172,7 +172,7 @@ impl SurveyRanges {
 /// Draws a person of MakeHuman's family out of a folder of its files.
 ///
 /// # Errors
-/// Files that are not MakeHuman's, or mixtures that are like nobody.
+/// Files that are not MakeHuman's, or mixtures that are like no person of the survey.
 pub fn makehuman_person(
     folder: &Path,
     ranges: &SurveyRanges,
@@ -188,7 +188,7 @@ pub fn makehuman_person(
             return Ok(StudyPerson { sex: ranges.sex, truth, body, pose, motion });
         }
     }
-    Err(FamilyError::Nobody)
+    Err(FamilyError::NoMatch)
 }
 
 /// Targets and shares of one person, at random.
@@ -284,7 +284,7 @@ fn truth(body: &Body) -> TapeMeasures {
         "waist_girth" => Some(at(landmark::WAIST)),
         "hip_girth" => Some(girth(body, buttocks(body))),
         "thigh_girth" => Some(thigh(body)),
-        // Its arms are bent, and how far the survey's bent arm is from them nobody has measured.
+        // Its arms are bent, and their difference from the survey's bent arm is unknown.
         _ => None,
     };
     MEASURES.map(|(name, _, _)| named(name))

@@ -1,4 +1,4 @@
-//! One person of the study: the measures of somebody in the survey, and a shape of their own.
+//! One person of the study: the measures of a person in the survey, and a shape of their own.
 
 use std::f32::consts::TAU;
 
@@ -37,7 +37,7 @@ const HARMONICS: [(f32, f32); 4] = [(1.0, 0.012), (2.0, 0.030), (3.0, 0.008), (4
 /// Heights over stature at which each harmonic has its own strength; between them it is blended.
 const KNOTS: [f32; 6] = [0.44, 0.52, 0.58, 0.64, 0.72, 0.82];
 
-/// Roughness of flesh that nobody's family has: harmonics of the whole surface (m), about a hand wide.
+/// Roughness of flesh that no family of bodies has: harmonics of the whole surface (m), about a hand wide.
 const BUMPS: f32 = 0.0008;
 
 /// Builds a person of the survey, by their measures in the order of [`GIVEN`] (m). Where no body has all of them
@@ -106,7 +106,7 @@ fn blended(row: &[(f32, f32); KNOTS.len()], share: f32) -> f32 {
     from + (to - from) * t * t * (3.0 - 2.0 * t)
 }
 
-/// How a person stands when asked to: arms slightly out, nobody quite straight.
+/// How a person stands when asked to: arms slightly out, never quite straight.
 fn standing(body: &Body, rng: &mut SplitMix64) -> Pose {
     let mut pose = Pose::rest(&body.skeleton);
     let mut turn = |joint: Joint, usual: Vec3, spread: Vec3| {

@@ -85,7 +85,7 @@ pub struct StudyCamera {
 }
 
 impl StudyCamera {
-    /// A camera of a kind, before somebody at the origin.
+    /// A camera of a kind, before a person at the origin.
     pub fn new(sensor: Sensor, noise: NoiseModel, rng: &mut SplitMix64) -> Self {
         let [near, far] = sensor.distances();
         let distance = near + (far - near) * rng.uniform();

@@ -19,7 +19,7 @@ pub type TapeMeasures = [Option<f32>; MEASURES.len()];
 /// How a person moves while they stand.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum StandingMotion {
-    /// Each frame has a sway of its own, as if frames lay seconds apart; nobody breathes.
+    /// Each frame has a sway of its own, as if frames lay seconds apart; without breathing.
     Independent,
     /// Sway that wanders slowly, and a chest that breathes.
     Breathing(Breathing),
@@ -71,7 +71,7 @@ const SWAYS: [(Joint, f32); 7] = [
 /// How far the feet's middle wanders on the floor (m).
 const WANDER: f32 = 0.006;
 
-/// What somebody does who performs: a joint, the axis about which it turns, how far (rad) and how often a second.
+/// Movements of a performing person: a joint, the axis about which it turns, its angle (rad) and its frequency (1/s).
 const PERFORMS: [(Joint, Vec3, f32, f32); 10] = [
     (Joint::LeftShoulder, Vec3::Z, 1.2, 0.37),
     (Joint::RightShoulder, Vec3::NEG_X, 1.3, 0.29),
@@ -125,7 +125,7 @@ impl StudyPerson {
         self.skinned(&pose, moment, positions)
     }
 
-    /// The same of somebody who moves: lifts the arms, bends them, walks on the spot, each at a pace of its own, beginning and ending at rest.
+    /// The same of a person who moves: lifts the arms, bends them, walks on the spot, each at a pace of its own, beginning and ending at rest.
     pub fn perform(&self, moment: Moment, positions: &mut Vec<Vec3>) -> JointPositions {
         let mut pose = self.pose;
         let begun = (moment.time / 0.5).min(1.0);

@@ -97,7 +97,7 @@ pub struct MeasuredPerson {
     pub fit: Estimates,
     /// By the body fit once they have turned all round; nothing where they did not.
     pub turned: Estimates,
-    /// Frames that were looked at, and those in which nobody else was seen.
+    /// Frames that were looked at, and those in which no other person was seen.
     pub frames: [usize; 2],
     /// How likely the fit took them for a woman.
     pub woman: Option<f32>,
@@ -143,14 +143,14 @@ pub struct MeasuringAgreement {
 /// What following people costs, frame by frame, at how good a fit.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Following {
-    /// Frames followed, those in which somebody is found from nothing left out.
+    /// Frames followed, without those in which a person is found anew.
     pub frames: usize,
     /// Median and 95th percentile of the time that a frame has a core for (ms).
     pub frame_ms: [f64; 2],
     /// Median time of reading the picture, of posing and matching, of adding up, of solving (ms), other work on the
     /// machine included.
     pub stages_ms: [f64; 4],
-    /// Median time of finding somebody from nothing (ms).
+    /// Median time to find a person anew (ms).
     pub start_ms: f64,
     /// Mean root mean square distance of the surface from the body's (mm).
     pub off_mm: f64,
@@ -182,7 +182,7 @@ pub struct MeasuringStudy {
     pub fit: Vec<MeasuringAgreement>,
     /// By the body fit once they have turned all round; empty where they did not.
     pub turned: Vec<MeasuringAgreement>,
-    /// Share of the frames in which nobody else was seen.
+    /// Share of the frames in which no other person was seen.
     pub alone: f64,
     /// Sizes recommended from the front, and once they have turned.
     pub sizes: [SizeAgreement; 2],
@@ -470,6 +470,6 @@ mod tests {
         assert!((a.interval_mm[1] - 2.0 - half).abs() < 1e-3, "{a:?}");
         assert!(a.pass && !agreement("stature", 2.1, &pairs).pass);
         assert!((a.within_two_sigma - 1.0).abs() < 1e-9 && (a.p95_mm - 4.0).abs() < 1e-3);
-        assert!(!agreement("stature", 4.0, &[]).pass, "nobody is no agreement");
+        assert!(!agreement("stature", 4.0, &[]).pass, "no people give no agreement");
     }
 }

@@ -77,7 +77,7 @@ pub struct PersonSurfaces {
 }
 
 impl PersonSurfaces {
-    /// What was measured from the front and in a turn, each with the moment of its last frame; `None` for somebody whose
+    /// Measurements from the front and in a turn, each with the moment of its last frame; `None` for a person whose
     /// stance cannot be repeated, because each frame draws a sway of its own.
     pub(super) fn new(
         person: &StudyPerson,

@@ -1,4 +1,4 @@
-//! Links of several slopes that rub, as an energy: what [`LinkCurve`] says of a link whose friction sticks at one strain for a whole solution.
+//! Links of several slopes that rub, as an energy: [`LinkCurve`] of a link whose friction sticks at one strain for a whole solution.
 //!
 //! The force of such a link grows with its strain, piece by piece on straight lines, so that its energy is convex and a step of
 //! implicit Euler has one answer. With the yield `give` of a multiplier in series ([`Springs`](super::energy::links::Springs)) the strain e of the
@@ -41,7 +41,7 @@ fn slope(link_curve: &LinkCurve, strain: f64) -> f64 {
     link_curve.slope * (part + if sticks { STICKING } else { 0.0 })
 }
 
-/// The steepest that a law can be (N).
+/// The steepest slope of a curve (N).
 pub fn steepest(link_curve: &LinkCurve) -> f64 {
     let sticks = if link_curve.half_width > 0.0 { STICKING } else { 0.0 };
     link_curve.slope * (link_curve.behind[0].max(link_curve.behind[1]).max(1.0) + sticks)
@@ -106,7 +106,8 @@ fn strain_of(link: &Link, x: &[DVec3]) -> f64 {
     x[link.ends[0] as usize].distance(x[link.ends[1] as usize]) / link.rest - 1.0
 }
 
-/// The laws as they act from a state on: what has given way there does not rub, and sticks where it is when it is drawn again.
+/// The curves as they act from a state on: a link that has given way there does not rub, and sticks at its strain when it is drawn
+/// again.
 pub fn from_state(links: &[Link], link_curves: &[LinkCurve], x: &[DVec3]) -> Vec<LinkCurve> {
     let one = |(link, link_curve): (&Link, &LinkCurve)| {
         let strain = strain_of(link, x);
@@ -119,7 +120,7 @@ pub fn from_state(links: &[Link], link_curves: &[LinkCurve], x: &[DVec3]) -> Vec
 /// Moves where links stick as far as friction lets them at a state.
 pub fn follow(links: &[Link], link_curves: &mut [LinkCurve], x: &[DVec3]) {
     for (link, link_curve) in links.iter().zip(link_curves) {
-        // The law says it itself.
+        // The curve moves it.
         link_curve.force(strain_of(link, x));
     }
 }
@@ -139,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn an_answer_lies_on_the_law_and_adds_up_with_its_yield() {
+    fn an_answer_lies_on_the_curve() {
         for stuck in [-0.03, 0.003, 0.019, 0.05] {
             let link_curve = LinkCurve { stuck, ..link_curve() };
             for give in [0.0, 1e-5, 3e-3] {

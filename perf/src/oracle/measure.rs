@@ -12,7 +12,8 @@ use super::solution::State;
 pub struct Energies {
     /// Of motion, of the free particles.
     pub kinetic_j: f64,
-    /// Of stretch and shear: (1/2) C^2 / compliance, or what its law says. Inextensible links hold none; see [`strain`] for what they are off.
+    /// Of stretch and shear: (1/2) C^2 / compliance, or the energy of its curve. Inextensible links hold none; see [`strain`] for their
+    /// error.
     pub stretch_j: f64,
     /// Of bending (J).
     pub bending_j: f64,

@@ -1,4 +1,4 @@
-//! What is asked of the oracle: a step, and what counts as solved.
+//! Options of the oracle: a step, and the condition that counts as solved.
 
 use glam::DVec3;
 

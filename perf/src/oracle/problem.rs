@@ -118,12 +118,12 @@ impl Problem {
             sound(figures && a != b && a < n && b < n, "link", at)?;
         }
         if !self.link_curves.is_empty() {
-            expect("laws", self.link_curves.len(), self.links.len())?;
+            expect("link curves", self.link_curves.len(), self.links.len())?;
         }
         for (at, l) in self.link_curves.iter().enumerate() {
             let slopes = l.slope > 0.0 && l.slope.is_finite() && l.behind.iter().all(|s| *s > 0.0 && s.is_finite());
             let knees = l.knees[0] <= 0.0 && l.knees[1] >= 0.0 && l.stuck.is_finite();
-            sound(slopes && knees && l.half_width >= 0.0 && l.half_width.is_finite(), "law", at)?;
+            sound(slopes && knees && l.half_width >= 0.0 && l.half_width.is_finite(), "link curve", at)?;
         }
         for (at, b) in self.bends.iter().enumerate() {
             let within = b.particles.iter().all(|&i| (i as usize) < n);
@@ -138,7 +138,7 @@ pub(super) fn expect(what: &'static str, got: usize, expected: usize) -> Result<
     if got == expected { Ok(()) } else { Err(OracleError::Length { what, got, expected }) }
 }
 
-/// Links as they are found, each with its law.
+/// Links as they are found, each with its curve.
 #[derive(Default)]
 struct LinkCollector {
     links: Vec<Link>,
@@ -159,7 +159,7 @@ impl LinkCollector {
     }
 }
 
-/// The law of a place, of so much force for a strain of 1 (N).
+/// Curve at a place of the table; `slope` is the force at a strain of 1 (N).
 fn link_curve(table: &CurveTable, at: usize, slope: f64) -> LinkCurve {
     if table.is_empty() || !slope.is_finite() {
         return LinkCurve::plain(slope.min(HARD_N));

@@ -58,7 +58,7 @@ pub(super) struct SolveTask {
     pub stiffer: [f64; 2],
     /// First shift of the Hessian (1/s2).
     pub shift: f64,
-    /// Laws of the links as they act in it `[links]`, or empty.
+    /// Curves of the links as they act in it `[links]`, or empty.
     pub link_curves: Vec<LinkCurve>,
 }
 
@@ -221,8 +221,8 @@ fn stiffness(options: &OracleOptions, task: &SolveTask, goal: f64) -> [f64; 2] {
     let most = goal / rounding(&task.from);
     let least = [options.link_stiffness_n_m, options.contact_stiffness_n_m];
     [0, 1].map(|k| {
-        let wished = (task.stiffer[k] * task.held[k]).min(most);
-        wished.max(least[k]).max(LEAST_STIFFER * task.held[k])
+        let wanted = (task.stiffer[k] * task.held[k]).min(most);
+        wanted.max(least[k]).max(LEAST_STIFFER * task.held[k])
     })
 }
 

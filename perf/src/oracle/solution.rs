@@ -1,4 +1,4 @@
-//! A state, a solution, and how exact it is.
+//! A state, a solution, and its error.
 
 use std::fmt;
 

@@ -7,13 +7,13 @@ use toile_track::tape_readings::TapeError;
 /// Why it cannot be measured.
 #[derive(Debug, thiserror::Error)]
 pub enum OwnPictureError {
-    /// Somebody cannot be dressed.
+    /// The shopper cannot be dressed.
     #[error(transparent)]
     Fitting(#[from] FittingError),
-    /// The network is there, and is another one.
+    /// The folder holds another network than expected.
     #[error(transparent)]
     Pose(#[from] PoseError),
-    /// What the shopper tells is nobody's.
+    /// The shopper's tape readings fit no person.
     #[error(transparent)]
     Tape(#[from] TapeError),
 }

@@ -1,4 +1,4 @@
-//! What sees somebody, dresses a body of their measures, and draws it on their picture, as the live loop does.
+//! Follows a shopper by a sensor, dresses a body of their measures, and draws it on their picture, as the live loop does.
 
 use std::path::Path;
 use std::time::Instant;
@@ -39,7 +39,7 @@ const WEBCAM_NS: u64 = 8_000_000;
 const KEPT: usize = 16;
 
 toile_base::named! {
-    /// What sees somebody.
+    /// The sensor that follows a shopper.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum Seer {
         /// A body fitted to depth.
@@ -61,7 +61,7 @@ impl Seer {
         }
     }
 
-    /// What there is: depth, and a webcam where its network is. Each has seen somebody stand for a second.
+    /// All available sensors: depth, and a webcam if its network is there. Each has watched a person stand for a second.
     pub fn all(network: Option<&Path>, standing: &[TruthMoment]) -> Result<Vec<MeasuredShopper>, OwnPictureError> {
         let mut all = vec![MeasuredShopper::by_depth(standing)?];
         if let Some(folder) = network {
@@ -72,7 +72,7 @@ impl Seer {
     }
 }
 
-/// Somebody who was measured, and what measured them.
+/// A measured shopper, and the sensor that measured them.
 pub struct MeasuredShopper {
     kind: Seer,
     sensor: FollowerSensor,
@@ -87,7 +87,7 @@ fn told() -> Result<TapeReadings, TapeError> {
 }
 
 fn facts() -> ShopperFacts {
-    // Nobody's sex or clothes are guessed here: the mannequin's are known.
+    // Sex and clothes are not guessed here: the mannequin's are known.
     ShopperFacts { sex: Some(SHOPPER.0), clothed: false, ..ShopperFacts::default() }
 }
 
@@ -165,7 +165,7 @@ pub struct Drawn {
 }
 
 impl Follower {
-    /// Somebody dressed in these garments and sizes, as they stood at the end of their first second.
+    /// Dresses a shopper in these garments and sizes, as they stood at the end of their first second.
     pub fn new(
         shopper: MeasuredShopper,
         garments: &[RequestedGarment],
@@ -175,7 +175,7 @@ impl Follower {
         let (body, _) = measured::build_body(SHOPPER.0, &measured.best, Population::from(Some(SHOPPER.0)))?;
         let request = TryOn::of_body("own picture", SHOPPER.0, body.measures, garments.to_vec());
         let first = standing.iter().map(|m| sensor.look(m).joints).find(session::is_present);
-        let first = first.ok_or_else(|| FittingError::Input("nobody is seen; see docs/own-picture.md".into()))?;
+        let first = first.ok_or_else(|| FittingError::Input("no person is seen; see docs/own-picture.md".into()))?;
         let DressedWorld { world, reader, .. } = request.build(&first)?;
         sensor.reset();
         Ok(Self {

@@ -25,14 +25,14 @@ pub use motion::OwnMotion;
 /// Steps between two pictures: 30 Hz.
 const EVERY: u64 = 4;
 
-/// Pictures in which somebody stands and is measured.
+/// Pictures in which the shopper stands and is measured.
 const STANDING: u64 = 36;
 
 /// Pictures in which they begin to move, which do not count; and those that do.
 const BEGINNING: u64 = 24;
 const MEASURED: u64 = 45;
 
-/// Which of these is kept as a picture: whoever walks is in the middle then.
+/// Index of the picture that is kept: a walking shopper is in the middle then.
 const KEPT: u64 = 6;
 
 /// Errors that are asked for (px of 1080 rows).
@@ -97,7 +97,7 @@ struct Record {
 /// Runs all motions in a garment. With the network's folder a webcam sees them too; `progress` is given what begins.
 ///
 /// # Errors
-/// A garment that there is not, somebody who cannot be measured, a network that cannot be used.
+/// A garment that does not exist, a shopper who cannot be measured, a network that cannot be used.
 pub fn run(
     garment: &str,
     network: Option<&Path>,
@@ -123,7 +123,7 @@ fn one(
     network: Option<&Path>,
     keep: &mut dyn FnMut(KeptPicture),
 ) -> Result<Vec<(Seer, Record)>, OwnPictureError> {
-    // They are measured by what they show in the first second; then the scene begins anew, with everybody dressed.
+    // Each sensor measures the shopper in the first second; then the scene begins anew, with the shopper dressed.
     let mut standing = Vec::new();
     let mut bare = Actor::new(motion, &[])?;
     for number in 0..STANDING {

@@ -18,7 +18,7 @@ const ASIDE: f32 = 0.5;
 const STEPS_HZ: f32 = 0.9;
 
 toile_base::named! {
-    /// What somebody does.
+    /// Motion of the shopper.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum OwnMotion {
         /// They stand, and breathe.
@@ -132,7 +132,7 @@ mod tests {
     use toile_base::body::{Measures, Sex};
 
     #[test]
-    fn whoever_walks_walks_at_a_metre_a_second_and_no_limb_changes_its_length() {
+    fn walking_keeps_its_speed_and_limb_lengths() {
         let body = toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
         let skeleton = &body.skeleton;
         for motion in OwnMotion::ALL {

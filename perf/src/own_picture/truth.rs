@@ -1,4 +1,4 @@
-//! Somebody who really wears the garment: what the cameras see of them without it, and where it really is.
+//! The true wearer of the garment: the cameras' view of them without it, and the garment's true place.
 
 use glam::Vec3;
 use toile_assets::scene::SHOPPER;
@@ -52,7 +52,7 @@ fn appearance() -> Appearance {
 }
 
 impl Actor {
-    /// Dressed in garments of these names and sizes; none is nobody's.
+    /// Dresses the actor in garments of these names and sizes; there may be none.
     pub fn new(motion: OwnMotion, garments: &[RequestedGarment]) -> Result<Self, FittingError> {
         let (sex, measures) = SHOPPER;
         let request = TryOn::of_body("truth", sex, measures, garments.to_vec());
@@ -122,7 +122,7 @@ impl Actor {
         outline
     }
 
-    /// The picture as it would be of somebody who wears the garment.
+    /// The picture as it would be of a person who wears the garment.
     pub fn real(&mut self, moment: &TruthMoment) -> &ColourImage {
         if self.real.as_ref().is_none_or(|(number, _)| *number != moment.number) {
             let picture = scene::picture(&self.dressed.surfaces(None), &mut self.random);

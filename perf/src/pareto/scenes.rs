@@ -16,7 +16,7 @@ use crate::worn::AverageBody;
 pub const SCENES: [&str; 8] =
     ["cantilever", "skirt", IRREGULAR, "sun-dress", "t-shirt", "wide-trousers", "models", "drape"];
 
-/// The skirt as meshes are that nobody laid out in rows.
+/// The skirt with an irregular mesh.
 const IRREGULAR: &str = "skirt-irregular";
 
 /// Time of the walk that is compared (s): the legs swing once to and fro.

@@ -19,7 +19,7 @@ use toile_gpu::graphics::{DeviceSkins, Graphics};
 use super::{SkinningError, SkinningOptions, SkinningSubject, oracle, skinned, subject};
 use crate::backend::Adapter;
 
-/// Vertices of the rows with one surface: the yardstick's, then up to what a crowd has.
+/// Vertices of the rows with one surface: those of the reference loop, then up to the number of a crowd.
 const SIZES: [usize; 4] = [yardstick::VERTICES, 65_536, 262_144, 1_048_576];
 
 /// Numbers of bodies in the rows with the shopper's own.
@@ -141,7 +141,7 @@ fn row(graphics: &Graphics, case: &SkinnedCase<'_>, blend: Blend) -> Result<Devi
         back_us,
         kept_us,
         device_us,
-        bytes: bodies as u64 * floor_bytes(job),
+        bytes: bodies as u64 * least_bytes(job),
         max_error_m: [cpu.position_m, device.position_m],
         max_normal_error_rad: [cpu.normal_rad, device.normal_rad],
         apart_m: f64::from(apart.fold(0.0, f32::max)),
@@ -174,8 +174,9 @@ fn cpu_us(case: &SkinnedCase<'_>, blend: Blend, threads: usize) -> Result<f64, S
     }))
 }
 
-/// What a vertex reads and writes at least: itself, its run, a weight for each bone but the first; place and normal.
-fn floor_bytes(job: &SkinningJob) -> u64 {
+/// Least memory traffic of a surface (bytes): each vertex reads itself, its run and a weight for each bone but the first, and writes
+/// place and normal.
+fn least_bytes(job: &SkinningJob) -> u64 {
     const VERTEX: usize = 32;
     const PLACE_AND_NORMAL: usize = 32;
     let padding = job.padding();

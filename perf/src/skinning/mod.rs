@@ -1,4 +1,4 @@
-//! The skinning benchmark: the engine's kernels, linear and dual, against the yardstick, each with its error; and a device's.
+//! The skinning benchmark: the engine's kernels, linear and dual, against the reference loop, each with its error; and a device's.
 
 pub mod device;
 mod error;
@@ -28,7 +28,7 @@ pub use picture::twist_picture;
 pub use shapes::{BentJoint, BlendDistance, Shapes, TwistVolume, shapes};
 pub use sweep::{SweepTiming, sweep_timing};
 
-/// Rounds of a measurement: yardstick and kernels in turn, so that both see the machine as it is. An odd number.
+/// Rounds of a measurement: reference loop and kernels in turn, so that both see the machine in the same state. An odd number.
 const ROUNDS: usize = 5;
 
 /// What is skinned.
@@ -68,7 +68,7 @@ pub struct Timing {
     pub us: f64,
     /// The same for one vertex (ns).
     pub ns_per_vertex: f64,
-    /// The same over the yardstick of as many vertices.
+    /// The same over the reference time of as many vertices.
     pub y_ratio: f64,
     /// Time in the order of the mesh, 32 bytes a vertex, ready to be uploaded (us, median).
     pub mesh_order_us: f64,
@@ -89,7 +89,7 @@ pub struct Skinning {
     pub threads: usize,
     /// Number of lanes.
     pub lanes: usize,
-    /// Time of the yardstick, [`yardstick::VERTICES`] vertices whatever `verts` is (us, median).
+    /// Reference time, of [`yardstick::VERTICES`] vertices whatever `verts` is (us, median).
     pub yardstick_us: f64,
     /// Blocks, lanes and influences of the job.
     pub padding: Padding,
@@ -114,9 +114,9 @@ pub fn measure(options: &SkinningOptions) -> Result<Skinning, SkinningError> {
     let mut pool = WorkerPool::new(options.threads)?;
     let yardstick = Yardstick::new()?;
     let mut rounds: [[Vec<f64>; 2]; 2] = Default::default();
-    let mut yards = Vec::new();
+    let mut references = Vec::new();
     for _ in 0..ROUNDS {
-        yards.push(yardstick.read_us());
+        references.push(yardstick.read_us());
         for (blend, [alone, whole]) in Blend::ALL.into_iter().zip(&mut rounds) {
             let mut run = TimedSkinning { job: &job, surface: &surface, pool: &mut pool, blend };
             alone.push(run.us());
@@ -124,9 +124,9 @@ pub fn measure(options: &SkinningOptions) -> Result<Skinning, SkinningError> {
         }
     }
     let verts = job.vertices();
-    let of_yard = verts as f64 / yardstick::VERTICES as f64;
+    let of_reference = verts as f64 / yardstick::VERTICES as f64;
     let timing = |blend: Blend, [alone, whole]: &[Vec<f64>; 2]| {
-        let ratios = alone.iter().zip(&yards).map(|(us, yard)| us / (yard * of_yard));
+        let ratios = alone.iter().zip(&references).map(|(us, reference)| us / (reference * of_reference));
         let error = oracle::compare(&surface, blend, &skinned(&job, &surface, blend));
         let us = median_of(alone.iter().copied()).unwrap_or(0.0);
         Timing {
@@ -143,7 +143,7 @@ pub fn measure(options: &SkinningOptions) -> Result<Skinning, SkinningError> {
         verts,
         threads: pool.workers(),
         lanes: width.lanes(),
-        yardstick_us: median_of(yards.iter().copied()).unwrap_or(0.0),
+        yardstick_us: median_of(references.iter().copied()).unwrap_or(0.0),
         padding: job.padding(),
         linear: timing(Blend::Linear, &rounds[0]),
         dual: timing(Blend::Dual, &rounds[1]),

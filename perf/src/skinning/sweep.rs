@@ -1,4 +1,4 @@
-//! The sweep around elbows and knees: its time, and its distance from a twin in f64 that works out every vertex' own section.
+//! The sweep around elbows and knees: its time, and its distance from a reference in f64 that computes every vertex' own section.
 
 use glam::{Affine3A, DMat3, DQuat, DVec3, Vec3};
 use serde::Serialize;
@@ -32,7 +32,7 @@ pub struct SweepTiming {
     pub us: f64,
     /// Time of the dual quaternions that it works on (us, median).
     pub dual_us: f64,
-    /// The sweep's time over the yardstick of as many vertices as are swept.
+    /// The sweep's time over the reference time of as many vertices as are swept.
     pub y_ratio: f64,
     /// Largest distance of a swept position from the same sections in f64 (m).
     pub max_error_m: f64,
@@ -53,7 +53,7 @@ pub fn sweep_timing() -> Result<SweepTiming, SkinningError> {
     let mut bones = [Affine3A::IDENTITY; BONES];
     palette(&body.skeleton, &scene::shopper(&body.skeleton, MOMENT_S), &mut bones);
     let mut posed = job.posed_mesh();
-    let yard = Yardstick::new()?.read_us();
+    let reference_us = Yardstick::new()?.read_us();
     let dual_us = timing::median_us(|| {
         job.run_mesh(Blend::Dual, black_box(&bones), &mut posed);
         black_box(&posed);
@@ -82,7 +82,7 @@ pub fn sweep_timing() -> Result<SweepTiming, SkinningError> {
         swept: sweep.bindings.len(),
         us,
         dual_us,
-        y_ratio: us / (yard * sweep.bindings.len() as f64 / yardstick::VERTICES as f64),
+        y_ratio: us / (reference_us * sweep.bindings.len() as f64 / yardstick::VERTICES as f64),
         max_error_m: errors[0],
         section_error_m: errors[1],
     })
@@ -170,7 +170,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_kernel_is_its_twin_in_f64() {
+    fn the_kernel_agrees_with_its_f64_reference() {
         let found = sweep_timing().unwrap();
         println!("{found:?}");
         assert!(found.swept > 500 && found.us > 0.0);

@@ -38,7 +38,7 @@ pub enum SkirtError {
     /// The worker pool cannot be started.
     #[error(transparent)]
     WorkerPool(#[from] WorkerPoolError),
-    /// The yardstick's body cannot be built.
+    /// The body of the reference loop cannot be built.
     #[error(transparent)]
     Body(#[from] BodyError),
 }

@@ -99,9 +99,9 @@ pub struct SkirtReport {
     pub step_us: StepTimes,
     /// Median step of each run (us).
     pub run_p50_us: Vec<f64>,
-    /// Time of the yardstick in the same run (us): the median of one reading before each run and one after the last.
+    /// Reference time of the same run (us): the median of one reading before each run and one after the last.
     pub yardstick_us: f64,
-    /// Median step over the yardstick.
+    /// Median step over the reference time.
     pub y_ratio: f64,
     /// Median step a vertex (ns).
     pub ns_per_vertex: f64,

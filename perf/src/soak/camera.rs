@@ -1,4 +1,4 @@
-//! Camera: what a sensor of 30 Hz makes of the shopper, and what becomes of it when something is wrong with it.
+//! Camera: the joints of the shopper from a sensor of 30 Hz, and their faults.
 
 use std::sync::Arc;
 
@@ -18,13 +18,13 @@ const DELAY_NS: u64 = 20_000_000;
 /// Noise of a joint (m).
 pub(super) const NOISE_M: f32 = 0.002;
 
-/// Frames that wait in the camera while nobody reads; older ones are lost.
+/// Frames that wait in the camera while nothing reads them; older ones are lost.
 const WAITING: u64 = 4;
 
 /// What a stamp of another day is off by (ns).
 const DAY_NS: u64 = 86_400 * SECOND_NS;
 
-/// Where somebody else stands (m).
+/// Where another person stands (m).
 const BESIDE_M: Vec3 = Vec3::new(0.7, 0.0, -0.4);
 
 /// A simulated camera that plays the scenario's visits, with its faults.
@@ -95,7 +95,7 @@ impl<C: Clock> ScenarioCamera<C> {
     }
 }
 
-/// Somebody of so many, the same for as long as the fault lasts.
+/// Picks one of `count` people, the same for as long as the fault lasts.
 fn rng_place(fault: &SoakFault, count: usize) -> usize {
     SplitMix64::new(fault.from_ns).next_u64() as usize % count
 }
@@ -111,7 +111,7 @@ impl<C: Clock + Send> FrameSource for ScenarioCamera<C> {
     }
 
     fn read(&mut self) -> Option<SourceFrame> {
-        // What nobody read is overwritten.
+        // Unread frames are overwritten.
         let since = self.clock.now_ns().saturating_sub(self.origin_ns + DELAY_NS);
         let newest = since / SECOND_NS * CAMERA_HZ + since % SECOND_NS * CAMERA_HZ / SECOND_NS;
         if newest > self.next + WAITING {

@@ -183,7 +183,7 @@ fn plan(scenario: &Scenario, origin_ns: u64) -> FaultPlan {
     FaultPlan { faults: timed.collect() }
 }
 
-/// Joints of whoever stands there at a time of the loop's clock, with noise.
+/// Joints of the shopper in view at a time of the loop's clock, with noise.
 fn joints(scenario: &Scenario, taken_ns: u64, origin_ns: u64) -> Joints {
     let (ns, mut joints) = (taken_ns.saturating_sub(origin_ns), Joints::absent(taken_ns));
     if let Some(visit) = scenario.visit_at(ns) {

@@ -1,4 +1,4 @@
-//! What can go wrong in a soak, and by what it is seen to be over.
+//! Kinds of faults of a soak, and the sign by which each is over.
 
 use toile_base::numeric::random::SplitMix64;
 use toile_sensors::source::live::fault_injection::CameraFault;
@@ -27,7 +27,7 @@ toile_base::named! {
         NanJoints = "NaN joints",
         /// Half of the joints are infinite or beyond all measure.
         Infinite = "infinite joints",
-        /// The skeleton of somebody else, who stands beside.
+        /// The skeleton of another person, who stands beside.
         Swapped = "another's skeleton",
         /// Stamps from the next day.
         StampsAhead = "stamps a day ahead",

@@ -142,7 +142,7 @@ pub struct FaultMonitor<C> {
     pub camera: Option<CameraWatch>,
 }
 
-/// Time after a fault, and after somebody came, in which joints may be off (ns).
+/// Time after a fault, and after a shopper came, in which joints may be off (ns).
 const CALM_NS: u64 = 3 * SECOND_NS;
 
 impl<C: JumpableClock> FaultMonitor<C> {
@@ -236,7 +236,7 @@ impl<C: JumpableClock> FaultMonitor<C> {
         }
     }
 
-    /// Whether nothing was wrong at a step and long before it, and nobody had just come.
+    /// Whether nothing was wrong at a step and long before it, and no shopper had just come.
     fn calm(&mut self, scheduled_ns: u64) -> bool {
         // Of the time that the step's joints are for.
         let at = (scheduled_ns + PERIOD_NS).saturating_sub(self.context.origin_ns);

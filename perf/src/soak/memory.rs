@@ -1,4 +1,4 @@
-//! Memory: what the system says that the process holds.
+//! Memory of the process, by the system's count.
 
 use serde::Serialize;
 

@@ -61,7 +61,7 @@ pub struct ObservedStep {
     pub ended_ns: u64,
     /// When the newest sensor frame in it was taken (ns).
     pub seen_ns: u64,
-    /// Mean distance of its joints from the shopper's (m); none where nobody is there.
+    /// Mean distance of its joints from the shopper's (m); `None` without a shopper.
     pub off_m: Option<f32>,
     /// Positions and bones of the published state that are not finite.
     pub nonfinite: u64,
@@ -320,7 +320,7 @@ pub struct RenderHealth {
     pub revive: AtomicBool,
 }
 
-/// The renderer on the simulated clock: a panic ends it until somebody has it begin again.
+/// The renderer on the simulated clock: a panic ends it until it is begun again.
 pub struct RestartableRender<C> {
     /// It; none for the moment in which it begins again.
     pub render: Option<ScriptedLoop<ObservedRender<C>, C>>,

@@ -1,4 +1,4 @@
-//! Scenario: who comes when, what they wear and how they move, and what goes wrong; all of it from a seed.
+//! Scenario: the shoppers of a run with their times, clothes and movements, and the faults; all of it from a seed.
 
 use std::f64::consts::TAU;
 
@@ -19,7 +19,7 @@ use super::options::{LEAST_APART_S, SoakPlan};
 /// Length of a visit (s), least and most.
 const VISIT_S: [f32; 2] = [60.0, 420.0];
 
-/// Time between two visits (s), in which nobody stands before the camera.
+/// Time between two visits (s), in which the view of the camera is empty.
 const GAP_S: [f32; 2] = [3.0, 20.0];
 
 /// Time between two garments of a visit (s).
@@ -69,7 +69,7 @@ pub struct SoakVisit {
 impl SoakVisit {
     /// Where their joints are at a time, as they are in truth (m).
     pub fn joints(&self, ns: u64) -> [Vec3; JOINTS] {
-        // Forth and back, as nobody jumps.
+        // Forth and back, because shoppers do not jump.
         let length = f64::from(scene::LENGTH_S);
         let seconds = ns.saturating_sub(self.from_ns) as f64 * 1e-9;
         let along = (seconds * self.pace) % (2.0 * length);
@@ -139,7 +139,7 @@ impl Scenario {
         Ok(Self { plan, visits, requests, faults })
     }
 
-    /// Who stands before the camera at a time, if somebody does.
+    /// The shopper before the camera at a time; `None` if it is empty.
     pub fn visit_at(&self, ns: u64) -> Option<&SoakVisit> {
         let after = self.visits.partition_point(|v| v.from_ns <= ns);
         self.visits[..after].last().filter(|v| ns < v.until_ns)

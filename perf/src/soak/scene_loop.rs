@@ -106,8 +106,8 @@ impl<C: Clock> SceneLoop<C> {
     }
 }
 
-/// Garment files that nobody can wear: cut off, with NaN or a number beyond measure, without what they need, with what
-/// nobody knows, and noise.
+/// Garment files that are refused: cut off, with NaN or a number beyond measure, without a needed key, with an unknown
+/// key, and noise.
 fn broken() -> [String; 6] {
     let garment = wardrobe::text("sun-dress").unwrap_or_default();
     let line = |key: &str| garment.lines().find(|l| l.starts_with(key)).unwrap_or_default();

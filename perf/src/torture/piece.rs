@@ -28,7 +28,7 @@ pub const CELL_M: f32 = 0.02;
 pub const TOP: Vec3 = Vec3::new(0.0, 1.5, 0.0);
 
 /// Rate at which the air damps motion (1/s). The built-in fabrics have 1/s, with which a swing of 0.3 m is still one of 20
-/// mm after five seconds, whoever solves it; with this rate it is one of 1e-6 m, and what is farther away is an error.
+/// mm after five seconds, with any solver; with this rate it is one of 1e-6 m, and what is farther away is an error.
 pub const DAMPING_PER_S: f32 = 6.0;
 
 /// Force left on a particle that still counts as an equilibrium, over the weight of the whole (1): it moves a cloth that

@@ -1,4 +1,4 @@
-//! Cases of surroundings that do what no body does.
+//! Cases of surroundings that move as no body does.
 
 use glam::{Affine3A, Quat, Vec3, Vec4};
 

@@ -1,4 +1,4 @@
-//! All cases, turn by turn, and what came of them.
+//! All cases, turn by turn, and their results.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};

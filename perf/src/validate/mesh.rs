@@ -151,11 +151,11 @@ impl Strip {
                 let along = rim + (self.length - 2.0 * rim) * random.uniform_f64();
                 DVec2::new(along, (self.width - 2.0 * rim) * (random.uniform_f64() - 0.5))
             };
-            let room = |p: DVec2| points.iter().map(|q| p.distance_squared(*q)).fold(f64::MAX, f64::min);
+            let clearance = |p: DVec2| points.iter().map(|q| p.distance_squared(*q)).fold(f64::MAX, f64::min);
             let mut best = (0.0, DVec2::ZERO);
             for _ in 0..CANDIDATES {
                 let p = throw(&mut random);
-                let found = room(p);
+                let found = clearance(p);
                 if found > best.0 {
                     best = (found, p);
                 }

@@ -118,7 +118,7 @@ pub fn run(options: &ValidationOptions, progress: &(impl Fn(usize) + Sync)) -> R
     };
     std::thread::scope(|scope| {
         for _ in 0..options.threads.max(1) {
-            // Without a thread of its own the work is done by whoever asks for it.
+            // If no thread can be started, the calling thread does the work.
             if std::thread::Builder::new().stack_size(STACK_BYTES).spawn_scoped(scope, work).is_err() {
                 work();
             }

@@ -70,11 +70,11 @@ pub struct LimbRow {
 /// One network's time and luck.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ModelFigures {
-    /// Time of a picture in which somebody is followed (ms): median, 99th percentile.
+    /// Time of a picture in which a person is followed (ms): median, 99th percentile.
     pub ms: [f64; 2],
-    /// Time of a picture in which somebody is sought first (ms).
+    /// Time of a picture in which a person is first searched for (ms).
     pub search_ms: f64,
-    /// Share of the pictures in which somebody was seen.
+    /// Share of the pictures in which a person was seen.
     pub seen: f64,
     /// Error of the stature by the floor and the camera's height (mm): mean, largest.
     pub stature_mm: [f32; 2],

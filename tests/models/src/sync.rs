@@ -1,5 +1,5 @@
-//! What stands in the models where the engine has `sync`: loom's atomics, threads and cells. A cell that is written while
-//! somebody reads it ends the model.
+//! The models' counterpart of the engine's `sync`: loom's atomics, threads and cells. The model ends when a thread writes a cell
+//! while another reads it.
 
 use std::time::Duration;
 
@@ -44,7 +44,7 @@ impl<T: Copy> Slot<T> {
     /// The value.
     ///
     /// # Safety
-    /// Nobody writes it meanwhile, and the last write happened before.
+    /// No thread writes it meanwhile, and the last write happened before.
     pub unsafe fn read(&self) -> T {
         // SAFETY: see above; the model ends where it does not hold.
         self.0.with(|value| unsafe { *value })
@@ -53,7 +53,7 @@ impl<T: Copy> Slot<T> {
     /// Puts another value there.
     ///
     /// # Safety
-    /// Nobody reads or writes it meanwhile, and all that did happened before.
+    /// No thread reads or writes it meanwhile, and all earlier reads and writes happened before.
     pub unsafe fn write(&self, new: T) {
         // SAFETY: see above; the model ends where it does not hold.
         self.0.with_mut(|value| unsafe { *value = new });

@@ -22,7 +22,7 @@ fn explore(orders: [Ordering; 2]) {
             last = a;
         }
         writing.join().unwrap();
-        // What was published before the meeting is seen.
+        // All that was published before the join is seen.
         assert_eq!(reader.look(|value| *value).1, [3; 2]);
     });
 }

@@ -20,7 +20,7 @@ use toile_engine::world::BLEND;
 
 use crate::hash_of;
 
-/// Levels of a body that nobody measures.
+/// Levels of a body that is never measured.
 const NO_LEVELS: Levels = Levels {
     neck: 0.0,
     shoulder: 0.0,

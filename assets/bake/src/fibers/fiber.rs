@@ -12,8 +12,8 @@ pub struct Edge {
     /// Length as cut (m).
     pub rest: f32,
     /// Width of the strip of cloth that the edge stands for (m): its share of the faces beside it over its length. The
-    /// warp edges of a grid together stand for the whole cloth, and so do the weft edges; a diagonal as [`Edge::angle`]
-    /// and the law of [`stiffness`](crate::stiffness) want it.
+    /// warp edges of a grid together stand for the whole cloth, and so do the weft edges; a diagonal has the width
+    /// that [`Edge::angle`] and the formula of [`stiffness`](crate::stiffness) ask for.
     pub width: f32,
     /// Its direction by angle: within 30 degrees of the warp, within 30 of the weft, or between. What strain is
     /// measured by; a fiber that the edge belongs to has its own.

@@ -21,8 +21,8 @@ fn of(fibers: &[Fiber], direction: Direction) -> Vec<&Fiber> {
     fibers.iter().filter(|f| f.direction == direction).collect()
 }
 
-/// Laws of any mesh: every edge once, chains that hang together, no crossing within a direction.
-fn lawful(mesh: &TestMesh) -> (Vec<Edge>, Vec<Fiber>) {
+/// Checks the rules of any mesh: every edge once, connected chains, no crossing within a direction.
+fn follows_the_rules(mesh: &TestMesh) -> (Vec<Edge>, Vec<Fiber>) {
     let (edges, fibers) = traced(mesh);
     let mut met = vec![0; edges.len()];
     for fiber in &fibers {
@@ -72,7 +72,7 @@ fn names(fibers: &[Fiber], name: impl Fn(u32) -> u32) -> BTreeSet<(Direction, Ve
 fn a_tube_has_one_fiber_a_column_and_one_hoop_a_row() {
     let quads = tube(12, 5);
     for mesh in [quads.clone(), split(quads.clone(), false), split(quads, true)] {
-        let (edges, fibers) = lawful(&mesh);
+        let (edges, fibers) = follows_the_rules(&mesh);
         let warp = of(&fibers, Direction::Warp);
         assert_eq!(warp.len(), 12);
         assert!(warp.iter().all(|f| f.edges.len() == 4));
@@ -94,7 +94,7 @@ fn a_sheet_has_one_fiber_a_column_and_one_a_row_even_where_cells_are_long() {
             split(sheet(7, 6, width, height), false),
             split(sheet(7, 6, width, height), true),
         ] {
-            let (_, fibers) = lawful(&mesh);
+            let (_, fibers) = follows_the_rules(&mesh);
             let (warp, weft) = (of(&fibers, Direction::Warp), of(&fibers, Direction::Weft));
             assert_eq!((warp.len(), weft.len()), (7, 6), "{width} x {height}");
             assert!(warp.iter().all(|f| f.vertices.iter().all(|v| v % 7 == f.vertices[0] % 7)));
@@ -176,7 +176,7 @@ fn turning_mirroring_and_moving_change_nothing() {
 #[test]
 fn nearly_all_of_an_irregular_mesh_hangs_by_long_fibers() {
     for (name, mesh, longest) in [("sheet", rough_sheet(1.0, 1.0, 0.04, 2), 15), ("skirt", rough_skirt(0.04, 3), 12)] {
-        let (edges, fibers) = lawful(&mesh);
+        let (edges, fibers) = follows_the_rules(&mesh);
         let fixed: Vec<bool> = mesh.0.iter().map(|p| p.y > -0.001).collect();
         let found = Coverage::of(&fibers, &fixed);
         eprintln!("{name}: {found:?}, {:.3} hang", found.hanging_share());
@@ -254,7 +254,7 @@ proptest! {
         let (mut positions, faces) = rough_sheet(width, height, 0.07, seed);
         let rotation = Quat::from_rotation_y(turn) * Quat::from_rotation_x(tilt);
         positions.iter_mut().for_each(|p| *p = rotation * *p);
-        lawful(&(positions, faces));
+        follows_the_rules(&(positions, faces));
     }
 
     #[test]
@@ -264,7 +264,7 @@ proptest! {
         let mut jolt = || (random.uniform_f64() as f32 - 0.5) * 0.06;
         positions.iter_mut().for_each(|p| *p += Vec3::new(jolt(), jolt(), jolt()));
         if check::check(&positions, &faces).is_ok() {
-            lawful(&(positions, faces));
+            follows_the_rules(&(positions, faces));
         }
     }
 }
@@ -287,7 +287,7 @@ fn sets(fibers: &[Fiber], direction: Direction) -> usize {
 #[test]
 fn few_sets_hold_all_fibers() {
     for mesh in [rough_sheet(1.0, 1.0, 0.04, 2), rough_skirt(0.04, 3)] {
-        let (_, fibers) = lawful(&mesh);
+        let (_, fibers) = follows_the_rules(&mesh);
         let counts = [Direction::Warp, Direction::Weft, Direction::Bias].map(|d| sets(&fibers, d));
         assert!(counts[0] <= 3 && counts[1] == 1 && counts[2] <= 6, "{counts:?}");
     }

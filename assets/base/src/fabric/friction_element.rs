@@ -1,4 +1,4 @@
-//! The law of a fabric with friction, in f64: a stiffness beside a slider in series with a spring.
+//! The force of a fabric with friction, in f64: a stiffness beside a slider in series with a spring.
 
 /// Stiffness while it sticks over the elastic one, where nothing else is known (1): it sticks over a tenth of the deformation at
 /// which the cloth stays.

@@ -1,4 +1,4 @@
-//! The law of a link in f64: up to three slopes and friction, in the deformation of the cloth.
+//! The curve of a link in f64: up to three slopes and friction, over the deformation of the cloth.
 //!
 //! Between two knees the force is slope * d; behind a knee it goes on from there with a slope of its own: stretch that becomes
 //! stiff (upper), shear that locks (both), a thread that is pushed together and gives way as an arc (lower, [`arc_force`]). In parallel a
@@ -6,7 +6,7 @@
 
 use super::friction_element::{FrictionElement, STICKING};
 
-/// A law; the deformation is a strain (1) or an angle of shear (rad), the force one for a width (N/m).
+/// Force over deformation; the deformation is a strain (1) or an angle of shear (rad), the force is per width (N/m).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinkCurve {
     /// Slope between the knees (N/m).
@@ -100,7 +100,7 @@ mod tests {
     use crate::fabric::friction_element::read_loop;
 
     #[test]
-    fn a_law_is_continuous_and_its_inverse_gives_the_deformation_back() {
+    fn a_curve_is_continuous_and_can_be_inverted() {
         let link_curve = LinkCurve { knees: [-0.02, 0.03], behind: [0.01, 12.0], ..LinkCurve::plain(300.0) };
         for knee in link_curve.knees {
             assert!((link_curve.elastic(knee - 1e-9) - link_curve.elastic(knee + 1e-9)).abs() < 1e-4);

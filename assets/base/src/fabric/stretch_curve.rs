@@ -82,7 +82,7 @@ impl StretchCurve {
         100.0 * self.knee_n_m / self.knee_percent
     }
 
-    /// The law, in f64.
+    /// The curve, in f64.
     pub fn link_curve(&self) -> LinkCurve {
         let slope = f64::from(self.below_n_m());
         LinkCurve {
@@ -106,8 +106,8 @@ impl StretchCurve {
     }
 
     /// Of the Kawabata system's tensile test: work of the load WT (N/m, which is J/m2), linearity LT, resilience RT (1) and the extension EMT
-    /// (1) at the force where it turns (N/m). The knee lies on the line between (EMT, 0) and (0, F), the width of the loop is
-    /// what gives RT: both by halving, through the law itself.
+    /// (1) at the force where it turns (N/m). The knee lies on the line between (EMT, 0) and (0, F), the width of the loop
+    /// gives RT: both are found by bisection on the curve itself.
     pub fn of_kes(linearity: f64, resilience: f64, extension: f64, most: f64) -> Self {
         let mut width = 0.0;
         let mut curve = Self::linear(linearity, extension, most, width);

@@ -337,9 +337,9 @@ fn link_curves(layout: &Layout) -> Result<(), LayoutError> {
         let needed = if table.is_empty() { 0 } else { places };
         columns.into_iter().try_for_each(|column| length(what, column.len(), needed))
     };
-    of("laws.diagonals", &link_curves.diagonals, layout.diagonals.rest.len())?;
-    of("laws.shear", &link_curves.shear, layout.shear.rest.len())?;
-    of("laws.weft", &link_curves.weft, layout.weft.rest.len())?;
-    of("laws.fibers", &link_curves.fibers, layout.fibers.rest.len())?;
-    of("laws.crossing", &link_curves.crossing, layout.crossing.rest.len())
+    of("link_curves.diagonals", &link_curves.diagonals, layout.diagonals.rest.len())?;
+    of("link_curves.shear", &link_curves.shear, layout.shear.rest.len())?;
+    of("link_curves.weft", &link_curves.weft, layout.weft.rest.len())?;
+    of("link_curves.fibers", &link_curves.fibers, layout.fibers.rest.len())?;
+    of("link_curves.crossing", &link_curves.crossing, layout.crossing.rest.len())
 }

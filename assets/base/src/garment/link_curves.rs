@@ -1,4 +1,4 @@
-//! What links do beyond one slope, as it lies in memory: knees, slopes and friction of each.
+//! Stretch curves of links with more than one slope, as they lie in memory: knees, slopes and friction of each.
 
 /// Stretch curves of the links of one kind, one number a place of their parameters; empty where one slope is all that they have. Strains are
 /// of the link's own length, slopes are over its own.
@@ -16,13 +16,13 @@ pub struct CurveTable {
     pub friction: Box<[f32]>,
 }
 
-/// Law of one link, in the order of [`CurveTable`]'s columns.
+/// Curve of one link, in the order of [`CurveTable`]'s columns.
 pub type CurveParameters = [f32; 5];
 
 /// A strain that no link has (1).
 const FAR: f32 = 1e6;
 
-/// A law of one slope.
+/// A curve of one slope.
 pub const ONE_SLOPE: CurveParameters = [-FAR, 1.0, FAR, 1.0, 0.0];
 
 impl CurveTable {

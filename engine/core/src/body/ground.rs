@@ -111,7 +111,7 @@ impl Ground {
         self.clearance += if first { step } else { step.clamp(-JUMP_SPEED * dt, JUMP_SPEED * dt) };
     }
 
-    /// How far the legs are to be believed, 0 to 1: not where both feet are seen higher than anybody jumps.
+    /// Confidence in the legs, 0 to 1: it falls while both feet are seen higher than a person can jump.
     pub fn legs_trust(&self) -> f32 {
         self.trust
     }

@@ -1,4 +1,4 @@
-//! What a sensor shows of somebody who stands at ease, learned while they are watched.
+//! The pose that a sensor reports for a person who stands at ease, learned while the sensor watches them.
 //!
 //! Sensors put the joints of trunk, neck and shoulders where their makers thought best, so that a relaxed person seems
 //! to bow or to shrug by up to 30 degrees, always the same way. In front of a mirror people mostly stand at ease: what

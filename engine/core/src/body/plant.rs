@@ -23,8 +23,8 @@ const LIFT: [f32; 2] = [0.04, 0.08];
 /// Time constant of an ankle's measured velocity (s): two sensor frames.
 const SPEED_TAU: f32 = 0.07;
 
-/// Share of the time in which somebody's foot moves slower than its noise, and how fast the noise is learned (m/s a
-/// second): a walker's foot stands six tenths of the time.
+/// Share of the time in which a person's foot moves slower than its noise, and rate at which the noise is learned (m/s a
+/// second): a walker's foot stands 0.6 of the time.
 const QUIET: f32 = 0.3;
 const LEARNING: f32 = 0.1;
 

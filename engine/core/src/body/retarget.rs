@@ -18,7 +18,7 @@ use super::trunk::Trunk;
 /// Greatest slant of a sensor's legs that is taken for its habit (rad): 15 degrees.
 const MAX_SLANT: f32 = 0.26;
 
-/// Difference between the legs (rad) and bend of a knee (cosine) up to which somebody stands with straight legs.
+/// Difference between the legs (rad) and bend of a knee (cosine) up to which a person stands with straight legs.
 const ALIKE: f32 = 0.12;
 const STRAIGHT: f32 = 0.93;
 
@@ -32,7 +32,7 @@ pub struct Retarget {
     arms: [Limb; 2],
     legs: [Limb; 2],
     feet: Feet,
-    /// Slant of the straight legs of somebody standing, about x, and the same in our rest pose (rad).
+    /// Slant of a standing person's straight legs about x, and the same in our rest pose (rad).
     slant: Neutral,
     rest_slant: f32,
     /// Target rotation of each joint relative to its parent: joints that are not seen keep theirs.
@@ -69,7 +69,7 @@ impl Retarget {
         }
     }
 
-    /// World rotation by which a sensor's legs are slanted: somebody who stands on straight legs has the hips above the
+    /// World rotation by which a sensor's legs are slanted: a person who stands on straight legs has the hips above the
     /// feet, or would fall.
     fn legs_slant(&mut self, now: BodyInput, pelvis: Quat) -> Quat {
         let (seen, ground, dt) = (now.seen, now.ground, now.dt);

@@ -58,7 +58,7 @@ pub fn standing(skeleton: &Skeleton, rise: f32, turns: &[(Joint, [f32; 3])]) -> 
     pose
 }
 
-/// Poses of the house: name, rise, rotations in degrees (flexion about x, turn about y, side about z).
+/// Test poses: name, rise, rotations in degrees (flexion about x, turn about y, side about z).
 fn poses(skeleton: &Skeleton) -> Vec<(&'static str, Pose)> {
     use Joint::*;
     let both = |joint: Joint, r: [f32; 3]| [(joint, r), (joint.mirror(), [r[0], -r[1], -r[2]])];

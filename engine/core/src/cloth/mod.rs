@@ -1,7 +1,7 @@
 //! Cloth: one garment as particles, stepped at 120 Hz.
 //!
-//! Budget: 3 ms a step for 6,000 particles on one core ([`STEP_BUDGET_US`]); no allocation after [`Cloth::new`].
-//! Thread: physics; two workers may share a step.
+//! A step of 6,000 particles may take 3 ms on one core ([`STEP_BUDGET_US`]). Nothing is allocated after [`Cloth::new`]. It runs on
+//! the physics thread, and two workers may share a step.
 
 pub mod contact;
 pub mod forces;
@@ -81,7 +81,7 @@ pub struct Cloth {
     pub greater_share_ns: [u64; METERED_STAGES.len()],
     /// Steps in a row that were rolled back.
     rolled: u32,
-    /// Whether the state is as the last step has found it to be sound: nobody has written to it since.
+    /// Whether the last step found the state to be sound and nothing has written to it since.
     checked: bool,
 }
 
@@ -192,7 +192,7 @@ impl Cloth {
         self.friction.sticks()
     }
 
-    /// Takes over what somebody else has made of a step: positions and velocities `[particles]` (m, m/s), and the events so far.
+    /// Takes over a step that was computed elsewhere: positions and velocities `[particles]` (m, m/s), and the events so far.
     pub fn take_over(&mut self, positions: &[Vec3A], velocities: &[Vec3A], events: step::guard::GuardEvents) {
         self.checked = false;
         let columns = self.state.columns();
@@ -205,8 +205,8 @@ impl Cloth {
         self.events = events;
     }
 
-    /// Where the skinned particles and the root were in the last step, and how the root moved: from where whoever steps it
-    /// elsewhere goes on.
+    /// Positions of the skinned particles and the root in the last step, and the motion of the root: a stepper elsewhere goes on
+    /// from them.
     pub fn course(&self) -> (&state::pins::Pins, &RootMotion) {
         (&self.pins, &self.root)
     }

@@ -1,4 +1,4 @@
-//! Events: what happened that somebody may want to know, handed out of the loop through a bounded queue.
+//! Events that the loop reports to its caller through a bounded queue.
 
 use super::quality_control::QualityChange;
 

@@ -2,7 +2,7 @@
 //!
 //! A replay must begin in a known state, which is the moment at which a shopper was dressed. The recorder therefore keeps
 //! everything since the last such moment that lies at least [`KEPT_NS`] back: ten seconds or more, with the whole of the
-//! visit in which they began. The thread that empties the recording's queue fills it; the physics thread only writes to
+//! session in which they began. The thread that empties the recording's queue fills it; the physics thread only writes to
 //! the queue. If a thread panics, the panic hook saves what is kept as a file for `toile replay`.
 
 use std::collections::VecDeque;
@@ -16,17 +16,17 @@ use super::recording::{self, Entry, SceneNote};
 /// Shortest time that is kept (ns).
 pub const KEPT_NS: u64 = 10_000_000_000;
 
-/// Memory that is allocated, and written to once, for each of two visits at load (bytes): enough for nine minutes. Only a
-/// longer visit allocates while it goes on.
-pub const ROOM_BYTES: usize = 8 << 20;
+/// Memory that is allocated, and written to once, for each of two sessions at load (bytes): enough for nine minutes. Only a
+/// longer session allocates while it goes on.
+pub const RESERVED_BYTES: usize = 8 << 20;
 
-/// Most that is kept of one visit (bytes): an hour at 15 kB a second. What a longer visit adds is not kept.
+/// Most that is kept of one session (bytes): an hour at 15 kB a second. The rest of a longer session is not kept.
 pub const MOST_BYTES: usize = 56 << 20;
 
 /// Time between two tries to lock the recorder.
 const RETRY: Duration = Duration::from_micros(500);
 
-/// What is known of the visit under way.
+/// The entries of one session: from one dressing of a shopper to the next.
 #[derive(Debug, Default)]
 struct RecordedSession {
     /// When its first step was due (ns).
@@ -42,9 +42,9 @@ struct RecorderState {
     entries: Receiver<Entry>,
     /// How scenes that are kept or come next are made, as encoded notes, with their numbers.
     notes: VecDeque<(u64, Vec<u8>)>,
-    visits: VecDeque<RecordedSession>,
+    sessions: VecDeque<RecordedSession>,
     newest_ns: u64,
-    /// Storage of visits that were forgotten, for those to come.
+    /// Storage of sessions that were forgotten, for those to come.
     spare: Vec<Vec<u8>>,
 }
 
@@ -56,14 +56,14 @@ impl FlightRecorder {
     /// An empty recorder whose file begins with this header ([`recording::header`]); it empties this queue.
     pub fn new(header: Vec<u8>, entries: Receiver<Entry>) -> Self {
         // Written to once, so that the system has given it.
-        let room = || {
-            let mut bytes = vec![1; ROOM_BYTES];
+        let reserved = || {
+            let mut bytes = vec![1; RESERVED_BYTES];
             bytes.clear();
             bytes
         };
-        let spare = vec![room(), room()];
-        let (notes, visits) = (VecDeque::with_capacity(16), VecDeque::with_capacity(16));
-        Self(Mutex::new(RecorderState { header, entries, notes, visits, newest_ns: 0, spare }))
+        let spare = vec![reserved(), reserved()];
+        let (notes, sessions) = (VecDeque::with_capacity(16), VecDeque::with_capacity(16));
+        Self(Mutex::new(RecorderState { header, entries, notes, sessions, newest_ns: 0, spare }))
     }
 
     /// Keeps an entry that comes from elsewhere: how the shopper was dressed before the first step.
@@ -107,10 +107,10 @@ impl FlightRecorder {
         while let Some(entry) = inner.entries.pop() {
             inner.keep(&entry);
         }
-        inner.visits.iter().any(|v| v.from_ns.is_some()).then(|| {
+        inner.sessions.iter().any(|s| s.from_ns.is_some()).then(|| {
             let mut file = inner.header.clone();
             inner.notes.iter().for_each(|(_, note)| file.extend(note));
-            inner.visits.iter().for_each(|v| file.extend(&v.bytes));
+            inner.sessions.iter().for_each(|s| file.extend(&s.bytes));
             file
         })
     }
@@ -130,29 +130,29 @@ impl RecorderState {
         };
         if let Some(first) = begins {
             let bytes = self.spare.pop().unwrap_or_default();
-            self.visits.push_back(RecordedSession { from_ns: None, first, bytes });
+            self.sessions.push_back(RecordedSession { from_ns: None, first, bytes });
         }
-        let Some(visit) = self.visits.back_mut() else { return };
-        if visit.bytes.len() < MOST_BYTES {
-            recording::write(entry, &mut visit.bytes);
+        let Some(session) = self.sessions.back_mut() else { return };
+        if session.bytes.len() < MOST_BYTES {
+            recording::write(entry, &mut session.bytes);
         }
         if let Entry::Step { scheduled_ns, .. } = entry {
-            visit.from_ns = visit.from_ns.or(Some(*scheduled_ns));
+            session.from_ns = session.from_ns.or(Some(*scheduled_ns));
             self.newest_ns = *scheduled_ns;
             self.forget();
         }
     }
 
-    /// Forgets visits that lie so far back that those after them are enough.
+    /// Forgets sessions that lie so far back that those after them are enough.
     fn forget(&mut self) {
         let enough = self.newest_ns.saturating_sub(KEPT_NS);
-        while self.visits.get(1).and_then(|v| v.from_ns).is_some_and(|from| from <= enough) {
-            if let Some(mut old) = self.visits.pop_front() {
+        while self.sessions.get(1).and_then(|s| s.from_ns).is_some_and(|from| from <= enough) {
+            if let Some(mut old) = self.sessions.pop_front() {
                 old.bytes.clear();
                 self.spare.push(old.bytes);
             }
         }
-        let first = self.visits.front().map_or(0, |visit| visit.first);
+        let first = self.sessions.front().map_or(0, |session| session.first);
         while self.notes.front().is_some_and(|(number, _)| *number < first) {
             self.notes.pop_front();
         }
@@ -186,11 +186,11 @@ mod tests {
     }
 
     #[test]
-    fn the_last_ten_seconds_are_kept_from_where_somebody_was_dressed() {
+    fn ten_seconds_are_kept_from_a_dressing_on() {
         let (mut sender, receiver) = bounded("", 4_096);
         let recorder = FlightRecorder::new(recording::header("a scene"), receiver);
         assert!(recorder.save(Duration::ZERO).is_none(), "nothing was stepped yet");
-        // A visit every 8 s for a minute, a garment changed in the middle of each.
+        // A session every 8 s for a minute, a garment changed in the middle of each.
         for tick in 0..120 * 60 {
             if tick % 480 == 0 {
                 let number = tick / 480;
@@ -205,7 +205,7 @@ mod tests {
         // The rest is still in the queue.
         let (first, from, to) = kept(&recorder.save(Duration::ZERO).unwrap());
         assert_eq!((first, to), (Entry::Changed { number: 12, afresh: true }, 120 * 60 - 1));
-        assert_eq!(from, 120 * 48, "the visit that was there ten seconds ago");
+        assert_eq!(from, 120 * 48, "the session under way ten seconds ago");
         assert!(ticks_to_ns(to) - ticks_to_ns(from) >= KEPT_NS && KEPT_NS == 10 * SECOND_NS);
     }
 

@@ -16,11 +16,11 @@ pub struct SceneChange<S> {
     pub scene: S,
     /// Its number, by which a recording names it.
     pub number: u64,
-    /// Whether another shopper comes with it, so that nobody's motion is carried on.
+    /// Whether another shopper comes with it, so that no motion is carried on.
     pub afresh: bool,
 }
 
-/// The end held by whoever makes scenes.
+/// The end held by the maker of scenes.
 #[derive(Debug)]
 pub struct HandoverSender<S> {
     to: Sender<Box<SceneChange<S>>>,
@@ -61,7 +61,7 @@ impl<S> HandoverSender<S> {
 
 impl<S> HandoverReceiver<S> {
     /// Has what was given put in its place, if something was, and sends back what `put` leaves in it; gives its number and
-    /// whether somebody else comes.
+    /// whether another shopper comes.
     pub fn take(&mut self, put: impl FnOnce(&mut SceneChange<S>)) -> Option<(u64, bool)> {
         // A box that did not fit into the way back would be dropped here.
         if self.back.is_full() {

@@ -1,8 +1,8 @@
-//! Frame loop: the loop of sensor, physics and render threads, and what keeps it in time.
+//! Frame loop: the loop of sensor, physics and render threads, and the quality control that keeps it in time.
 //!
-//! Budget: 20 us a step beside the frame's own stages; nothing is allocated after the start.
-//! Thread: each of the three is a [`ThreadLoop`] on a thread of its own, or all of them one after the other against a simulated
-//! clock. Between them there is only a [`crate::triple_buffer`] or a bounded queue ([`queue`]).
+//! It may add 20 us a step to the frame's own stages, and allocates nothing after the start. Each of the three loops is a
+//! [`ThreadLoop`] on a thread of its own, or all of them run one after the other against a simulated clock. They share only a
+//! [`crate::triple_buffer`] or a bounded queue ([`queue`]).
 
 pub mod event;
 pub mod flight_recorder;

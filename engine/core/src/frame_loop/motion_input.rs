@@ -35,7 +35,7 @@ const FASTEST_M_S: f32 = 10.0;
 /// A gap between two frames across which no velocity is taken (s).
 const LONGEST_GAP_S: f32 = 0.3;
 
-/// A silence after which the next frame is taken as it is (s): somebody else may stand there.
+/// A silence after which the next frame is taken as it is (s): another person may stand there.
 pub const LONGEST_SILENCE_S: f32 = 1.0;
 
 /// One joint between frames.

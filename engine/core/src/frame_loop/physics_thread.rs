@@ -117,12 +117,12 @@ pub struct SceneStepper<S> {
 }
 
 impl<S: LoopScene> SceneStepper<S> {
-    /// A scene that has not seen anybody move yet.
+    /// A scene that has not seen a person move yet.
     pub fn new(scene: S) -> Self {
         Self { scene, intake: MotionInput::default(), newest: (0, 0), level: 0 }
     }
 
-    /// From the next step on. A level that there is not is the last.
+    /// From the next step on. Levels beyond the last are clamped to it.
     pub fn set_level(&mut self, level: u8) {
         if level != self.level {
             self.level = level;
@@ -137,8 +137,8 @@ impl<S: LoopScene> SceneStepper<S> {
         }
     }
 
-    /// Changes the scene for another, which is set to the level as it is; where somebody else comes with it nobody's motion
-    /// is carried on.
+    /// Changes the scene for another, which is set to the present level. With `afresh` another shopper comes, and no motion is
+    /// carried on.
     pub fn change(&mut self, scene: &mut S, afresh: bool) {
         scene.take_workers_from(&mut self.scene);
         std::mem::swap(&mut self.scene, scene);
@@ -229,7 +229,7 @@ pub struct StepTimes {
 pub struct PhysicsOutputs {
     /// Events of the loop, bounded.
     pub events: Sender<Event>,
-    /// What a replay needs, where somebody records.
+    /// Entries that a replay needs; `None` without a recording.
     pub recording: Option<Sender<Entry>>,
 }
 
@@ -333,7 +333,7 @@ impl<S: LoopScene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
         self.tick
     }
 
-    /// The place in the ladder.
+    /// Index of the quality level.
     pub fn level(&self) -> u8 {
         self.quality_control.place()
     }
@@ -365,7 +365,7 @@ impl<S: LoopScene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
             self.send_event(due.scheduled_ns, EventKind::Missed(miss));
         }
         self.record(due.scheduled_ns);
-        self.govern(due.scheduled_ns, miss.step_ns);
+        self.control_quality(due.scheduled_ns, miss.step_ns);
         self.look_for_trouble(due.scheduled_ns);
         self.gauges.steps += 1;
         self.tick += 1;
@@ -451,7 +451,7 @@ impl<S: LoopScene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
         }
     }
 
-    fn govern(&mut self, scheduled_ns: u64, step_ns: u64) {
+    fn control_quality(&mut self, scheduled_ns: u64, step_ns: u64) {
         if let Some(change) = self.quality_control.after(step_ns) {
             self.stepper.set_level(change.to);
             self.send_event(scheduled_ns, EventKind::Quality(change));

@@ -1,4 +1,4 @@
-//! Quality control: gives up quality in a stated order when steps grow long, and gives it back when there is room again.
+//! Quality control: gives up quality in a stated order when steps grow long, and gives it back when there is time again.
 //!
 //! It looks at nothing but the time that steps took, so the same times give the same decisions. A deadline is never missed
 //! to keep quality: one step beyond its period, or two of the last eight beyond [`LONG`] of it, give up a level at once. Quality comes
@@ -84,13 +84,13 @@ pub const QUALITY_LEVELS: [QualityLevel; 9] =
 /// Share of the period from which on a step is long.
 pub const LONG: f32 = 0.7;
 
-/// Share of the period below which a step, as it is expected on the next level, leaves room for that level.
+/// Share of the period below which a step, as it is expected on the next level, leaves time for that level.
 pub const SHORT: f32 = 0.5;
 
 /// Steps over which two long ones count: 67 ms.
 const WINDOW: u32 = 8;
 
-/// Steps for which there must be room before quality comes back: 1 s at first.
+/// Steps for which there must be time before quality comes back: 1 s at first.
 pub const FIRST_WHILE: u64 = 120;
 
 /// The longest such while: 64 s.
@@ -168,13 +168,13 @@ impl QualityControl {
             // It has gone well for a long time: what made it wait is over.
             self.patience = (self.patience / 2).max(FIRST_WHILE);
         }
-        let room = self.has_room();
+        let spare = self.has_spare_time();
         self.begin();
-        if room { self.up() } else { None }
+        if spare { self.up() } else { None }
     }
 
     /// Whether the longest step of the while would be short on the next better level.
-    fn has_room(&self) -> bool {
+    fn has_spare_time(&self) -> bool {
         let Some(better) = self.level.checked_sub(1) else { return false };
         let ratio = QUALITY_LEVELS[usize::from(better)].time_share / self.level().time_share;
         self.longest_ns as f32 * ratio < SHORT * PERIOD_NS as f32
@@ -233,14 +233,14 @@ mod tests {
     }
 
     #[test]
-    fn long_steps_give_up_a_rung_after_the_second() {
+    fn two_long_steps_give_up_a_level() {
         let (changes, missed) = play(&mut QualityControl::default(), 1_000, |step| if step < 100 { 3.0 } else { 6.5 });
         assert_eq!(changes, [(101, 1)], "and three quarters of 6.5 ms are not long");
         assert_eq!(missed, 0);
     }
 
     #[test]
-    fn a_step_beyond_its_period_gives_up_a_rung_at_once_down_to_the_last() {
+    fn an_overlong_step_drops_a_level_at_once() {
         let (changes, missed) = play(&mut QualityControl::default(), 500, |_| 80.0);
         let last = QUALITY_LEVELS.len() as u8 - 1;
         assert_eq!(changes, (0..last).map(|k| (u64::from(k), k + 1)).collect::<Vec<_>>());
@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn quality_comes_back_after_a_while_a_rung_at_a_time() {
+    fn quality_comes_back_one_level_at_a_time() {
         let mut quality_control = QualityControl::default();
         play(&mut quality_control, 100, |_| 11.0);
         assert_eq!(quality_control.place(), 2);
@@ -260,9 +260,9 @@ mod tests {
     }
 
     #[test]
-    fn a_load_that_fits_only_the_lower_rung_does_not_make_it_swing() {
+    fn a_load_between_two_levels_causes_no_swings() {
         let mut quality_control = QualityControl::default();
-        // Three quarters of it leave room by no means, whole quality is long.
+        // Three quarters of it leave no time for the better level; at whole quality the step is long.
         let (changes, _) = play(&mut quality_control, 120 * 600, |_| 6.2);
         assert_eq!(changes, [(1, 1)]);
     }
@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn the_ladder_only_gives_up() {
+    fn each_level_only_gives_up() {
         // How often in eight steps something is done.
         let often = |every: u8| 8u8.checked_div(every).unwrap_or(0);
         for pair in QUALITY_LEVELS.windows(2) {
@@ -305,7 +305,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_off_or_rarer_in_whole_quality_stays_so_on_every_rung() {
+    fn no_level_switches_anything_on() {
         let rarer = ContactRates { folds: 0, layers: 4, skin: 0 };
         let whole = Settings { contact: rarer, ..Settings::default() };
         for level in &QUALITY_LEVELS {

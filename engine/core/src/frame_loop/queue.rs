@@ -1,4 +1,4 @@
-//! Queue: a bounded lock-free queue that says how full it was and what did not fit.
+//! Queue: a bounded lock-free queue that counts its high-water mark and the entries that did not fit.
 //!
 //! The queue is crossbeam's `ArrayQueue`: all places are made at load; pushing and popping is one exchange each.
 
@@ -64,7 +64,7 @@ impl<T> Sender<T> {
         self.0.entries.is_full()
     }
 
-    /// Pushes an entry; where there is no place it is lost and counted. Says whether it fitted. Waits for nobody.
+    /// Pushes an entry; where there is no place it is lost and counted. Says whether it fitted. Never waits.
     pub fn push(&mut self, entry: T) -> bool {
         let fits = self.0.entries.push(entry).is_ok();
         if fits {

@@ -59,7 +59,7 @@ pub enum Entry {
     },
 }
 
-/// How a scene is made that the text at the begin does not tell of, because nobody knew of it then.
+/// Description of a scene that came after the start of the recording, so that the text at the start does not have it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneNote {
     /// The scene's number.
@@ -98,7 +98,7 @@ pub enum RecordingError {
     /// Cut off before the first step, or no text.
     #[error("the recording ends before its first step; record the run again")]
     Short,
-    /// Bytes that nobody wrote.
+    /// Bytes that no writer makes.
     #[error("the recording is damaged at byte {0}; restore it from a copy")]
     Damaged(usize),
 }
@@ -293,7 +293,7 @@ mod tests {
         assert_eq!(read(b"toile"), Err(RecordingError::Magic));
         for first in OLD_LEVELS {
             let old = [first, &bytes[MAGIC.len()..]].concat();
-            assert_eq!(read(&old), Err(RecordingError::OldLevels), "its rungs would be taken for others");
+            assert_eq!(read(&old), Err(RecordingError::OldLevels), "its levels would be taken for others");
         }
     }
 

@@ -136,7 +136,7 @@ impl<E: Renderer, C: Clock> ThreadLoop for RenderThread<E, C> {
         match self.schedule.due(self.clock.now_ns()) {
             Due::At(ns) => Some(ns),
             Due::Now(mut tick) => {
-                // Nobody wants to see an old picture: only the last that is due is taken.
+                // An old picture is of no use: only the last that is due is taken.
                 loop {
                     self.dropped += tick.dropped;
                     match self.schedule.due(self.clock.now_ns()) {

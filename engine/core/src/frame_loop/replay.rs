@@ -32,7 +32,7 @@ pub fn replay_changing<S: LoopScene>(
     mut make: impl FnMut(u64) -> Option<S>,
 ) -> Replayed {
     let mut out = Replayed::default();
-    // A recording may begin in the middle of a run, where somebody was dressed.
+    // A recording may begin in the middle of a run, where a shopper was dressed.
     let mut next = None;
     // Frames are taken with the time of the step that knew them, which follows them.
     let mut waiting = None;

@@ -1,9 +1,9 @@
-//! Schedule: which step is due, how late it is, and what is dropped where too many are.
+//! Schedule: the step that is due, its delay, and the number of dropped steps if too many are due.
 
 use toile_base::clock::SECOND_NS;
 
-/// Most steps that a late wake-up makes up for: 33 ms of a body's motion. What is more would take the next steps their
-/// time too, and somebody who stands before a mirror is better served by now than by then.
+/// Most steps that a late wake-up makes up for: 33 ms of a body's motion. More would take time from the next steps too,
+/// and a shopper before a mirror wants to see the present rather than the past.
 pub const MOST_CATCH_UP: u64 = 4;
 
 /// Times at a fixed rate, on a clock in ns. Counted in ticks, so that no error accumulates.

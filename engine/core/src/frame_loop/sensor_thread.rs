@@ -12,7 +12,7 @@ use crate::clock::Clock;
 use crate::meter::Meter;
 use crate::triple_buffer::Writer;
 
-/// Frames that wait to be looked at by whoever observes the sensor: two seconds of 30 Hz.
+/// Capacity of the queue of frames for the sensor's observer: two seconds at 30 Hz.
 pub const OBSERVED: usize = 64;
 
 /// Name of this capacity in reports and warnings.
@@ -50,7 +50,7 @@ impl From<Joints> for SourceFrame {
     }
 }
 
-/// A frame as the sensor thread took it, for whoever observes the sensor beside the physics. It was filtered once, for both.
+/// A frame as the sensor thread took it, for an observer of the sensor beside the physics. It was filtered once, for both.
 #[derive(Debug, Clone)]
 pub struct ObservedFrame {
     /// The joints as the sensor had them, with a stamp that can be believed: what measures are taken from.
@@ -189,7 +189,7 @@ impl<S: FrameSource, F: Filter, C: Clock> SensorThread<S, F, C> {
         Self { from_ns, ..self }
     }
 
-    /// The same, whose frames somebody else looks at too.
+    /// The same, whose frames also go to an observer.
     #[must_use]
     pub fn observed_by(self, observer: Sender<ObservedFrame>) -> Self {
         Self { observer: Some(observer), ..self }

@@ -1,4 +1,4 @@
-//! Thread roles: which core and which priority each thread asks for, and what it got.
+//! Thread roles: the core and the priority that each thread asks for, and those that it got.
 //!
 //! On two cores the physics has the last core and everything else the first: its worker, which sleeps between steps, the sensor
 //! for some 50 us a frame, and the renderer with what is left. Priorities are real-time ones where the system grants

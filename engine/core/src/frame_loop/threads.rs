@@ -22,7 +22,7 @@ const LONGEST_START: Duration = Duration::from_secs(5);
 
 /// Tells all threads to end.
 ///
-/// Relaxed: the flag carries nothing else; what a thread wrote is seen by whoever joins it.
+/// Relaxed: the flag carries nothing else; the thread that joins another sees all that it wrote.
 #[derive(Debug, Clone, Default)]
 pub struct Stop(Arc<AtomicBool>);
 
@@ -88,7 +88,7 @@ where
     let (stop, mine) = (stop.clone(), turns.clone());
     let (send_placement, placement) = mpsc::sync_channel(1);
     let work = move || {
-        // Nobody may listen.
+        // The receiver may be gone.
         let _ = send_placement.send(thread_roles::apply(role));
         let live = || {
             while !stop.is_set() {
@@ -161,8 +161,8 @@ mod tests {
 
     #[test]
     fn a_crew_of_two_says_where_its_worker_is() {
-        let (one, nobody) = worker_pool(1).unwrap();
-        assert_eq!((one.workers(), nobody), (1, None));
+        let (one, helper) = worker_pool(1).unwrap();
+        assert_eq!((one.workers(), helper), (1, None));
         let (two, worker) = worker_pool(2).unwrap();
         assert_eq!((two.workers(), worker.unwrap().role), (2, ThreadRole::Worker));
     }

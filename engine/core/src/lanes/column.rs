@@ -101,7 +101,7 @@ pub struct ReadColumn<'a> {
 
 /// A column that can be read and written, by every copy of it, on the thread on which it was made.
 ///
-/// Soundness: it is made from a unique borrow and does not outlive it, so nobody but its copies reaches the numbers. The
+/// Soundness: it is made from a unique borrow and does not outlive it, so only its copies reach the numbers. The
 /// raw pointer keeps them all on one thread (neither `Send` nor `Sync`), where one access follows the other, as with
 /// `&[Cell<f32>]`. Every access is checked against the length. Only this crate hands columns to other threads, through
 /// `Shared`.
@@ -129,7 +129,7 @@ pub struct WriteColumn<'a> {
     owner: PhantomData<&'a mut [f32]>,
 }
 
-/// Columns on their way to the workers of one step: they go to any thread, but nobody reads or writes them before
+/// Columns on their way to the workers of one step: they go to any thread, but no thread reads or writes them before
 /// [`Shared::open`].
 #[derive(Clone, Copy)]
 pub(crate) struct Shared<T>(T);
@@ -148,8 +148,8 @@ impl<T: Copy> Shared<T> {
     /// The columns, for the calling thread.
     ///
     /// # Safety
-    /// Until the threads next meet, no place of the columns that this thread writes is read or written by another, and
-    /// none that it reads is written by another. What was written before the last meeting happened before this call.
+    /// Until the next barrier, no place of the columns that this thread writes is read or written by another, and
+    /// none that it reads is written by another. All writes before the last barrier happened before this call.
     pub(crate) unsafe fn open(&self) -> T {
         self.0
     }
@@ -170,7 +170,7 @@ fn outside(at: usize, n: usize, len: usize) -> ! {
 }
 
 impl<'a> ReadColumn<'a> {
-    /// Numbers that nobody writes meanwhile.
+    /// Makes a column over numbers that no thread writes meanwhile.
     #[inline(always)]
     pub fn new(numbers: &'a [f32]) -> Self {
         Self { data: numbers.as_ptr(), len: numbers.len(), lender: PhantomData }
@@ -238,7 +238,7 @@ impl Readable for WriteColumn<'_> {
 }
 
 impl<'a> WriteColumn<'a> {
-    /// A column over numbers that nobody else can reach meanwhile.
+    /// Makes a column over numbers that no other code can reach meanwhile.
     #[inline(always)]
     pub fn new(numbers: &'a mut [f32]) -> Self {
         Self { data: numbers.as_mut_ptr(), len: numbers.len(), owner: PhantomData }

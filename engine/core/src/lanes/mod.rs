@@ -1,6 +1,6 @@
 //! Lanes: one kernel, run on 1, 4, 8 or 16 numbers at a time.
 //!
-//! Thread: any. This is one of the few rooms with unsafe code: vector instructions, and columns that workers share.
+//! This is one of the few modules with unsafe code: vector instructions, and columns that workers share.
 
 #[expect(unsafe_code, reason = "the workers of a step share its columns")]
 mod column;

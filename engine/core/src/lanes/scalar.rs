@@ -1,4 +1,4 @@
-//! One lane: f32 itself. The plain twin of every kernel.
+//! One lane: f32 itself. The scalar reference of every kernel.
 
 use super::{Lanes, MOST, Mask, Numbers, Readable, WriteColumn};
 

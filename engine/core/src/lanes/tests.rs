@@ -59,7 +59,7 @@ fn every_width_gives_the_bits_of_plain_f32() {
         let run = |width: Width| {
             let mut out = vec![0.0f32; n];
             let answers = width.run(Everything { a: &a, b: &b, out: WriteColumn::new(&mut out) });
-            // What is not a number may differ in its payload, which nobody reads.
+            // A NaN may differ in its payload, which no code reads.
             (answers, out.iter().map(|v| if v.is_nan() { u32::MAX } else { v.to_bits() }).collect::<Vec<_>>())
         };
         let plain = run(Width::One);

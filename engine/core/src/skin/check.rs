@@ -1,4 +1,4 @@
-//! What a skin must be, and the errors where it is not.
+//! Conditions of a valid skin, and the errors of an invalid one.
 
 use glam::Vec3;
 use thiserror::Error;

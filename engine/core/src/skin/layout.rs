@@ -234,8 +234,8 @@ fn together(mut left: Vec<VertexGroup>) -> Vec<VertexGroup> {
         let fits = |bin: &VertexGroup| {
             let union = union(&bin.set, &group.set)?;
             let most = size(&bin.set).max(INFLUENCES);
-            let room = bin.vertices.len() + group.vertices.len() <= MOST;
-            (room && size(&union) <= most).then(|| BoneRun::cost(size(&union)) - BoneRun::cost(size(&bin.set)))
+            let enough = bin.vertices.len() + group.vertices.len() <= MOST;
+            (enough && size(&union) <= most).then(|| BoneRun::cost(size(&union)) - BoneRun::cost(size(&bin.set)))
         };
         let best = (0..bins.len()).filter_map(|i| Some((fits(&bins[i])?, i))).min().filter(|(cost, _)| *cost < own);
         match best {

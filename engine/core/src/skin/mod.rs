@@ -1,7 +1,7 @@
 //! Skinning: rest vertices, weights and a palette become a posed surface, by linear blending or dual quaternions.
 //!
-//! Budget: 44 us for 15,000 vertices of four influences on one core of 16 lanes; nothing allocated. See docs/skinning.md.
-//! Thread: physics; two workers share a run, and give the same bits as one.
+//! A run over 15,000 vertices of four influences may take 44 us on one core of 16 lanes, and allocates nothing. See
+//! docs/skinning.md. It runs on the physics thread; two workers may share a run and give the same bits as one.
 
 mod check;
 mod dual;
@@ -178,7 +178,7 @@ impl<O: SkinOutput> SkinningWork<'_, O> {
     #[expect(unsafe_code, reason = "the workers share the posed surface")]
     fn runs(&self, runs: Range<usize>) {
         let SkinLayout { runs: all, filled, rest, .. } = &self.job.layout;
-        // SAFETY: each run of the layout, which nobody outside of this room can make or change, has blocks of its own, and
+        // SAFETY: each run of the layout, which no code outside of this module can make or change, has blocks of its own, and
         // the two shares of a run have different ones, and a spare vertex each in a mesh: no place is written by both, and
         // none is read.
         let out = unsafe { self.out.open() };

@@ -21,7 +21,7 @@ pub struct Pruning {
     pub error_mean_m: f32,
 }
 
-/// Compares a skin with its pruned twin in some poses, each a palette. At load.
+/// Compares a skin with its pruned version in some poses, each a palette. At load.
 ///
 /// # Errors
 /// Where one of the two is no skin.

@@ -1,4 +1,4 @@
-//! Tests of the skin: independent twins in f64 and in plain f32, the same bits at every width, and what is refused.
+//! Tests of the skin: scalar references in f64 and in plain f32, the same bits at every width, and refused input.
 
 mod layout;
 mod references;

@@ -1,4 +1,4 @@
-//! The mesh of a surface: who is whose neighbour. Made at load.
+//! The mesh of a surface: the neighbours of each triangle. Made at load.
 
 use std::collections::HashMap;
 
@@ -45,7 +45,7 @@ pub struct SurfaceMesh {
 }
 
 impl SurfaceMesh {
-    /// Links triangles over `vertices` vertices. Triangles that name a vertex twice or one that there is not are left out of
+    /// Links triangles over `vertices` vertices. Triangles that name a vertex twice or a missing one are left out of
     /// what can be near; where more than two share an edge, the first two are neighbours.
     pub fn new(triangles: &[[u32; 3]], vertices: usize) -> Self {
         let sound =

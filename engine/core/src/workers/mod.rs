@@ -1,7 +1,7 @@
 //! Worker pool: the workers of a step, the caller's thread and at most one helper.
 //!
-//! Budget: a phase costs one meeting of two cores, under 1 us; no lock, no allocation, no channel in a run.
-//! Thread: physics, and the helper that this room starts at load. One of the few modules with unsafe code: a job that borrows
+//! A phase costs one barrier between two cores, under 1 us. A run takes no lock, allocates nothing and uses no channel. The caller
+//! is the physics thread; the helper starts at load. This is one of the few modules with unsafe code, because a job that borrows
 //! the caller's stack is handed to another thread.
 //!
 //! A run is a list of phases, a phase is two shares. Both shares of a phase may run at once; all of a phase runs before
@@ -69,7 +69,7 @@ pub struct SharePanicked {
     pub share: usize,
 }
 
-/// Room of its own for what one side writes and the other reads: two cache lines, because processors fetch pairs.
+/// Keeps a value that one side writes and the other reads on two cache lines of its own, because processors fetch pairs.
 #[derive(Default)]
 #[repr(align(128))]
 struct Apart<T>(T);
@@ -79,35 +79,35 @@ struct Apart<T>(T);
 struct Job {
     data: *const (),
     call: unsafe fn(*const (), usize, usize),
-    /// Ticket of its first phase.
+    /// Sequence number of its first phase.
     first: u64,
 }
 
-/// What the two threads share. Phases are numbered by tickets that never repeat, over all runs.
-pub(crate) struct Board {
-    /// The last ticket of the run on the board.
+/// State that the two threads share. Each phase has a sequence number that never repeats, over all runs.
+pub(crate) struct PoolState {
+    /// The last sequence number of the run under way.
     open: Apart<AtomicU64>,
-    /// The last ticket whose share 1 somebody has begun. Share 0 is always the caller's.
+    /// The last sequence number whose share 1 was begun. Share 0 is always the caller's.
     claimed: Apart<AtomicU64>,
-    /// The last ticket whose share is done, a share.
+    /// The last sequence number that is done, for each share.
     done: [Apart<AtomicU64>; SHARES],
     /// Whether the helper sleeps, or is about to.
     asleep: Apart<AtomicBool>,
     /// Whether the helper is to end.
     leaving: AtomicBool,
-    /// 0, or 1 + ticket * SHARES + share of the first panic of the run.
+    /// 0, or 1 + sequence number * SHARES + share of the first panic of the run.
     failed: AtomicU64,
-    /// The job. Written by the caller while all tickets are done; read by whoever holds a share that is not.
+    /// The job. The caller writes it while all phases are done; the thread that holds an unfinished share reads it.
     job: Slot<Job>,
 }
 
 // SAFETY: the job's pointer is the only part that is not an atomic. `WorkerPool::run` takes only jobs that are `Sync`, and the
 // protocol above keeps reads and writes of the cell apart.
-unsafe impl Send for Board {}
+unsafe impl Send for PoolState {}
 // SAFETY: as above.
-unsafe impl Sync for Board {}
+unsafe impl Sync for PoolState {}
 
-impl Board {
+impl PoolState {
     fn new() -> Self {
         unsafe fn nothing(_: *const (), _: usize, _: usize) {}
         Self {
@@ -121,81 +121,81 @@ impl Board {
         }
     }
 
-    /// Takes share 1 of a ticket, or says which ticket was the last taken.
+    /// Takes share 1 of a phase, or returns the last sequence number that was taken.
     ///
     /// Relaxed: the exchange decides who does the share and carries nothing else. What the share reads was acquired
-    /// through `open` and `done`; a ticket is taken once, so a helper that comes late with an old one gets nothing.
-    fn claim(&self, ticket: u64) -> Result<(), u64> {
-        self.claimed.0.compare_exchange(ticket - 1, ticket, Relaxed, Relaxed).map(|_| ())
+    /// through `open` and `done`. A sequence number is taken once, so a helper that comes late with an old one gets nothing.
+    fn claim(&self, sequence: u64) -> Result<(), u64> {
+        self.claimed.0.compare_exchange(sequence - 1, sequence, Relaxed, Relaxed).map(|_| ())
     }
 
     /// Does one share and says so.
     ///
     /// # Safety
-    /// The caller holds this share of this ticket (share 1 by [`Self::claim`]), and it is not done yet. Then the run is
-    /// still on, because [`WorkerPool::run`] waits for both shares of its last ticket: the job lives, and its cell is not
+    /// The caller holds this share of this phase (share 1 by [`Self::claim`]), and it is not done yet. Then the run is
+    /// still on, because [`WorkerPool::run`] waits for both shares of its last phase: the job lives, and its cell is not
     /// written.
-    unsafe fn work(&self, ticket: u64, share: usize) {
+    unsafe fn work(&self, sequence: u64, share: usize) {
         // SAFETY: see above; the write of the cell happened before `open` was stored, which this thread has acquired.
         let job = unsafe { self.job.read() };
         // Relaxed: only saves work. The caller of the run looks again after it has acquired every `done`.
         if self.failed.load(Relaxed) == 0 {
-            let phase = (ticket - job.first) as usize;
+            let phase = (sequence - job.first) as usize;
             // SAFETY: `call` was made for `data`, which the run borrows until it ends.
             if let Err(payload) = catch_unwind(AssertUnwindSafe(|| unsafe { (job.call)(job.data, phase, share) })) {
-                self.fail(ticket, share, payload);
+                self.fail(sequence, share, payload);
             }
         }
-        // Release: who acquires it sees all that the share wrote.
-        self.done[share].0.store(ticket, Release);
+        // Release: a thread that acquires it sees all that the share wrote.
+        self.done[share].0.store(sequence, Release);
     }
 
     #[cold]
-    fn fail(&self, ticket: u64, share: usize, payload: Box<dyn Any + Send>) {
+    fn fail(&self, sequence: u64, share: usize, payload: Box<dyn Any + Send>) {
         // A payload may panic when it is dropped, which would end the helper: it is left.
         forget(payload);
-        let place = 1 + ticket * SHARES as u64 + share as u64;
+        let place = 1 + sequence * SHARES as u64 + share as u64;
         // Relaxed: the store of `done` that follows carries it.
         let _ = self.failed.compare_exchange(0, place, Relaxed, Relaxed);
     }
 
-    /// Whether both shares of a ticket are done. Acquire: then all that they wrote is seen.
-    fn is_done(&self, ticket: u64) -> bool {
-        self.done.iter().all(|d| d.0.load(Acquire) >= ticket)
+    /// Whether both shares of a phase are done. Acquire: then all that they wrote is seen.
+    fn is_done(&self, sequence: u64) -> bool {
+        self.done.iter().all(|d| d.0.load(Acquire) >= sequence)
     }
 }
 
-/// What the helper runs: claim share 1 of one ticket after the other.
-fn help(board: &Board) {
-    let (mut ticket, mut looks) = (1, 0);
+/// Loop of the helper: claims share 1 of one phase after the other.
+fn help(state: &PoolState) {
+    let (mut sequence, mut looks) = (1, 0);
     let mut rest = Idle::until(AWAKE);
     loop {
         // Acquire: the job was written before.
-        if board.open.0.load(Acquire) < ticket {
+        if state.open.0.load(Acquire) < sequence {
             // Relaxed: it is stored before the wake-up that ends a park, or seen at a later look.
-            if board.leaving.load(Relaxed) {
+            if state.leaving.load(Relaxed) {
                 return;
             }
             looks += 1;
             if rest.is_over(looks) {
-                sleep(board, ticket);
+                sleep(state, sequence);
                 rest = Idle::until(AWAKE);
             }
             pause(0);
-        } else if !board.is_done(ticket - 1) {
-            // The meeting: the phase before is not over.
+        } else if !state.is_done(sequence - 1) {
+            // The barrier: the phase before is not over.
             looks += 1;
             pause(looks);
         } else {
-            match board.claim(ticket) {
+            match state.claim(sequence) {
                 Ok(()) => {
                     // SAFETY: share 1 was claimed, its run is open, and the phases before it are done.
-                    unsafe { board.work(ticket, 1) };
-                    ticket += 1;
+                    unsafe { state.work(sequence, 1) };
+                    sequence += 1;
                     rest = Idle::until(AWAKE);
                 }
-                // The caller did not wait; go on behind what it took.
-                Err(taken) => ticket = taken + 1,
+                // The caller did not wait; go on behind the last phase that it took.
+                Err(taken) => sequence = taken + 1,
             }
             looks = 0;
         }
@@ -206,17 +206,17 @@ fn help(board: &Board) {
 ///
 /// All SeqCst, with those in [`WorkerPool::run`], [`WorkerPool::wake`] and `drop`: either the helper sees the new `open` (or
 /// `leaving`) or the other side sees it `asleep` and wakes it. With any weaker order both could look too early.
-fn sleep(board: &Board, ticket: u64) {
-    board.asleep.0.store(true, SeqCst);
-    if board.open.0.load(SeqCst) < ticket && !board.leaving.load(SeqCst) {
+fn sleep(state: &PoolState, sequence: u64) {
+    state.asleep.0.store(true, SeqCst);
+    if state.open.0.load(SeqCst) < sequence && !state.leaving.load(SeqCst) {
         thread::park();
     }
-    board.asleep.0.store(false, SeqCst);
+    state.asleep.0.store(false, SeqCst);
 }
 
 /// The workers. A run borrows the pool, so two runs cannot overlap and a job cannot start another.
 pub struct WorkerPool {
-    pub(crate) board: Arc<Board>,
+    pub(crate) state: Arc<PoolState>,
     helper: Option<JoinHandle<()>>,
     last: u64,
     taken: u64,
@@ -236,15 +236,15 @@ impl WorkerPool {
         if workers > 1 && !HAS_THREADS {
             return Err(WorkerPoolError::NoThreads);
         }
-        let board = Arc::new(Board::new());
-        let theirs = board.clone();
+        let state = Arc::new(PoolState::new());
+        let theirs = state.clone();
         let life = move || {
             begin();
             help(&theirs);
         };
         let start = || thread::Builder::new().name("toile-cloth".into()).spawn(life);
         let helper = if workers == SHARES { Some(start()?) } else { None };
-        Ok(Self { board, helper, last: 0, taken: 0 })
+        Ok(Self { state, helper, last: 0, taken: 0 })
     }
 
     /// Number of workers, the calling thread among them.
@@ -262,7 +262,7 @@ impl WorkerPool {
     pub fn wake(&self) -> bool {
         let Some(helper) = &self.helper else { return false };
         // SeqCst: see `sleep`.
-        let asleep = self.board.asleep.0.load(SeqCst);
+        let asleep = self.state.asleep.0.load(SeqCst);
         if asleep {
             helper.thread().unpark();
         }
@@ -278,25 +278,25 @@ impl WorkerPool {
             // SAFETY: see above.
             unsafe { (*data.cast::<F>())(phase, share) }
         }
-        let board = &*self.board;
+        let state = &*self.state;
         let first = self.last + 1;
         self.last += phases as u64;
-        // SAFETY: every ticket so far is done, so nobody reads the cell: `work` is entered only with a ticket that is
+        // SAFETY: every phase so far is done, so no thread reads the cell: `work` is entered only with a sequence number that is
         // open and not done.
-        unsafe { board.job.write(Job { data: (&raw const job).cast(), call: call::<F>, first }) };
+        unsafe { state.job.write(Job { data: (&raw const job).cast(), call: call::<F>, first }) };
         // Relaxed: published by `open`.
-        board.failed.store(0, Relaxed);
+        state.failed.store(0, Relaxed);
         // SeqCst: publishes the job as a release does, and see `sleep`.
-        board.open.0.store(self.last, SeqCst);
+        state.open.0.store(self.last, SeqCst);
         let mut helped = self.helper.is_some() && !self.wake();
-        for ticket in first..=self.last {
-            // SAFETY: share 0 is this thread's, and this ticket's was not done before.
-            unsafe { board.work(ticket, 0) };
-            helped = meet(board, ticket, helped);
+        for sequence in first..=self.last {
+            // SAFETY: share 0 is this thread's, and that of this phase was not done before.
+            unsafe { state.work(sequence, 0) };
+            helped = barrier(state, sequence, helped);
             self.taken += u64::from(!helped && self.helper.is_some());
         }
         // Relaxed: every `done` of the run was acquired.
-        match board.failed.load(Relaxed).checked_sub(1) {
+        match state.failed.load(Relaxed).checked_sub(1) {
             None => Ok(()),
             Some(place) => Err(SharePanicked {
                 phase: (place / SHARES as u64 - first) as usize,
@@ -315,7 +315,7 @@ impl WorkerPool {
         let (next, items) = (AtomicUsize::new(0), Items::new(items));
         self.run(1, |_, _| {
             loop {
-                // Relaxed: gives out each number once; the meetings before and after the phase carry the items.
+                // Relaxed: gives out each number once; the barriers before and after the phase carry the items.
                 let i = next.fetch_add(1, Relaxed);
                 // SAFETY: no number is given out twice.
                 let Some(item) = (unsafe { items.get(i) }) else { return };
@@ -325,17 +325,17 @@ impl WorkerPool {
     }
 }
 
-/// Share 1 of a ticket: waits for it where it was begun, does it where it was not. Says whether the helper did it.
-fn meet(board: &Board, ticket: u64, helped: bool) -> bool {
+/// Barrier after share 0: waits for share 1 of this phase if it was begun, and does it otherwise. Says whether the helper did it.
+fn barrier(state: &PoolState, sequence: u64, helped: bool) -> bool {
     let (mut looks, mut begun) = (0, false);
     // A helper that was late is not waited for again before it is back.
     let patience = if helped { LOOKS_BEFORE_TAKING } else { 0 };
     // Acquire: all that the share wrote is seen.
-    while board.done[1].0.load(Acquire) < ticket {
+    while state.done[1].0.load(Acquire) < sequence {
         if !begun && looks >= patience {
-            if board.claim(ticket).is_ok() {
-                // SAFETY: share 1 was claimed, and share 0 and all tickets before were done by or for this thread.
-                unsafe { board.work(ticket, 1) };
+            if state.claim(sequence).is_ok() {
+                // SAFETY: share 1 was claimed, and share 0 and all phases before were done by or for this thread.
+                unsafe { state.work(sequence, 1) };
                 return false;
             }
             begun = true;
@@ -350,7 +350,7 @@ impl Drop for WorkerPool {
     fn drop(&mut self) {
         let Some(helper) = self.helper.take() else { return };
         // SeqCst: see `sleep`. The wake-up is unconditional: it costs nothing here.
-        self.board.leaving.store(true, SeqCst);
+        self.state.leaving.store(true, SeqCst);
         helper.thread().unpark();
         // It cannot have panicked: every share is caught.
         let _ = helper.join();

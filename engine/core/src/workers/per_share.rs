@@ -1,4 +1,4 @@
-//! What belongs to one share of a phase: lent to whoever works on that share.
+//! Data of one share of a phase, lent to the worker of that share.
 
 use std::marker::PhantomData;
 use std::ptr;
@@ -19,8 +19,8 @@ impl<'a, T: Send> PerShare<'a, T> {
         Self { places: items.each_mut().map(|i| AtomicPtr::new(ptr::from_mut(i))), owner: PhantomData }
     }
 
-    /// Works with the share's own. None where it is lent to somebody else at this moment, which no job that keeps to its
-    /// share ever sees.
+    /// Works with the share's own data. `None` while it is lent to another caller, which a job that keeps to its share never
+    /// sees.
     pub fn with<R>(&self, share: usize, work: impl FnOnce(&mut T) -> R) -> Option<R> {
         let place = self.places.get(share)?;
         // Acquire: what the last borrower wrote is seen. Release below: what this one wrote will be.
@@ -37,7 +37,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_share_has_its_own_and_nobody_has_it_twice() {
+    fn each_share_is_lent_once_at_a_time() {
         let mut numbers = [1, 10];
         let own = PerShare::new(&mut numbers);
         assert_eq!(

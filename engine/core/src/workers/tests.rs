@@ -43,7 +43,7 @@ fn one_worker_and_two_give_the_same_in_order_however_long_the_shares_are() {
         assert_eq!(ordered(&mut one, phases, odd), ordered(&mut two, phases, odd));
     }
     assert_eq!(ordered(&mut one, 400, late), ordered(&mut two, 400, late));
-    assert_eq!(one.taken(), 0, "there is nobody to take a share from");
+    assert_eq!(one.taken(), 0, "there is no helper to take a share from");
     two.run(0, |_, _| panic!("there is no phase")).unwrap();
 }
 
@@ -140,9 +140,9 @@ fn a_dropped_crew_leaves_no_thread_awake_asleep_or_just_born() {
             let mut pool = WorkerPool::new(2).unwrap();
             pool.run(2, |_, _| ()).unwrap();
             thread::sleep(pause);
-            let board = Arc::downgrade(&pool.board);
+            let state = Arc::downgrade(&pool.state);
             drop(pool);
-            assert!(board.upgrade().is_none(), "the helper still holds the board");
+            assert!(state.upgrade().is_none(), "the helper still holds the shared state");
         }
     }
     drop(WorkerPool::new(2).unwrap());

@@ -66,7 +66,7 @@ pub fn needs(flat: &Flat, program: &StepProgram, sets: usize) -> DeviceNeeds {
         size_of_val(&*flat.bending.entries),
         size_of_val(&*flat.wind.faces),
         16 * program.groups().len(),
-        size_of_val(&*flat.faces.meeting),
+        size_of_val(&*flat.faces.incident),
         16 * flat.faces.corners.len(),
         flat.spans.len() * sets * MAX_CAPSULES * size_of::<FlatCone>(),
     ];

@@ -1,7 +1,7 @@
 //! The cloth on a GPU: all garments of a scene in one set of buffers, a dispatch a phase.
 //!
-//! Budget: buffers and pipelines at load; in the frame no buffer, no pipeline and no wait, some 40 dispatches a substep.
-//! Thread: the one that calls [`Offload::step`]; not the physics thread of a garment that is on the CPU.
+//! Buffers and pipelines are made at load. A frame makes none and waits for nothing; a substep takes some 40 dispatches. It runs on
+//! the thread that calls [`Offload::step`], never on the physics thread of a garment that is on the CPU.
 //!
 //! The phases and their order are those of `toile_engine::cloth::step::program`; docs/gpu.md says which kernel gives the same
 //! bits as its reference and which only stays within a bound.

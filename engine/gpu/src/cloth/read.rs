@@ -112,8 +112,8 @@ impl Offload {
         }
     }
 
-    /// Spoils the state between two steps, as a fault of the memory or of the driver would: what [`guard::spoil`] picks by
-    /// `seed`. Twin of `Cloth::inject_fault`.
+    /// Spoils the state between two steps, as a fault of the memory or of the driver would: the numbers that [`guard::spoil`]
+    /// picks by `seed`. `Cloth::inject_fault` does the same on the CPU.
     pub fn inject_fault(&mut self, garment: usize, seed: u64) {
         let span = self.flat.spans[self.own[garment].place];
         if span.len == 0 {

@@ -117,7 +117,7 @@ impl SceneBuffers {
             Kernel::Settle | Kernel::Guard => vec![reports],
             Kernel::Publish | Kernel::UpdateReports => vec![reports, good, start],
             Kernel::Faces => vec![&faces.corners, good, &faces.areas],
-            Kernel::Normals => vec![&faces.starts, &faces.meeting, &faces.areas, &faces.normals],
+            Kernel::Normals => vec![&faces.starts, &faces.incident, &faces.areas, &faces.normals],
         }
     }
 }
@@ -266,7 +266,7 @@ pub struct FaceBuffers {
     corners: Buffer,
     areas: Buffer,
     starts: Buffer,
-    meeting: Buffer,
+    incident: Buffer,
     pub normals: Buffer,
 }
 
@@ -276,7 +276,7 @@ impl FaceBuffers {
             corners: make.with("triangles", &flat.corners, KERNELS_ONLY),
             areas: make.zeros("triangle areas", flat.corners.len(), VEC4),
             starts: make.with("triangles of particles, starts", &flat.starts, KERNELS_ONLY),
-            meeting: make.with("triangles of particles", &flat.meeting, KERNELS_ONLY),
+            incident: make.with("triangles of particles", &flat.incident, KERNELS_ONLY),
             normals: make.with("normals", &flat.normals, DRAWN),
         }
     }

@@ -87,8 +87,8 @@ mod tests {
         let bytes = |n| {
             let shape = skirt::shape(n);
             let garment = bake("skirt", "one", &shape, &skirt::fabric(&shape, Stretch::Physical)).expect("it bakes");
-            let nobody = Colliders::new(&[], &[], false).expect("nothing is not too much");
-            let flat = Flat::new(&[&garment], &[&nobody]);
+            let no_body = Colliders::new(&[], &[], false).expect("nothing is not too much");
+            let flat = Flat::new(&[&garment], &[&no_body]);
             (each(&flat, Kernel::Fibers), each(&flat, Kernel::Weft))
         };
         let ((short, link), (long, same)) = (bytes(16), bytes(32));

@@ -1,5 +1,5 @@
-// Bending: a row of the garment's matrix an invocation, its entries in the CPU's order. Twin of `cloth/forces/bending.rs`. What is stiffer
-// than a substep bends the room of `stage_combine.wgsl` instead of the places.
+// Bending: a row of the garment's matrix an invocation, its entries in the CPU's order. CPU reference: `cloth/forces/bending.rs`.
+// Bending that is stiffer than a substep writes to the scratch columns of `stage_combine.wgsl` instead of the places.
 
 // Where each particle's entries begin [particles + 1].
 @group(1) @binding(0) var<storage, read> starts: array<u32>;
@@ -39,6 +39,6 @@ fn stage_bending(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation
     if (lane >= group.z || last < 2u || last <= now.stage) {
         return;
     }
-    let to = select(after_stage(now.stage + 1u), room(0u), now.stage == 0u);
+    let to = select(after_stage(now.stage + 1u), scratch(0u), now.stage == 0u);
     bend(to, after_stage(max(now.stage, 1u)), group.y + lane, stages[g * MOST_STAGES + now.stage].w);
 }

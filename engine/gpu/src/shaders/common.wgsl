@@ -75,7 +75,7 @@ const MOST_STAGES = 160u;
 // A workgroup's garment, first item, number of items, and what else the kernel wants to know.
 @group(0) @binding(2) var<storage, read> groups: array<vec4<u32>>;
 // Places and inverse masses, then where the substep began, then velocities: `particles` of each; behind them, where bending
-// can be stiffer than a substep, its room: see `stage_combine.wgsl`.
+// can be stiffer than a substep, its scratch columns: see `stage_combine.wgsl`.
 @group(0) @binding(3) var<storage, read_write> state: array<vec4<f32>>;
 @group(0) @binding(4) var<uniform> now: Now;
 
@@ -115,12 +115,12 @@ fn within_reach(v: vec3<f32>) -> bool {
     return all(abs(v) <= vec3<f32>(FARTHEST_M));
 }
 
-// Where a part of the room for stages begins, 0 to 2.
-fn room(part: u32) -> u32 {
+// Where a scratch column of the stages begins, 0 to 2.
+fn scratch(part: u32) -> u32 {
     return (3u + part) * op.particles;
 }
 
 // Where the change of velocity after stage `j` begins.
 fn after_stage(j: u32) -> u32 {
-    return room(1u + (j + 1u) % 2u);
+    return scratch(1u + (j + 1u) % 2u);
 }

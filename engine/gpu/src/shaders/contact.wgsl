@@ -1,7 +1,7 @@
-// Contact: which capsules and planes each particle may touch in a step (`near`, twin of `cloth/contact/body/near.rs`), and what
-// touches is pushed out along the whole of a substep (`contact`, twin of `solve.rs`, `touch.rs`, `sweep.rs`).
+// Contact: which capsules and planes each particle may touch in a step (`near`, CPU reference `cloth/contact/body/near.rs`), and the
+// push of touching particles along the whole of a substep (`contact`, CPU reference `solve.rs`, `touch.rs`, `sweep.rs`).
 //
-// A particle meets its capsules in their order, as on the CPU, whose blocks of particles only take turns.
+// A particle is tried against its capsules in their order, as on the CPU, whose blocks of particles only take turns.
 
 // A capsule at the end of a substep, as `cones.rs` prepares it.
 struct Cone {

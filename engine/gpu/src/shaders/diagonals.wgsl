@@ -1,5 +1,6 @@
-// Diagonals: fibers along the bias, each solved directly (tridiagonal), one invocation a fiber of a family. Twin of `cloth/links/diagonals.rs`,
-// which goes row by row instead; no two fibers of a family share a particle, so that both give the same.
+// Diagonals: fibers along the bias, each solved directly (tridiagonal), one invocation a fiber of a family.
+// CPU reference: `cloth/links/diagonals.rs`, which goes row by row instead; no two fibers of a family share a
+// particle, so that both give the same.
 
 // First particle of each fiber, its first slot, its links, how far apart its slots are [fibers].
 @group(1) @binding(0) var<storage, read> heads: array<vec4<u32>>;

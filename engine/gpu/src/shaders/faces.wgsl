@@ -1,5 +1,5 @@
-// Faces: each triangle's normal, twice its area long, a triangle an invocation. The first half of the twin of
-// `vertex_normals` in `assets/src/mesh.rs`; `normals` sums them, which in one kernel drivers may do in another order.
+// Faces: each triangle's normal, twice its area long, a triangle an invocation. CPU reference: the first half of
+// `vertex_normals` in `assets/base/src/mesh.rs`. `normals` sums them, which in one kernel drivers may do in another order.
 
 // Particles of each triangle [3 * triangles].
 @group(1) @binding(0) var<storage, read> corners: array<u32>;

@@ -1,5 +1,5 @@
 // Fibers: the tridiagonal system of each fiber's tensions, a fiber an invocation (`fibers`), or a workgroup where they are few
-// and long (`cyclic`). Twin of `cloth/links/fibers.rs`.
+// and long (`cyclic`). CPU reference: `cloth/links/fibers.rs`.
 //
 // Neighbouring invocations are neighbouring fibers of a bundle: what one row holds of them lies side by side.
 
@@ -280,7 +280,7 @@ fn shift_of(link: i32) {
 }
 
 // The same system by parallel cyclic reduction (Hockney and Jesshope 1981; Zhang, Cohen, Owens 2010): in each step a row
-// loses its neighbours for those twice as far away, until it has none. The rounding is not the twin's.
+// loses its neighbours for those twice as far away, until it has none. The rounding is not that of the reference.
 @compute @workgroup_size(64)
 fn cyclic(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let group = groups[op.first + at.x];

@@ -1,5 +1,5 @@
 // Guard: whether every number of a garment is finite and within reach; those that are next to nothing become nothing.
-// Twin of `AllFinite` in `cloth/step/guard.rs`.
+// CPU reference: `AllFinite` in `cloth/step/guard.rs`.
 
 fn sound(v: vec3<f32>) -> bool {
     return finite(v) && within_reach(v);

@@ -1,4 +1,4 @@
-// Links: stretch between two particles, one half of a set a dispatch, a link an invocation. Twin of `cloth/links/mod.rs`.
+// Links: stretch between two particles, one half of a set a dispatch, a link an invocation. CPU reference: `cloth/links/mod.rs`.
 //
 // No two links of a dispatch share a particle: their order changes no bit.
 

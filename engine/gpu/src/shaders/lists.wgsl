@@ -1,4 +1,5 @@
-// Lists: fibers by index list, hoops among them, each solved directly (tridiagonal), one invocation a fiber. Twin of `cloth/links/lists.rs`.
+// Lists: fibers by index list, hoops among them, each solved directly (tridiagonal), one invocation a fiber.
+// CPU reference: `cloth/links/lists.rs`.
 //
 // In a hoop the first link shares a particle with the last: the last tension is bordered, and found first on the way back.
 // An open fiber is a hoop whose corner is 0.

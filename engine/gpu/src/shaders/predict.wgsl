@@ -1,4 +1,4 @@
-// Predict: gravity, air and wind move every free particle; the skinned ones follow the body. Twin of `cloth/forces/predict.rs`.
+// Predict: gravity, air and wind move every free particle; the skinned ones follow the body. CPU reference: `cloth/forces/predict.rs`.
 
 // Which target each particle follows; NONE where it is free [particles].
 @group(1) @binding(0) var<storage, read> pins: array<u32>;

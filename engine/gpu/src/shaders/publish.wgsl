@@ -1,5 +1,5 @@
 // Publish: a sound garment's places are the last good ones; one that is not sound goes back to them, at rest, and drawn to
-// where it was dressed when that happens again and again. Twin of `roll_back` in `cloth/step/guard.rs`.
+// where it was dressed when that happens again and again. CPU reference: `roll_back` in `cloth/step/guard.rs`.
 
 // Last good places [particles].
 @group(1) @binding(1) var<storage, read_write> good: array<vec4<f32>>;

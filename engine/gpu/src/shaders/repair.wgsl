@@ -1,5 +1,5 @@
 // Repair: at the start of a step a particle whose position or velocity is not finite, or that is out of reach, goes back to its last
-// good place, at rest; what is next to nothing becomes nothing. Twin of `AllFinite` and `repair` in `cloth/step/guard.rs`, as
+// good place, at rest; what is next to nothing becomes nothing. CPU reference: `AllFinite` and `repair` in `cloth/step/guard.rs`, as
 // `Cloth::begin` runs them.
 
 // Last good places [particles].

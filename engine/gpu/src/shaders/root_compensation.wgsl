@@ -1,4 +1,5 @@
-// Root compensation: what of the root's motion the cloth is not to feel. Twin of `Compensate` in `cloth/forces/root.rs`, where the equations are.
+// Root compensation: the part of the root's motion that the cloth is not to feel.
+// CPU reference: `Compensate` in `cloth/forces/root.rs`, where the equations are.
 //
 // The CPU has the wind's accelerations before it and adds to them; here `wind_forces` adds to these, because a compiler that
 // sees all of the sum in one kernel may add its parts in another order, and llvmpipe's gave another last bit.

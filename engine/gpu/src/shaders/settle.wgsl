@@ -1,4 +1,4 @@
-// Settle: velocities from where the particles came to lie, limited. Twin of `cloth/step/settle.rs`.
+// Settle: velocities from where the particles came to lie, limited. CPU reference: `cloth/step/settle.rs`.
 
 @compute @workgroup_size(64)
 fn settle(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_index) lane: u32) {

@@ -1,5 +1,5 @@
 // Skin: rest vertices, weights and a palette become a posed surface, a vertex an invocation, by linear blending or dual
-// quaternions. Twin of `skin/kernel.rs`.
+// quaternions. CPU reference: `skin/kernel.rs`.
 //
 // Bones are blended as base + w1 (bone1 - base) + ...; a run of vertices follows the same bones, so neighbours among the
 // invocations read the same numbers of the palette.
@@ -94,24 +94,24 @@ fn skin_dual(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation_ind
     let run = runs[own.run];
     let base = 2u * bone(run, 0u);
     let base_real = palette[base];
-    let base_twin = palette[base + 1u];
+    let base_dual = palette[base + 1u];
     var real = base_real;
-    var twin = base_twin;
+    var dual = base_dual;
     for (var k = 1u; k < run.z; k++) {
         let more = 2u * bone(run, k);
         let weight = weights[group.w + (k - 1u) * WIDTH + lane];
         real = real + (palette[more] - base_real) * weight;
-        twin = twin + (palette[more + 1u] - base_twin) * weight;
+        dual = dual + (palette[more + 1u] - base_dual) * weight;
     }
     let v = real.xyz;
     let w = real.w;
     let squared = inner(v, v) + w * w;
-    // Bones that cancel each other leave no rotation; the floor keeps what is then shown finite.
+    // Bones that cancel each other leave no rotation; the lower bound keeps the result finite.
     let factor = 2.0 / more_of(squared, COLLAPSED);
     let p = own.position;
     let n = own.normal;
-    let along = (twin.xyz * w - v * twin.w) * one(run);
-    let moved = cross_product(v, cross_product(v, p) + p * w + twin.xyz) + along;
+    let along = (dual.xyz * w - v * dual.w) * one(run);
+    let moved = cross_product(v, cross_product(v, p) + p * w + dual.xyz) + along;
     let turned = cross_product(v, cross_product(v, n) + n * w);
     positions[own.place] = vec4<f32>(p + moved * factor, 1.0);
     normals[own.place] = vec4<f32>(n + turned * factor, 0.0);

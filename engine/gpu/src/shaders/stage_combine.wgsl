@@ -1,6 +1,8 @@
-// Stage combine: what comes before the forces of a stage of stiff bending, and behind the last. Twin of `ApplyStiffBending` in `cloth/forces/stiff_bending.rs`.
+// Stage combine: what comes before the forces of a stage of stiff bending, and behind the last.
+// CPU reference: `ApplyStiffBending` in `cloth/forces/stiff_bending.rs`.
 //
-// Three more parts of the state are its room: r, which is what else changes the velocity, and two changes of velocity.
+// Three more parts of the state are its scratch columns: r, the sum of all else that changes the velocity, and two changes of
+// velocity.
 
 // Accelerations besides gravity (m/s2) [particles].
 @group(1) @binding(0) var<storage, read> pushed: array<vec4<f32>>;
@@ -19,9 +21,9 @@ fn stage_combine(@builtin(workgroup_id) at: vec3<u32>, @builtin(local_invocation
     let own = state[i];
     let velocity = 2u * op.particles + i;
     let v = state[velocity].xyz;
-    let rest = room(0u) + i;
-    let first = room(1u) + i;
-    let second = room(2u) + i;
+    let rest = scratch(0u) + i;
+    let first = scratch(1u) + i;
+    let second = scratch(2u) + i;
     let stage = stages[g * MOST_STAGES + min(now.stage, last - 1u)];
     if (now.stage == 0u) {
         var change = garments[g].fall;

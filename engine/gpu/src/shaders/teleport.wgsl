@@ -1,5 +1,5 @@
-// Teleport: the root has been put somewhere else. A garment is dressed again there, at rest, or carried along as it is. Twin of
-// what `Cloth::begin` does then.
+// Teleport: the root has been put somewhere else. A garment is dressed again there, at rest, or carried along as it is. CPU
+// reference: that case of `Cloth::begin`.
 
 // Last good places [particles].
 @group(1) @binding(0) var<storage, read_write> good: array<vec4<f32>>;

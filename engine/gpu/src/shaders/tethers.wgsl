@@ -1,5 +1,5 @@
-// Tethers: no particle gets farther from where the garment hangs than the cloth between them is long. Twin of
-// `cloth/links/tethers.rs`. Anchors are skinned particles, which no invocation moves.
+// Tethers: no particle gets farther from where the garment hangs than the cloth between them is long. CPU
+// reference: `cloth/links/tethers.rs`. Anchors are skinned particles, which no invocation moves.
 
 // Anchor of each particle, and bits of the length (m) of the way to it [particles].
 @group(1) @binding(0) var<storage, read> tether_of: array<vec2<u32>>;

@@ -1,5 +1,5 @@
 // Wind: once a step, first what presses each triangle, then what that does to each particle, in the CPU's order of sums.
-// Twin of `cloth/forces/wind.rs`, where the law is.
+// CPU reference: `cloth/forces/wind.rs`, where the equations are.
 
 // Corners, and the bits of the mass that moves with the triangle (kg) [triangles].
 @group(1) @binding(0) var<storage, read> faces: array<vec4<u32>>;

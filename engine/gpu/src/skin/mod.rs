@@ -1,7 +1,7 @@
 //! Skinning on a GPU: all bodies of a scene in one dispatch.
 //!
-//! Budget: buffers and pipelines at load; in the frame no buffer, no pipeline and no wait, 3 kB a body and one dispatch.
-//! Thread: the one that calls [`Skinning::step`]; not the physics thread, whose skin is `toile_engine::skin`.
+//! Buffers and pipelines are made at load. A frame makes none and waits for nothing; it takes 3 kB a body and one dispatch. It runs
+//! on the thread that calls [`Skinning::step`], not on the physics thread, whose skin is `toile_engine::skin`.
 //!
 //! The arithmetic is that of `toile_engine::skin`, vertex by vertex; docs/gpu.md says where the bits can differ.
 

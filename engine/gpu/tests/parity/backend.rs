@@ -11,7 +11,7 @@ use toile_gpu::backend::{Backend, Backends, ClothStepper};
 use toile_gpu::cloth_batch::ClothBatch;
 use toile_gpu::graphics::Graphics;
 
-use super::scene::{REST, around, nobody, skirt, swaying};
+use super::scene::{REST, around, no_body, skirt, swaying};
 
 /// An open device; none where this machine has none, which CI does not excuse.
 fn graphics() -> Option<Graphics> {
@@ -27,7 +27,7 @@ fn graphics() -> Option<Graphics> {
 
 /// Steps cloths with a stepper.
 fn step(stepper: &mut ClothStepper, cloths: &mut [Cloth], garments: &[&Garment], n: usize, settings: &Settings) {
-    let (palette, colliders) = (swaying(n), nobody());
+    let (palette, colliders) = (swaying(n), no_body());
     let steps: Vec<_> = garments.iter().map(|_| around(&palette, &colliders, settings)).collect();
     stepper.step(&mut ClothBatch { cloths, garments, steps: &steps }, None).expect("no worker panics");
 }
@@ -37,7 +37,7 @@ fn a_device_gives_what_the_processor_gives_with_disturbances_and_other_settings_
     let Some(graphics) = graphics() else { return };
     let garment = [skirt(14, Stretch::Physical), skirt(12, Stretch::Inextensible)];
     let garments: Vec<&Garment> = garment.iter().collect();
-    let cloths: Vec<Cloth> = garments.iter().map(|g| Cloth::new(g, &nobody())).collect();
+    let cloths: Vec<Cloth> = garments.iter().map(|g| Cloth::new(g, &no_body())).collect();
     let [mut one, mut other] = [cloths.clone(), cloths];
     let mut cpu = ClothStepper::cpu();
     let mut gpu = Backends::from(graphics.clone()).stepper();
@@ -71,7 +71,7 @@ fn a_device_gives_what_the_processor_gives_with_disturbances_and_other_settings_
 
 /// A cloth with a past: it hung at rest and then somewhere else for a while, stepped by the processor.
 fn hung(garment: &Garment, root: &[Affine3A; BONES], wind: bool) -> Cloth {
-    let (colliders, settings) = (nobody(), Settings::default());
+    let (colliders, settings) = (no_body(), Settings::default());
     let cloth = Cloth::new(garment, &colliders);
     let mut cloth = if wind { cloth.in_wind(garment) } else { cloth };
     for palette in [&REST, root, root] {
@@ -102,7 +102,7 @@ fn a_cloth_goes_on_from_its_past_on_the_device_and_from_there_on_the_processor()
     let mut cpu = hung(&garment, &far(0), false);
     let mut gpu = cpu.clone();
     let mut stepper = Backends::from(graphics.clone()).stepper();
-    let (colliders, settings) = (nobody(), Settings::default());
+    let (colliders, settings) = (no_body(), Settings::default());
     for n in 1..8 {
         let palette = far(n);
         if n == 5 {
@@ -125,7 +125,7 @@ fn wind_blows_only_what_was_made_ready_for_it() {
         let mut gpu = cpu.clone();
         let mut stepper = Backends::from(graphics.clone()).stepper();
         for n in 1..5 {
-            same(&mut cpu, &mut gpu, &mut stepper, &garment, &around(&swaying(n), &nobody(), &settings));
+            same(&mut cpu, &mut gpu, &mut stepper, &garment, &around(&swaying(n), &no_body(), &settings));
         }
         assert_eq!(stepper.fallback(), None);
     }
@@ -141,7 +141,7 @@ fn what_is_spoilt_before_the_first_step_goes_back_to_where_it_was() {
     let mut gpu = cpu.clone();
     let mut stepper = Backends::from(graphics).stepper();
     for n in 1..5 {
-        same(&mut cpu, &mut gpu, &mut stepper, &garment, &around(&swaying(n), &nobody(), &Settings::default()));
+        same(&mut cpu, &mut gpu, &mut stepper, &garment, &around(&swaying(n), &no_body(), &Settings::default()));
     }
     assert_eq!((gpu.events.repaired, stepper.fallback()), (1, None));
 }
@@ -150,7 +150,7 @@ fn what_is_spoilt_before_the_first_step_goes_back_to_where_it_was() {
 fn a_device_that_is_lost_loses_no_garment_and_the_processor_goes_on_within_a_second() {
     let Some(graphics) = graphics() else { return };
     let (garment, settings) = (skirt(14, Stretch::Inextensible), Settings::default());
-    let mut cloths = [Cloth::new(&garment, &nobody())];
+    let mut cloths = [Cloth::new(&garment, &no_body())];
     let mut stepper = Backends::from(graphics.clone()).stepper();
     for n in 0..4 {
         step(&mut stepper, &mut cloths, &[&garment], n, &settings);
@@ -178,15 +178,15 @@ fn what_is_faster_is_measured_and_steps() {
         return;
     }
     let (garment, settings) = (skirt(10, Stretch::Inextensible), Settings::default());
-    let mut cloths = [Cloth::new(&garment, &nobody())];
+    let mut cloths = [Cloth::new(&garment, &no_body())];
     let mut stepper = means.stepper();
     step(&mut stepper, &mut cloths, &[&garment], 0, &settings);
     let measured = stepper.measured().expect("both were measured");
     let faster = if measured.cpu_us <= measured.gpu_us { Backend::Cpu } else { Backend::Gpu };
     assert_eq!(stepper.backend(), faster, "{measured:?}");
     assert_eq!(stepper.fallback(), None);
-    let mut alone = Cloth::new(&garment, &nobody());
-    let (palette, colliders) = (swaying(0), nobody());
+    let mut alone = Cloth::new(&garment, &no_body());
+    let (palette, colliders) = (swaying(0), no_body());
     alone.step(&garment, &around(&palette, &colliders, &settings));
     let apart = alone.positions.iter().zip(&cloths[0].positions).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
     assert!(apart < 1e-5, "measuring has moved the garment by {apart} m");
@@ -196,7 +196,7 @@ fn what_is_faster_is_measured_and_steps() {
 fn the_devices_clock_tells_what_the_stages_took() {
     let Some(graphics) = graphics() else { return };
     let (garment, settings) = (skirt(12, Stretch::Inextensible), Settings { timed: true, ..Settings::default() });
-    let mut cloths = [Cloth::new(&garment, &nobody())];
+    let mut cloths = [Cloth::new(&garment, &no_body())];
     let mut stepper = Backends::from(graphics.clone()).stepper();
     for n in 0..3 {
         step(&mut stepper, &mut cloths, &[&garment], n, &settings);
@@ -215,7 +215,7 @@ fn two_threads_on_one_device_lose_no_step() {
     let means = Backends::from(graphics);
     let (garment, settings) = (skirt(8, Stretch::Inextensible), Settings::default());
     let run = || {
-        let mut cloths = [Cloth::new(&garment, &nobody())];
+        let mut cloths = [Cloth::new(&garment, &no_body())];
         let mut stepper = means.stepper();
         (0..400).for_each(|n| step(&mut stepper, &mut cloths, &[&garment], n, &settings));
         (stepper.fallback().map(str::to_owned), cloths[0].positions.clone())
@@ -233,12 +233,12 @@ fn another_garment_of_as_many_particles_is_laid_out_anew() {
     let Some(graphics) = graphics() else { return };
     let (one, other) = (skirt(10, Stretch::Physical), skirt(10, Stretch::Inextensible));
     let (settings, mut stepper) = (Settings::default(), Backends::from(graphics).stepper());
-    let start = [Cloth::new(&one, &nobody())];
+    let start = [Cloth::new(&one, &no_body())];
     let [mut on_cpu, mut on_gpu] = [start.clone(), start];
     for n in 0..8 {
         let garment = if n < 4 { &one } else { &other };
         if n == 4 {
-            on_cpu = [Cloth::new(garment, &nobody())];
+            on_cpu = [Cloth::new(garment, &no_body())];
             on_gpu = on_cpu.clone();
         }
         step(&mut ClothStepper::cpu(), &mut on_cpu, &[garment], n, &settings);

@@ -6,11 +6,11 @@ use toile_base::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Settings};
 use toile_gpu::device::GpuError;
 
-use super::scene::{REST, apart, around, disturbed, nobody, offload, skirt, swaying};
+use super::scene::{REST, apart, around, disturbed, no_body, offload, skirt, swaying};
 
 #[test]
 fn a_lost_device_is_an_error_and_the_last_places_stay() {
-    let (garment, settings, colliders) = (skirt(12, Stretch::Inextensible), Settings::default(), nobody());
+    let (garment, settings, colliders) = (skirt(12, Stretch::Inextensible), Settings::default(), no_body());
     let Some(mut gpu) = offload(&[&garment], &settings) else { return };
     let step = [around(&REST, &colliders, &settings)];
     gpu.step(&[&garment], &step).expect("the first step is sent");
@@ -22,8 +22,8 @@ fn a_lost_device_is_an_error_and_the_last_places_stay() {
 }
 
 #[test]
-fn more_substeps_than_there_is_room_for_are_refused_in_a_sentence() {
-    let (garment, settings, colliders) = (skirt(12, Stretch::Inextensible), Settings::default(), nobody());
+fn too_many_substeps_are_refused_in_a_sentence() {
+    let (garment, settings, colliders) = (skirt(12, Stretch::Inextensible), Settings::default(), no_body());
     let Some(mut gpu) = offload(&[&garment], &settings) else { return };
     let many = Settings { substeps: Some(400), ..settings };
     let error = gpu.step(&[&garment], &[around(&REST, &colliders, &many)]).expect_err("there is no room for so many");
@@ -33,7 +33,7 @@ fn more_substeps_than_there_is_room_for_are_refused_in_a_sentence() {
 
 #[test]
 fn results_come_back_late_and_are_dropped_rather_than_waited_for() {
-    let (garment, settings, colliders) = (skirt(12, Stretch::Inextensible), Settings::default(), nobody());
+    let (garment, settings, colliders) = (skirt(12, Stretch::Inextensible), Settings::default(), no_body());
     let Some(mut gpu) = offload(&[&garment], &settings) else { return };
     for _ in 0..20 {
         gpu.step(&[&garment], &[around(&REST, &colliders, &settings)]).expect("the step is sent");
@@ -48,7 +48,7 @@ fn results_come_back_late_and_are_dropped_rather_than_waited_for() {
 
 #[test]
 fn a_step_that_ends_with_a_number_that_is_none_is_rolled_back_on_the_device() {
-    let (garment, settings, colliders) = (skirt(12, Stretch::Inextensible), Settings::default(), nobody());
+    let (garment, settings, colliders) = (skirt(12, Stretch::Inextensible), Settings::default(), no_body());
     let Some(mut gpu) = offload(&[&garment], &settings) else { return };
     let step = [around(&REST, &colliders, &settings)];
     let (x, mut v) = disturbed(&garment);
@@ -68,7 +68,7 @@ fn a_step_that_ends_with_a_number_that_is_none_is_rolled_back_on_the_device() {
 /// Steps a skirt on both after one particle got a place and a velocity; gives how many particles were repaired and how many
 /// steps rolled back, the same on both.
 fn poisoned(place: Option<Vec3A>, velocity: Option<Vec3A>) -> Option<(u64, u64)> {
-    let (garment, settings, colliders) = (skirt(12, Stretch::Inextensible), Settings::default(), nobody());
+    let (garment, settings, colliders) = (skirt(12, Stretch::Inextensible), Settings::default(), no_body());
     let mut gpu = offload(&[&garment], &settings)?;
     let mut cloth = Cloth::new(&garment, &colliders);
     for n in 0..8 {
@@ -110,7 +110,7 @@ fn the_same_poison_has_the_same_end_on_both() {
 
 #[test]
 fn what_spoils_the_state_is_repaired_as_on_the_cpu() {
-    let (garment, settings, colliders) = (skirt(14, Stretch::Physical), Settings::default(), nobody());
+    let (garment, settings, colliders) = (skirt(14, Stretch::Physical), Settings::default(), no_body());
     let Some(mut gpu) = offload(&[&garment], &settings) else { return };
     let mut cloth = Cloth::new(&garment, &colliders);
     for n in 0..24 {
@@ -136,7 +136,7 @@ fn what_spoils_the_state_is_repaired_as_on_the_cpu() {
 
 #[test]
 fn a_root_that_jumps_takes_the_garment_along() {
-    let (garment, settings, colliders) = (skirt(12, Stretch::Inextensible), Settings::default(), nobody());
+    let (garment, settings, colliders) = (skirt(12, Stretch::Inextensible), Settings::default(), no_body());
     let Some(mut gpu) = offload(&[&garment], &settings) else { return };
     let mut cloth = Cloth::new(&garment, &colliders);
     let away = [Affine3A::from_translation(glam::Vec3::new(3.0, 0.0, -2.0)); BONES];

@@ -11,7 +11,7 @@ use toile_gpu::cloth::Offload;
 use toile_gpu::cloth::cloth_device::ClothDevice;
 use toile_gpu::device::{AdapterChoice, Device, DeviceNeeds, GpuError};
 
-use super::scene::{REST, around, nobody, offload, skirt, swaying, worn};
+use super::scene::{REST, around, no_body, offload, skirt, swaying, worn};
 
 /// What a component of a unit normal may be off by on a device that fuses products and sums or rounds roots coarsely. In a
 /// crease the triangles around a particle add up to a hundredth of what they have each.
@@ -38,9 +38,10 @@ fn reference(positions: &[Vec3A], garment: &Garment) -> Vec<Vec3> {
 }
 
 #[test]
-fn normals_are_the_twins_before_and_after_every_step() {
-    let (one, other, settings, nobody) = (skirt(20, Stretch::Physical), worn("t-shirt"), Settings::default(), nobody());
-    let (garments, colliders) = ([&one, &other], [&nobody, &nobody]);
+fn normals_follow_the_reference_through_every_step() {
+    let (one, other, settings, no_body) =
+        (skirt(20, Stretch::Physical), worn("t-shirt"), Settings::default(), no_body());
+    let (garments, colliders) = ([&one, &other], [&no_body, &no_body]);
     let needs = Offload::needs(&garments, &colliders, &settings);
     let Some(device) = device(needs) else { return };
     let opened = Arc::new(ClothDevice::on(device.clone()).expect("every driver takes the kernels"));
@@ -48,7 +49,7 @@ fn normals_are_the_twins_before_and_after_every_step() {
     for n in 0..6 {
         if n > 0 {
             let palette = swaying(4 * n);
-            gpu.step(&garments, &[around(&palette, &nobody, &settings); 2]).expect("the step is sent");
+            gpu.step(&garments, &[around(&palette, &no_body, &settings); 2]).expect("the step is sent");
             gpu.finish().expect("it comes back");
         }
         for (k, garment) in garments.iter().enumerate() {
@@ -77,14 +78,14 @@ fn who_draws_nothing_pays_for_no_normals() {
 
 #[test]
 fn a_fault_of_one_side_is_known_to_the_other() {
-    let (garment, settings, nobody) = (skirt(12, Stretch::Inextensible), Settings::default(), nobody());
+    let (garment, settings, no_body) = (skirt(12, Stretch::Inextensible), Settings::default(), no_body());
     let Some(device) = device(DeviceNeeds::default()) else { return };
     let opened = Arc::new(ClothDevice::on(device.clone()).expect("every driver takes the kernels"));
-    let drawn = || Offload::drawn(&opened, &[&garment], &[&nobody], &settings);
+    let drawn = || Offload::drawn(&opened, &[&garment], &[&no_body], &settings);
     let mut gpu = drawn().expect("a small scene fits a device that was opened for none");
     device.lose();
     assert!(gpu.device().lost());
-    let step = [around(&REST, &nobody, &settings)];
+    let step = [around(&REST, &no_body, &settings)];
     assert!(matches!(gpu.step(&[&garment], &step), Err(GpuError::Lost(_))));
     assert!(matches!(drawn(), Err(GpuError::Lost(_))));
 }

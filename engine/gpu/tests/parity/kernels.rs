@@ -20,7 +20,7 @@ use toile_engine::cloth::{
 use toile_engine::lanes::{RECORD, ReadColumn, Store, Width, WriteColumn};
 use toile_gpu::cloth::Kernel;
 
-use super::scene::{apart, around, disturbed, nobody, offload, skirt, swaying, worn};
+use super::scene::{apart, around, disturbed, no_body, offload, skirt, swaying, worn};
 
 /// What a kernel may be off by on a device that fuses products and sums (m). A tenth of the f32 rounding of a metre, a
 /// hundredfold: a fiber's system carries errors of its upper links down.
@@ -148,7 +148,7 @@ impl<'a> Reference<'a> {
                     width.run(settle::Settle { columns, spans: spans(owner), max_speed, dt: p.dt });
                 }
             }
-            other => panic!("{other:?} has no twin of its own"),
+            other => panic!("{other:?} has no reference of its own"),
         }
     }
 
@@ -222,7 +222,7 @@ fn held(name: &str, garment: &Garment, settings: &Settings, kernel: Kernel) {
     }
     let mut reference = Reference::new(garment, settings, &x, &v);
     reference.run(kernel);
-    let (palette, colliders) = (swaying(3), nobody());
+    let (palette, colliders) = (swaying(3), no_body());
     let steps = [around(&palette, &colliders, settings)];
     gpu.disturb(0, &x, &v);
     gpu.only(kernel, 0, &[garment], &steps).expect("the kernel runs");
@@ -272,7 +272,7 @@ fn few_long_fibers_come_out_as_one_by_one() {
             x.iter_mut().zip(&garment.start).for_each(|(x, s)| *x = Vec3A::from(*s).lerp(*x, 0.1));
             let mut reference = Reference::new(&garment, &settings, &x, &v);
             reference.run(Kernel::Cyclic);
-            let (palette, colliders) = (swaying(3), nobody());
+            let (palette, colliders) = (swaying(3), no_body());
             gpu.disturb(0, &x, &v);
             let steps = [around(&palette, &colliders, &settings)];
             gpu.only(Kernel::Fibers, 0, &[&garment], &steps).expect("nothing is left for it");
@@ -285,7 +285,7 @@ fn few_long_fibers_come_out_as_one_by_one() {
     }
 }
 
-/// Holds numbers against a twin's; a software adapter's to the bit.
+/// Compares numbers with the reference's; a software adapter's to the bit.
 fn alike(name: &str, software: bool, got: &[Vec3A], expected: &[Vec3A]) {
     let (same, all, most) = apart(got, expected);
     let size = expected.iter().map(|v| v.length()).fold(0.0, f32::max);
@@ -304,7 +304,7 @@ fn blow(garment: &Garment, settings: &Settings, wind: &Wind, reference: &mut Ref
 }
 
 #[test]
-fn wind_gives_what_its_twin_gives() {
+fn wind_agrees_with_its_reference() {
     let garments = [skirt(24, Stretch::Inextensible), worn("t-shirt")];
     // Of moderate strength, and so strong that the bound holds it.
     for (garment, speed) in garments.iter().flat_map(|g| [(g, 3.0), (g, 900.0)]) {
@@ -316,7 +316,7 @@ fn wind_gives_what_its_twin_gives() {
         let mut acceleration = Accelerations::new(garment.particles());
         blow(garment, &settings, &wind, &mut reference, &mut acceleration);
         gpu.disturb(0, &x, &v);
-        let (palette, colliders) = (swaying(3), nobody());
+        let (palette, colliders) = (swaying(3), no_body());
         for kernel in [Kernel::Wind, Kernel::WindForces] {
             gpu.only(kernel, 0, &[garment], &[around(&palette, &colliders, &settings)]).expect("the kernel runs");
         }
@@ -339,7 +339,7 @@ fn carried(wind: Option<Wind>) {
     if let Some(wind) = wind {
         blow(&garment, &settings, &wind, &mut reference, &mut acceleration);
     }
-    let (colliders, software) = (nobody(), gpu.device().adapter().kind == "software");
+    let (colliders, software) = (no_body(), gpu.device().adapter().kind == "software");
     // The root is new in the first, and starts in the second; `blown` goes last, as in a step.
     for (kernel, n) in [(Kernel::Wind, 3), (Kernel::RootCompensation, 7), (Kernel::WindForces, 7)] {
         let palette = swaying(n);
@@ -358,13 +358,13 @@ fn carried(wind: Option<Wind>) {
 }
 
 #[test]
-fn carry_gives_what_its_twin_gives() {
+fn root_compensation_agrees_with_its_reference() {
     carried(None);
     carried(Some(Wind { velocity: Vec3A::new(4.0, 0.5, -3.0), drag: 0.6, lift: 0.2 }));
 }
 
 #[test]
-fn stages_give_what_their_twins_give() {
+fn bending_stages_agree_with_their_reference() {
     let garment = &worn("t-shirt");
     let mut seen = Vec::new();
     for (substeps, longer) in [(3, 1.0), (1, 1.0), (1, 2.0), (1, 2.3), (1, 8.0), (1, 60.0)] {
@@ -380,7 +380,7 @@ fn stages_give_what_their_twins_give() {
         seen.push(last);
         reference.run_stages();
         gpu.disturb(0, &x, &v);
-        let (palette, colliders) = (swaying(3), nobody());
+        let (palette, colliders) = (swaying(3), no_body());
         for stage in 0..=last {
             let kernels = [Kernel::StageCombine, Kernel::StageBending];
             for kernel in kernels.into_iter().filter(|k| stage < last || *k == Kernel::StageCombine) {
@@ -392,13 +392,13 @@ fn stages_give_what_their_twins_give() {
         let name = format!("{} in {last} stages", garment.name);
         alike(&name, software, &gpu.particles(0).expect("read").v, &reference.particles().1);
     }
-    // Odd and even numbers end in another part of the room; what is past the most is weakened.
+    // Odd and even numbers end in another scratch column; bending beyond the most stages is weakened.
     assert!(seen.iter().any(|m| m % 2 == 0) && seen.iter().any(|m| m % 2 == 1), "{seen:?}");
     assert_eq!(seen.iter().max(), Some(&stiff_bending::MAX_BENDING_STAGES));
 }
 
 #[test]
-fn every_kernel_gives_what_its_twin_gives_on_the_skirt() {
+fn every_kernel_agrees_on_the_skirt() {
     let settings = Settings { tethers: true, ..Settings::default() };
     let damped = Settings { stretch_damping_s: 0.01, ..settings };
     let (rigid, soft) = (skirt(24, Stretch::Inextensible), skirt(19, Stretch::Physical));
@@ -410,7 +410,7 @@ fn every_kernel_gives_what_its_twin_gives_on_the_skirt() {
 }
 
 #[test]
-fn every_kernel_gives_what_its_twin_gives_on_a_garment_of_the_wardrobe() {
+fn every_kernel_agrees_on_a_wardrobe_garment() {
     let (shirt, settings) = (worn("t-shirt"), Settings { tethers: true, ..Settings::default() });
     for kernel in KERNELS {
         held("shirt", &shirt, &settings, kernel);

@@ -48,7 +48,7 @@ pub fn walker() -> Colliders {
 }
 
 /// No body at all.
-pub fn nobody() -> Colliders {
+pub fn no_body() -> Colliders {
     Colliders::new(&[], &[], false).expect("nothing is not too much")
 }
 
@@ -77,8 +77,8 @@ pub fn disturbed(garment: &Garment) -> (Vec<Vec3A>, Vec<Vec3A>) {
 
 /// The garments on an adapter, without bodies.
 pub fn offload(garments: &[&Garment], settings: &Settings) -> Option<Offload> {
-    let nobody = nobody();
-    offload_worn(garments, &vec![&nobody; garments.len()], settings)
+    let no_body = no_body();
+    offload_worn(garments, &vec![&no_body; garments.len()], settings)
 }
 
 /// The garments on an adapter, each with its body.

@@ -106,7 +106,7 @@ fn held(
 }
 
 #[test]
-fn both_blends_give_what_their_twins_give_on_the_bodies_in_every_pose() {
+fn both_blends_agree_with_their_references_everywhere() {
     for sex in [Sex::Female, Sex::Male] {
         let (skeleton, job) = body(sex);
         let Some(mut on) = skinning(&[&job]) else { return };

@@ -6,7 +6,7 @@ use toile_base::garment::Garment;
 use toile_engine::cloth::{Cloth, Quality, RootSettings, Settings, Wind, step::measure};
 
 use super::scene::{
-    REST, apart, around, irregular, nobody, nudge, offload, offload_worn, skirt, swaying, walker, worn,
+    REST, apart, around, irregular, no_body, nudge, offload, offload_worn, skirt, swaying, walker, worn,
 };
 
 /// How the body walks.
@@ -49,7 +49,7 @@ fn distance(one: &[Vec3A], other: &[Vec3A]) -> [f32; 2] {
 /// Steps garments on both, and on the processor with last bits changed.
 fn both(garments: &[&Garment], settings: impl Fn(usize) -> Settings, steps: usize) -> Option<Outcome> {
     let mut gpu = offload(garments, &settings(0))?;
-    let colliders = nobody();
+    let colliders = no_body();
     let mut cloths: Vec<Cloth> = garments.iter().map(|g| Cloth::new(g, &colliders).in_wind(g)).collect();
     let (mut nudged, mut chance) = (cloths.clone(), 1);
     for n in 0..steps {
@@ -212,7 +212,7 @@ fn settings_may_change_from_step_to_step() {
 
 #[test]
 fn a_run_gives_the_same_bits_again() {
-    let (garment, settings, colliders) = (skirt(16, Stretch::Inextensible), Settings::default(), nobody());
+    let (garment, settings, colliders) = (skirt(16, Stretch::Inextensible), Settings::default(), no_body());
     let run = || {
         let mut gpu = offload(&[&garment], &settings)?;
         for n in 0..10 {

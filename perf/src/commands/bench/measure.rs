@@ -239,7 +239,7 @@ fn table(study: &MeasuringStudy, paint: Paint) -> String {
     }
     let _ = writeln!(
         text,
-        "no body was found in {} of {}; the sex taken for likelier was right in {:.1} %; nobody else was seen in {:.1} % of the frames",
+        "no body was found in {} of {}; the sex taken for likelier was right in {:.1} %; no other person was seen in {:.1} % of the frames",
         study.lost,
         study.people,
         study.sex_right * 100.0,
@@ -259,7 +259,7 @@ fn table(study: &MeasuringStudy, paint: Paint) -> String {
     let _ = writeln!(
         text,
         "following: {:.1} ms a frame (median), {:.1} ms (95 %): picture {:.1}, matches {:.1}, equations {:.1}, solution {:.1} \
-         ms; {:.0} ms to find somebody; surface {:.1} mm and joints {:.0} mm off; measures from the front in {:.0} ms, and after a \
+         ms; {:.0} ms to find a person; surface {:.1} mm and joints {:.0} mm off; measures from the front in {:.0} ms, and after a \
          turn in {:.0} ms",
         f.frame_ms[0],
         f.frame_ms[1],

@@ -48,7 +48,7 @@ struct OwnPictureReport {
 /// Runs `toile bench own-picture`.
 ///
 /// # Errors
-/// A garment that there is not, another network, a folder that cannot be written, a missed target with `--check`, a closed stdout.
+/// A garment that does not exist, another network, a folder that cannot be written, a missed target with `--check`, a closed stdout.
 pub fn run(args: &OwnPictureArgs) -> Result<(), AppError> {
     let words = Words::new(args.json);
     let out = args.out.as_deref().map(OutputFolder::prepare).transpose()?;

@@ -17,7 +17,7 @@ pub struct SkinningReport {
     pub us: f64,
     /// The same for one vertex (ns).
     pub ns_per_vertex: f64,
-    /// The same over the yardstick of as many vertices.
+    /// The same over the reference time of as many vertices.
     pub y_ratio: f64,
     /// Largest distance from an f64 oracle (m).
     pub max_error_m: f64,

@@ -29,8 +29,8 @@ pub fn summary(report: &SkirtReport, paint: Paint) -> String {
         put_line!(text, "  decided by    {words}: {} steps", report.stepped_by.backend);
     }
     put_line!(text, "  a step takes  {:.1} us, 99 % of them under {:.1} us", step_us.p50, step_us.p99);
-    let (ratio, yardstick) = (report.y_ratio, report.yardstick_us);
-    put_line!(text, "  the yardstick {yardstick:.1} us: the step takes {ratio:.2} of it");
+    let (ratio, reference) = (report.y_ratio, report.yardstick_us);
+    put_line!(text, "  reference     {reference:.1} us: the step takes {ratio:.2} of it");
     let [mean, p99, max] = [strain.mean, strain.p99, strain.max].map(|s| s * 100.0);
     put_line!(text, "  strain        {mean:.3} % mean, {p99:.2} % at the 99th percentile, {max:.1} % at worst");
     let (deepest, inside) = (report.penetration_mm.max, report.penetration_mm.fraction * 100.0);

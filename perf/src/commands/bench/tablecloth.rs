@@ -49,7 +49,7 @@ struct Laid {
 /// Runs `toile bench tablecloth`.
 ///
 /// # Errors
-/// A fabric that is not built in, a sampling that there is none of, a folder that cannot be written.
+/// A fabric that is not built in, an unknown sampling, a folder that cannot be written.
 pub(crate) fn run(args: &TableclothArgs) -> Result<(), AppError> {
     let words = Words::new(args.json);
     let fabric = toile_assets::fabric::built_in(&args.fabric).map_err(AppError::input)?;

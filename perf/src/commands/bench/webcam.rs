@@ -20,7 +20,7 @@ pub struct WebcamBenchArgs {
     /// People
     #[arg(long, value_name = "N", value_parser = value_parser!(u8).range(1..=6), default_value = "2")]
     people: u8,
-    /// Draw ten seconds of somebody at 30 Hz instead, for webcam-file:F; the name has to end in _640x480.yuyv
+    /// Draw ten seconds of a person at 30 Hz instead, for webcam-file:F; the name has to end in _640x480.yuyv
     #[arg(long, value_name = "F")]
     film: Option<PathBuf>,
     /// Print one JSON object, and nothing else, on stdout

@@ -24,7 +24,7 @@ use super::super::system::System;
 #[derive(Debug)]
 pub struct Springs<'a> {
     links: &'a [Link],
-    /// Laws of links with more than one slope `[links]`; empty where none has.
+    /// Curves of the links `[links]`; empty if every link has one slope.
     link_curves: Vec<LinkCurve>,
     /// 1 / rho of each (m/N), 0 where the link is soft enough.
     give: Vec<f64>,

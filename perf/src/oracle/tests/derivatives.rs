@@ -39,7 +39,7 @@ fn landscape<'a>(problem: &'a Problem, start: &'a [DVec3], random: &mut Random, 
 }
 
 /// The square with links that have knees and rub.
-fn lawful() -> Problem {
+fn curved() -> Problem {
     let mut problem = square(6);
     let link_curve = |l: &Link| {
         let slope = if l.compliance > 0.0 { l.rest / l.compliance } else { 4e3 };
@@ -72,7 +72,7 @@ fn direction(problem: &Problem, random: &mut Random) -> Vec<DVec3> {
 
 #[test]
 fn gradients_are_the_differences_of_values() {
-    for (problem, load) in [inertia, weight].into_iter().flat_map(|load| [(square(6), load), (lawful(), load)]) {
+    for (problem, load) in [inertia, weight].into_iter().flat_map(|load| [(square(6), load), (curved(), load)]) {
         let mut random = Random::new(1);
         let start = crumpled(&problem, &mut random);
         let x = crumpled(&problem, &mut random);

@@ -1,4 +1,4 @@
-//! Solutions against closed forms, and laws that every solution keeps.
+//! Solutions against closed forms, and rules that every solution keeps.
 
 use glam::DVec3;
 

@@ -12,7 +12,7 @@ fn knee() -> LinkCurve {
 }
 
 #[test]
-fn a_chain_with_a_knee_hangs_by_what_its_law_says_of_each_tension() {
+fn chain_with_a_knee_hangs_by_its_curve() {
     let (links, rest, mass) = (20, 0.05, 1e-3);
     for slope in [1.0, 1e4] {
         let link_curve = LinkCurve { slope: knee().slope * slope, ..knee() };
@@ -30,7 +30,7 @@ fn a_chain_with_a_knee_hangs_by_what_its_law_says_of_each_tension() {
 }
 
 #[test]
-fn where_links_stick_follows_as_the_law_does() {
+fn sticking_strains_follow_the_curve() {
     let mut exact = LinkCurve { half_width: 0.06, ..knee() };
     let mut link_curves = [exact];
     let links = [Link { ends: [0, 1], rest: 0.02, compliance: 2e-3 }];

@@ -87,7 +87,7 @@ impl Cantilever {
     }
 }
 
-/// The cases of this room.
+/// The cases of this module.
 pub fn cases() -> Vec<ValidationCase> {
     let mut all = Vec::new();
     for style in MeshStyle::ALL {

@@ -32,7 +32,7 @@ const FABRICS: [&str; 5] = ["interlock", "denim-11oz", "cotton-trousering", "woo
 /// Largest error (%).
 const TARGET: f64 = 5.0;
 
-/// The cases of this room.
+/// The cases of this module.
 pub fn cases() -> Vec<ValidationCase> {
     let mut all = Vec::new();
     // What is built in is read by the tests of fabrics.

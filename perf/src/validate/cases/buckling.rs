@@ -39,7 +39,7 @@ const ROWS: usize = 16;
 /// Searched between these parts of the exact value.
 const RANGE: [f64; 2] = [0.3, 3.0];
 
-/// The cases of this room.
+/// The cases of this module.
 pub fn cases() -> Vec<ValidationCase> {
     let mut all = vec![greenhill()];
     all.extend(Ends::ALL.map(euler));

@@ -15,7 +15,7 @@ use super::search::threshold;
 /// The gap that cloth keeps from a surface (m), as the cases' fabric has it.
 const GAP: f64 = 1e-3;
 
-/// The cases of this room.
+/// The cases of this module.
 pub fn cases() -> Vec<ValidationCase> {
     let mut all = Vec::new();
     for load in ROPE_LOADS {

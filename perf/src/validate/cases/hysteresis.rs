@@ -39,7 +39,7 @@ const REST_S: f64 = 20.0;
 /// Largest error of where they stop (%).
 const TARGET: f64 = 2.0;
 
-/// The cases of this room.
+/// The cases of this module.
 pub fn cases() -> Vec<ValidationCase> {
     let styles = [MeshStyle::Grid, MeshStyle::Alternating, MeshStyle::Unstructured];
     let mut all: Vec<ValidationCase> =

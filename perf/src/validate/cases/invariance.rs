@@ -32,7 +32,7 @@ toile_base::named! {
     }
 }
 
-/// The cases of this room.
+/// The cases of this module.
 pub fn cases() -> Vec<ValidationCase> {
     MeshStyle::ALL.into_iter().flat_map(|style| Change::ALL.map(|change| case(style, change))).collect()
 }

@@ -22,7 +22,7 @@ const APART: f64 = USUAL_THICKNESS_MM as f64 * 1e-3;
 /// How much rougher the lower fabric is than the mean of both, and the upper one smoother (1): their friction is the mean.
 const ROUGHER: f64 = 1.0 / 3.0;
 
-/// The cases of this room.
+/// The cases of this module.
 pub fn cases() -> Vec<ValidationCase> {
     let mut all = Vec::new();
     for load in ROPE_LOADS {

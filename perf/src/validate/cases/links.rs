@@ -30,7 +30,7 @@ const SHEARED: [(&str, f64, f64); 2] = [("denim, tropical", 122.5, 4.915), ("woo
 const STRETCHED: StretchCurve =
     StretchCurve { knee_percent: 8.0, knee_n_m: 40.0, beyond_n_m: 3_000.0, hysteresis_n_m: 6.0 };
 
-/// The cases of this room.
+/// The cases of this module.
 pub fn cases() -> Vec<ValidationCase> {
     let mut all = vec![hung(Solver::SemiImplicit, ROWS), hung(Solver::GaussSeidel, SWEPT_ROWS)];
     for (name, g, width) in SHEARED {

@@ -17,7 +17,7 @@ use super::case::ValidationCase;
 
 /// All cases, in the order of the table.
 pub fn all() -> Vec<ValidationCase> {
-    let rooms = [
+    let modules = [
         bending::cases,
         bias::cases,
         hysteresis::cases,
@@ -29,5 +29,5 @@ pub fn all() -> Vec<ValidationCase> {
         layered::cases,
         invariance::cases,
     ];
-    rooms.into_iter().flat_map(|cases| cases()).collect()
+    modules.into_iter().flat_map(|cases| cases()).collect()
 }

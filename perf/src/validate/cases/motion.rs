@@ -12,7 +12,7 @@ use crate::validate::{CaseSetup, Level};
 
 use super::search::{crossings, peak, period};
 
-/// The cases of this room.
+/// The cases of this module.
 pub fn cases() -> Vec<ValidationCase> {
     let mut all: Vec<ValidationCase> = [1, 2, 3].map(chain).into();
     for degrees in [30.0, 60.0, 90.0, 120.0] {

@@ -23,7 +23,7 @@ const SHEAR: f64 = 1.0;
 /// That of a woven cloth (N/m).
 const CLOTH: f64 = CaseFabric::PLAIN.shear;
 
-/// The cases of this room.
+/// The cases of this module.
 pub fn cases() -> Vec<ValidationCase> {
     let mut all = Vec::new();
     for stretch in [60.0, 600.0, 6_000.0] {

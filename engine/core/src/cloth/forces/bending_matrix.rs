@@ -4,7 +4,7 @@
 //! along its fiber or over its ring times the root of its stiffness, and its coefficients add up to nothing. All of them
 //! together push a particle by -sum K_ij (x_j - x_i), where K_ij is the sum of c_i c_j over those that hold both: linear in
 //! the positions, so that nothing can go wrong where cloth is folded flat. A row is written by its own particle alone, and
-//! workers need not meet for what crosses them.
+//! workers need no barrier for stencils that cross owners.
 //!
 //! Rows side by side whose neighbours lie side by side too are a [`RowStrip`] and read columns; what is in no strip is a
 //! [`RowBlock`] of sixteen rows of much the same length, and reads records.
@@ -26,7 +26,7 @@ const LEAST_SEQUENCE: usize = 8;
 /// lengths and masses.
 const SAME: f32 = 1e-5;
 
-/// Where a row is that nobody has: a particle that is fixed, or that nothing bends.
+/// Row index of a particle without a row: one that is fixed, or that nothing bends.
 const NO_ROW: u32 = u32::MAX;
 
 /// Rows `first..first + len`, of which row `t` reads the particles `first + t + offsets`.

@@ -114,12 +114,12 @@ pub struct FrictionRows {
     pub slots: FrictionTable,
     /// From what is kept to accelerations: -w_i times the coefficient (sqrt(N/m)/kg).
     pub rows: FrictionTable,
-    /// Number of slots, those that nobody has among them.
+    /// Number of slots, unused ones included.
     pub count: usize,
     /// From a kind's slots to the next one's.
     stride: u32,
     /// Stiffness and reach of each slot, and where each begins.
-    law: Store,
+    parameters: Store,
     starts: [usize; 2],
     /// It acts every so many substeps, with the impulse of all of them.
     pub every: u32,
@@ -301,7 +301,7 @@ impl FrictionRows {
             rows: FrictionTable::new(rows),
             count,
             stride,
-            law: Store::zeros(if count > 0 { end } else { 0 }),
+            parameters: Store::zeros(if count > 0 { end } else { 0 }),
             starts,
             every: 1,
         }
@@ -314,12 +314,12 @@ impl FrictionRows {
 
     /// Stiffness of each slot while it sticks over the elastic one (1), as prepared.
     pub fn stick(&self) -> &[f32] {
-        &self.law.as_slice()[self.starts[0]..][..self.count]
+        &self.parameters.as_slice()[self.starts[0]..][..self.count]
     }
 
     /// How far what is bent gets from where it sticks before it slips (sqrt(N/m) m), of each slot, as prepared.
     pub fn reach(&self) -> &[f32] {
-        &self.law.as_slice()[self.starts[1]..][..self.count]
+        &self.parameters.as_slice()[self.starts[1]..][..self.count]
     }
 
     /// Whether anything rubs.
@@ -355,8 +355,8 @@ impl FrictionRows {
             each(slot, &mut |i, _| heaviest = heaviest.max(load[i as usize]));
             let stick = if STICKING * heaviest > most { most / heaviest } else { STICKING };
             let at = self.number(slot);
-            let law = self.law.as_mut();
-            (law[self.starts[0] + at], law[self.starts[1] + at]) = (stick, slot.limit / stick);
+            let to = self.parameters.as_mut();
+            (to[self.starts[0] + at], to[self.starts[1] + at]) = (stick, slot.limit / stick);
             least = least.min(stick);
         }
         least
@@ -364,6 +364,6 @@ impl FrictionRows {
 
     /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
-        self.slots.bytes() + self.rows.bytes() + self.law.bytes()
+        self.slots.bytes() + self.rows.bytes() + self.parameters.bytes()
     }
 }

@@ -124,7 +124,7 @@ pub struct ApplyStiffBending<'a> {
     pub turn: StiffBendingUpdate<'a>,
 }
 
-/// Which place of the room has the change of velocity after stage `j`.
+/// Index of the scratch column that holds the change of velocity after stage `j`.
 pub fn place(j: u32) -> usize {
     1 + (j as usize + 1) % 2
 }

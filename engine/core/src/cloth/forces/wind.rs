@@ -1,6 +1,6 @@
 //! Wind: drag and lift on triangles, both sides alike.
 //!
-//! The law is that of a flat plate (Wejchert and Haumann 1991, "Animation aerodynamics", with the lift of Keckeisen et
+//! The force is that on a flat plate (Wejchert and Haumann 1991, "Animation aerodynamics", with the lift of Keckeisen et
 //! al. 2004, "Wind and thermal"): with u the velocity of the air relative to the triangle, s its speed, n the unit normal
 //! on the lee side and c = u.n / s >= 0,
 //!

@@ -1,10 +1,10 @@
-//! Tests of links: what each link's rest length and compliance are in this substep.
+//! Curves of links: the rest length and compliance of each link in this substep.
 //!
-//! A link's force is that of `fabric::link_law`: three slopes and a slider in series with a spring. By the strain that
+//! A link's force is that of `fabric::link_curve`: three slopes and a slider in series with a spring. By the strain that
 //! a link is about to have, as its ends are predicted, one of its slopes holds; by the strain at the start of the substep it
 //! sticks or slips. That is a linear spring again, of another rest length and another compliance, and the solvers take these
 //! in place of the baked ones. So the tridiagonal systems stay linear, and what is stiff, the spring by which a link sticks
-//! too, is solved implicitly: no law has to be softened to fit a substep.
+//! too, is solved implicitly: no curve has to be softened to fit a substep.
 //!
 //! With e the strain, t the force over the link's stiffness k l, and s the strain at which it sticks:
 //!   t = g e - o,   g = 1, o = 0 between the knees;   g = G, o = E (G - 1) behind a knee at E with the slope G;
@@ -22,7 +22,7 @@ use super::link_gain::{NO_LEAST, Passes, gain};
 use crate::cloth::state::ParticleColumns;
 use crate::lanes::{Kernel, Lanes, MOST, Mask, Numbers, ReadColumn, Readable, Store, V3, WriteColumn, reciprocal_root};
 
-/// Kinds of links, in the order of `garment::link_laws::LinkLaws`.
+/// Number of kinds of links, in the order of `garment::link_curves::LinkCurves`.
 pub const KINDS: usize = 5;
 
 /// Shear links, weft links, fibers, fibers by index list; fibers along the bias are 0.
@@ -86,7 +86,7 @@ impl CurveRows {
         Self { rows: rows.into(), loose: loose.map(Into::into), shares }
     }
 
-    /// Of each kind that has laws.
+    /// The rows of each kind of links that has curves.
     pub fn of(garment: &Garment) -> [Self; KINDS] {
         let layout = garment.layout();
         let found = [
@@ -250,7 +250,7 @@ pub struct FollowCurves<'a> {
     pub rows: &'a CurveRows,
     /// Owner whose share is done.
     pub owner: usize,
-    /// Their laws.
+    /// Their curves.
     pub table: &'a CurveTable,
     /// Rest length and compliance as baked.
     pub baked: [&'a [f32]; 2],
@@ -343,15 +343,15 @@ impl Places for Listed<'_> {
 
 impl FollowCurves<'_> {
     /// Stiffness of what sticks, over the link's own. Links that are solved once a substep hold what their ends weigh over its square
-    /// and no more: as stiff as the rest of that, so that what sticks carries what the law says before it slips.
+    /// and no more: as stiff as the rest of that, so that a sticking link carries the force of its curve before it slips.
     #[inline(always)]
     fn sticking<L: Numbers>(&self, weight: L, compliance: L) -> L {
         let most = L::splat(STICKING as f32);
         match self.gain {
             Some(CurveGain { damped, passes: Passes::Once }) => {
                 let ends = (weight * L::splat(damped)).max(L::splat(f32::MIN_POSITIVE));
-                let room = (compliance * L::splat(self.per_dt2)).div(ends) - L::splat(1.0);
-                room.max(L::splat(LEAST_STICKING)).min(most)
+                let left = (compliance * L::splat(self.per_dt2)).div(ends) - L::splat(1.0);
+                left.max(L::splat(LEAST_STICKING)).min(most)
             }
             _ => most,
         }

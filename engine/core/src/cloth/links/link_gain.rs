@@ -1,4 +1,4 @@
-//! What Gauss-Seidel makes of one link: its gain, and what it does under the tension that it has.
+//! Gauss-Seidel of one link: its gain, and its correction under the present tension.
 
 use crate::lanes::{Mask, Numbers};
 

@@ -8,7 +8,7 @@ use toile_base::garment::Direction;
 use toile_base::garment::layout::{ConstraintRun, OwnerShare, Tuples};
 
 /// Links between particles i and i + n.
-fn ladder(n: u32, rest: f32, compliance: f32) -> Links {
+fn parallel_links(n: u32, rest: f32, compliance: f32) -> Links {
     let share = OwnerShare { zigzags: 0..0, runs: 0..1, loose: 0..0, loose_at: n, loose_serial: n };
     let set = ConstraintSet { direction: Direction::Weft, crosses: false, shares: [share, OwnerShare::default()] };
     let runs = [ConstraintRun { first: [0, n], len: n, at: 0, serial: 0, alike: false }].into();
@@ -43,7 +43,7 @@ fn solved(width: Width, positions: &[Vec3], weights: &[f32], links: &Links, gamm
 
 #[test]
 fn a_stiff_link_reaches_its_length_and_keeps_the_centre_of_mass() {
-    let (weights, link) = ([1.0, 3.0], ladder(1, 1.0, 0.0));
+    let (weights, link) = ([1.0, 3.0], parallel_links(1, 1.0, 0.0));
     // What is drawn out by a five-hundredth is there in a pass; what is twice or a hundred times as long, or half, in a few.
     for (length, passes) in [(1.002, 1), (0.998, 1), (1.02, 2), (2.0, 9), (100.0, 40), (0.5, 6)] {
         let mut p = vec![Vec3::ZERO, Vec3::X * length];
@@ -64,7 +64,7 @@ fn a_length_that_is_no_number_is_held_the_same_way_at_every_width() {
     let numbers = [0.0, 1e-30, 0.5, 1.0, 1.4, 30.0, 1e30, f32::INFINITY, f32::NAN, -f32::NAN];
     for x in numbers {
         let positions = [Vec3::ZERO, Vec3::new(x, 0.25, 0.0)];
-        let bits = |width| solved(width, &positions, &[1.0, 2.0], &ladder(1, 1.0, 0.0), 0.0);
+        let bits = |width| solved(width, &positions, &[1.0, 2.0], &parallel_links(1, 1.0, 0.0), 0.0);
         let plain: Vec<[f32; 3]> = bits(Width::One).iter().map(|p| p.to_array()).collect();
         for width in Width::ALL.into_iter().filter(|w| w.available()) {
             let got: Vec<[f32; 3]> = bits(width).iter().map(|p| p.to_array()).collect();
@@ -82,7 +82,7 @@ fn a_length_that_is_no_number_is_held_the_same_way_at_every_width() {
 #[test]
 fn collapsed_and_fixed_links_do_nothing() {
     for (w, b) in [([1.0, 1.0], Vec3::ZERO), ([0.0, 0.0], Vec3::X * 3.0)] {
-        assert_eq!(solved(Width::widest(), &[Vec3::ZERO, b], &w, &ladder(1, 1.0, 0.0), 0.0), [Vec3::ZERO, b]);
+        assert_eq!(solved(Width::widest(), &[Vec3::ZERO, b], &w, &parallel_links(1, 1.0, 0.0), 0.0), [Vec3::ZERO, b]);
     }
 }
 
@@ -92,7 +92,7 @@ fn every_width_gives_the_same_bits_and_f64_agrees() {
     let place = |i: u32| Vec3::new((i as f32 * 0.37).sin(), 0.1 * (i / n) as f32, (i as f32 * 0.71).cos()) * 0.3;
     let positions: Vec<Vec3> = (0..2 * n).map(place).collect();
     let weights: Vec<f32> = (0..2 * n).map(|i| if i % 5 == 0 { 0.0 } else { 1.0 + i as f32 }).collect();
-    let links = ladder(n, 0.12, 2.0);
+    let links = parallel_links(n, 0.12, 2.0);
     let plain = solved(Width::One, &positions, &weights, &links, 0.25);
     for width in Width::ALL.into_iter().filter(|w| w.available()) {
         assert_eq!(solved(width, &positions, &weights, &links, 0.25), plain, "{width} lanes");

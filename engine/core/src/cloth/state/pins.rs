@@ -1,4 +1,4 @@
-//! Pins: where the skinned particles are to be at the start and at the end of a step.
+//! Pins: target positions of the skinned particles at the start and at the end of a step.
 
 use glam::{Affine3A, Vec3A};
 use toile_base::garment::Garment;

@@ -1,4 +1,4 @@
-//! What depends on the settings: gains, the program's choice, how bending goes on.
+//! Data that depends on the settings: gains, the choice of program, the pace of bending.
 //!
 //! Made again in steps in which the settings have changed; the storage stays.
 
@@ -52,7 +52,7 @@ pub struct Prepared {
     pub matrix: BendingMatrix,
     /// Friction in bending of the garment.
     pub friction: FrictionRows,
-    /// Where the links are that have laws.
+    /// Links that have curves, by kind.
     pub link_curves: [CurveRows; link_curves::KINDS],
     /// How bending goes on.
     pub bend: bending::BendingPace,
@@ -90,7 +90,7 @@ impl Prepared {
             shear_every: 1,
             shear: LinkGains::new(&layout.shear),
             weft: LinkGains::new(&layout.weft),
-            // Records hold what was baked, which laws change in each substep.
+            // Records hold baked values, which curves change in each substep.
             records: [(&layout.shear, &layout.link_curves.shear), (&layout.weft, &layout.link_curves.weft)]
                 .map(|(l, link_curves)| RecordLinks::of(l, &garment.inverse_mass).filter(|_| link_curves.is_empty())),
             matrix,

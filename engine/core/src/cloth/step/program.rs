@@ -57,7 +57,7 @@ pub enum Stage {
     Crossing(u16),
     /// Tethers of all particles, whatever their set.
     Tethers,
-    /// Contact, then the velocities that follow: both are one particle's own matter, so the workers need not meet between.
+    /// Contact, then the velocities that follow: both concern one particle alone, so no barrier is needed between them.
     ContactAndVelocities,
 }
 

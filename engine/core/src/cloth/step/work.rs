@@ -1,4 +1,4 @@
-//! The stages of a step: what each does with one owner's share of a garment.
+//! The stages of a step: the work of each on one owner's share of a garment.
 //!
 //! [`OwnerShare::run`] is the list of all stages; their order is [`program`](super::program)'s. A stage has two shares, one for
 //! each owner of particles, which may run at once; all of a stage is over before any of the next begins.
@@ -89,16 +89,16 @@ struct OwnerShare<'w, 'a> {
 }
 
 impl StepWork<'_> {
-    /// Does one owner's share of a stage. Between two stages the workers meet; no share of a stage is done twice.
+    /// Does one owner's share of a stage. A barrier of the workers stands between two stages; no share of a stage is done twice.
     pub fn run(&self, stage: Stage, substep: u32, owner: usize) {
-        // SAFETY: the threads of `WorkerPool::run` meet after each phase, which is one stage, and each share of it is done
-        // once: what was written before is seen. Within a stage no place that one owner writes is touched by the other:
+        // SAFETY: `WorkerPool::run` has a barrier after each phase, which is one stage, and each share of it is done
+        // once: earlier writes are seen. Within a stage no place that one owner writes is touched by the other:
         // - the ranges of `Layout::spans` hold each particle once (wind, root motion, prediction, contact, velocities,
         //   tethers, records filled and read back, and turns of stiff bending write nothing else; a tether reads anchors,
         //   which are fixed and not written);
         // - a row of the bending matrix is its particle's owner's, and what bends is not what is pushed; a slot of friction is the
         //   owner's of the particle in its middle, a row that it pushes its own particle's;
-        // - the laws of links write to columns of their places, of which each is one owner's, and only read particles;
+        // - the curves of links write to columns of their places, of which each is one owner's, and only read particles;
         // - constraints of one set and different owners share no particle (`garment::layout`), and each has its own tension;
         //   links by records fill up with one spare record an owner;
         // - each owner has a scratch of its own, and half of the tensions to clear.

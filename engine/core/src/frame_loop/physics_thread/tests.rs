@@ -242,7 +242,7 @@ fn another_scene_takes_the_place_between_two_steps_and_in_the_replay_too() {
     let out = again(&entries);
     assert_eq!((out.ticks, out.diverged_at, out.gap_at), (rig.physics.ticks(), None, None));
     assert_eq!(out.fingerprint, rig.physics.stepper.scene.hash);
-    // From where somebody came, which is where a flight recorder begins; with a garment alone the shopper's motion is not known.
+    // From the arrival of a shopper, where a flight recorder begins; with a garment alone the shopper's motion is not known.
     let from = |number: u64| entries.iter().position(|e| matches!(e, Entry::Changed { number: n, .. } if *n == number));
     let late = again(&entries[from(2).unwrap()..]);
     assert_eq!((late.diverged_at, late.gap_at, late.fingerprint), (None, None, out.fingerprint));

@@ -1,4 +1,4 @@
-//! The kernels against independent twins: in f64 within a tolerance, in plain f32 bit for bit.
+//! The kernels against scalar references: in f64 within a tolerance, in plain f32 bit for bit.
 
 use glam::{Affine3A, DAffine3, DMat3, DQuat, DVec3, DVec4, Mat3, Vec3, Vec3A};
 use toile_base::mesh::Influences;
@@ -8,8 +8,8 @@ use super::*;
 use crate::lanes::reciprocal_root;
 use crate::skin::dual;
 
-/// Agreement of the f32 kernels with the f64 twins (m), within 3 m of the origin.
-const TWIN_TOLERANCE: f64 = 2e-6;
+/// Agreement of the f32 kernels with the f64 references (m), within 3 m of the origin.
+const REFERENCE_TOLERANCE: f64 = 2e-6;
 
 fn wide(m: &Affine3A) -> DAffine3 {
     DAffine3 { matrix3: Mat3::from(m.matrix3).as_dmat3(), translation: Vec3::from(m.translation).as_dvec3() }
@@ -71,12 +71,12 @@ fn agree<const N: usize>() {
             assert!(got.normal(v).as_dvec3().distance(n) < 1e-5, "{blend}: normal {v}");
             assert!((got.normal(v).length() - 1.0).abs() < 3e-6, "{blend}: length of normal {v}");
         }
-        assert!(worst > 0.0 && worst < TWIN_TOLERANCE, "{blend}, {N} influences: worst position {worst} m");
+        assert!(worst > 0.0 && worst < REFERENCE_TOLERANCE, "{blend}, {N} influences: worst position {worst} m");
     }
 }
 
 #[test]
-fn the_kernels_agree_with_their_f64_twins() {
+fn the_kernels_agree_with_their_f64_references() {
     agree::<1>();
     agree::<4>();
     agree::<8>();

@@ -8,10 +8,10 @@ use super::{GarmentSpan, Workgroups};
 /// Faces of all garments.
 #[derive(Debug, Clone, Default)]
 pub struct FlatFaces {
-    /// Where each particle's begin in `meeting` `[particles + 1]`.
+    /// First entry of each particle in `incident` `[particles + 1]`.
     pub starts: Vec<u32>,
-    /// The triangles at each particle; one counts once a corner.
-    pub meeting: Vec<u32>,
+    /// Triangles incident to each particle; a triangle counts once a corner.
+    pub incident: Vec<u32>,
     /// Particles of each triangle, counter-clockwise seen from outside `[triangles]`.
     pub corners: Vec<[u32; 3]>,
     /// Unit normals where the garments start `[particles]`.
@@ -33,8 +33,8 @@ impl FlatFaces {
             self.corners.push(triangle.map(|i| span.first + i));
         }
         for faces in at {
-            self.meeting.extend(faces);
-            self.starts.push(self.meeting.len() as u32);
+            self.incident.extend(faces);
+            self.starts.push(self.incident.len() as u32);
         }
         self.groups.add(span.garment, first, garment.triangles.len() as u32, 0);
         let mut normals = vec![glam::Vec3::ZERO; garment.particles()];

@@ -129,8 +129,8 @@ mod tests {
     fn skirts() -> (Garment, Flat) {
         let shape = skirt::shape(21);
         let garment = bake("skirt", "one", &shape, &skirt::fabric(&shape, Stretch::Physical)).expect("it bakes");
-        let nobody = Colliders::new(&[], &[], false).expect("nothing is not too much");
-        let flat = Flat::new(&[&garment, &garment], &[&nobody, &nobody]);
+        let no_body = Colliders::new(&[], &[], false).expect("nothing is not too much");
+        let flat = Flat::new(&[&garment, &garment], &[&no_body, &no_body]);
         (garment, flat)
     }
 
@@ -172,8 +172,8 @@ mod tests {
         // Triangles that lie anyhow have their fibers by index list.
         let shape = skirt::irregular(14, 1);
         let garment = bake("skirt", "one", &shape, &skirt::fabric(&shape, Stretch::Physical)).expect("it bakes");
-        let nobody = Colliders::new(&[], &[], false).expect("nothing is not too much");
-        let flat = Flat::new(&[&garment, &garment], &[&nobody, &nobody]);
+        let no_body = Colliders::new(&[], &[], false).expect("nothing is not too much");
+        let flat = Flat::new(&[&garment, &garment], &[&no_body, &no_body]);
         assert!(!flat.lists.heads.is_empty(), "none of its fibers crosses another");
         for set in &flat.lists.sets {
             let fiber = |k: usize| {

@@ -1,7 +1,7 @@
 //! Contact: the cloth against the body's capsules and its skin, the floor and other planes, along the whole of each substep.
 //!
-//! Budget: 30 us a step to find what is near, 15 us a substep to push, for 4,096 particles and 28 capsules (32 at most).
-//! Thread: physics; each worker calls its own [`OwnerContacts`].
+//! For 4,096 particles and 28 capsules (32 at most) the broad phase may take 30 us a step, and the pushes 15 us a substep. Each
+//! worker calls its own [`OwnerContacts`].
 
 pub mod cones;
 mod contact_settings;
@@ -42,7 +42,7 @@ pub struct ContactCounts {
     pub swept: u64,
     /// Capsules that could not be believed, summed over the steps.
     pub ignored: u64,
-    /// Most pairs of a block of particles and a capsule in one step, and those that there is room for: all there are.
+    /// Most pairs of a block of particles and a capsule in one step, and their capacity, which is all possible pairs.
     pub most_pairs: [u64; 2],
 }
 

@@ -3,7 +3,7 @@
 //! Particles are looked at in blocks of 16 that lie close together, found at load. A block's box against the capsules'
 //! boxes, lanes across capsules, leaves few capsules; those are asked for the distance of each particle from
 //! all that they sweep in the step, lanes across particles. What is near is kept as pairs of block and capsule, a bit a
-//! particle, with room for all of them; each particle meets its capsules in their order.
+//! particle, with room for all of them; each particle is tried against its capsules in their order.
 
 use toile_base::limits::{MAX_CAPSULES, MAX_PLANES};
 

@@ -132,10 +132,10 @@ impl PartList {
 }
 
 impl AskingList {
-    /// Room for so many. At load.
+    /// Makes an empty list with room for `most` particles. At load.
     pub fn new(most: usize) -> Self {
-        let room = || Vec::with_capacity(most);
-        Self { places: room(), particles: room(), found: Vec::with_capacity(most) }
+        let reserved = || Vec::with_capacity(most);
+        Self { places: reserved(), particles: reserved(), found: Vec::with_capacity(most) }
     }
 
     /// Lists the particles of a part that may lie by the skin in this step, by how far they and the skin, which moved so far in the

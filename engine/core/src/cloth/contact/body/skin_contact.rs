@@ -110,7 +110,7 @@ impl SkinContacts {
                 set(cols.skin, i as usize, Vec3A::ZERO);
             }
             let Some(surface) = body.of(list.part) else { continue };
-            // All where nobody has walked in the step before.
+            // All if no search walked in the step before.
             let walking = if asked { turn(list.particles.len(), *tick, every) } else { 0..list.particles.len() };
             let anew = LookAnew { among: walking.clone(), walk: *tick / u64::from(every), all: *tick == 0 };
             anew.look(width, cols, (body, surface), list);

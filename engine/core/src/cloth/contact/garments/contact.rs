@@ -1,4 +1,4 @@
-//! One contact between a particle and a face, or two edges: what a substep makes of it.
+//! One contact between a particle and a face, or two edges, and its solution in a substep.
 //!
 //! A contact acts on positions, as contact with the body does ([`push`](crate::cloth::contact::body)): what came too near in this
 //! substep is moved back and loses that speed, what was too near before is moved apart without gaining any, and friction holds
@@ -166,9 +166,9 @@ pub struct Resting {
     pub lift: Vec3A,
 }
 
-/// What all contacts of a pair have in common in a substep.
+/// Constants of all contacts of a pair in a substep.
 #[derive(Debug, Clone, Copy)]
-pub struct ContactLaw {
+pub struct PairConstants {
     /// Coulomb coefficient of what sticks and of what slides (1).
     pub friction: [f32; 2],
     /// Whether contacts know where they stick.
@@ -239,14 +239,14 @@ impl LayerContact {
         &mut self,
         of: [ParticleColumns<'_>; 2],
         rest: &[Resting; VERTICES],
-        law: ContactLaw,
+        constants: PairConstants,
         push: &mut ContactPush,
     ) {
         let (give, held) = self.give(rest, push);
         let n = push.normal;
         push.pinched = f32::NEG_INFINITY;
         if self.drawn > 0.0 {
-            push.carry = self.drawn * law.dt * give;
+            push.carry = self.drawn * constants.dt * give;
             push.push = n * push.carry;
             return;
         }
@@ -255,20 +255,20 @@ impl LayerContact {
         push.pinched = if push.held[0] * push.held[1] > PINCHED { depth } else { f32::NEG_INFINITY };
         let moved = x - before;
         (push.push, push.carry) = (Vec3A::ZERO, 0.0);
-        let from = if law.sticks && std::mem::take(&mut self.sticks) { self.anchor } else { before };
+        let from = if constants.sticks && std::mem::take(&mut self.sticks) { self.anchor } else { before };
         // Not so where anything is not finite: what is wrong with one garment stays in it.
         if !(depth > 0.0 && moved.length_squared() < FARTHEST_MOVE_M * FARTHEST_MOVE_M && (x - from).is_finite()) {
             return;
         }
         let along = moved.dot(n);
         let load = depth.min((-along).max(0.0));
-        let carried = (depth - load).min(law.push * law.dt);
+        let carried = (depth - load).min(constants.push * constants.dt);
         let slip = (x - from).reject_from_normalized(n);
         let sliding = ((before - from) * BACK + moved).reject_from_normalized(n);
         let slid = sliding.length();
         // What lies on the upper side presses as well, as much as it did in the substep before.
         let pressed = if give > 0.0 { self.passed.dot(n).abs() / give } else { 0.0 };
-        let [holds, slows] = law.friction.map(|mu| mu * (load + pressed.min(MOST_ABOVE * load)));
+        let [holds, slows] = constants.friction.map(|mu| mu * (load + pressed.min(MOST_ABOVE * load)));
         let slowed = if slid <= holds { sliding } else { sliding * (slows / slid).min(1.0) };
         let kept = if slid <= holds { slip } else { slip.clamp_length_max(slows / BACK) };
         (self.sticks, self.anchor) = (true, x - kept);

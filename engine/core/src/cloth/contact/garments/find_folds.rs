@@ -1,7 +1,7 @@
 //! Finding folds: which particles of a garment may come too near to each other within a step.
 //!
-//! Clusters of sixteen particles meet by their boxes, then their particles by the other's box, then one by one. How far is
-//! looked follows from how fast the two move against each other, and how long it is until they are looked at again.
+//! Clusters of sixteen particles are tested by their boxes, then their particles by the other's box, then one by one. The search
+//! distance follows from the speed of the two against each other and from the time until the next search.
 
 use glam::Vec3A;
 
@@ -32,7 +32,7 @@ pub struct FoldPair {
 pub struct FindFolds<'a> {
     /// The clusters.
     pub clusters: &'a Clusters,
-    /// How far who keeps from whom.
+    /// Distances that the particles keep from each other.
     pub folds: &'a FoldSurface,
     /// Boxes of the clusters.
     pub boxes: &'a ClusterBoxes,
@@ -162,8 +162,8 @@ impl FindFolds<'_> {
         bits
     }
 
-    /// Meets the particles of two clusters nearer than `reach` (m); `joined` says who is joined with whom. Gives how many
-    /// pairs there was no room for.
+    /// Adds the pairs of two clusters' particles nearer than `reach` (m); `joined` says which particles are joined. Returns the
+    /// number of pairs that did not fit.
     #[inline(always)]
     fn pair<L: Lanes>(&mut self, [a, b]: [usize; 2], reach: f32, joined: &Joined) -> u64 {
         let mut rows = self.near_box::<L>(a, b, reach) & self.clusters.members(a);

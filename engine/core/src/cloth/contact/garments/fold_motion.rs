@@ -1,4 +1,4 @@
-//! Where the clusters of a garment are and how they move at the start of a step.
+//! Positions and motion of a garment's clusters at the start of a step.
 
 use super::flatness::Flatness;
 use crate::cloth::state::ParticleColumns;

@@ -1,4 +1,4 @@
-//! Folds of a garment: what keeps its particles apart.
+//! Folds of a garment: the contacts that keep its particles apart.
 //!
 //! Particles of one garment that are not joined keep as far apart as the edges of their triangles ask for: then no two of its
 //! triangles can cross (Wu et al. 2020, "A safe and fast repulsion method for GPU-based cloth self collisions", theorem 1), and no
@@ -6,8 +6,8 @@
 //! the plane between the two. Only where the parts of the body tell that two pieces meet front to front, one leg and the other
 //! for example, the side is known: there the two are brought apart from wherever they are.
 //!
-//! What crosses all the same, because the body or the pins have left no room, is drawn out by [`Uncross`]; who is in that keeps
-//! apart from nobody meanwhile, since it would be held where it is.
+//! Cloth that crosses all the same, because the body or the pins have left no room, is drawn out by [`Uncross`]. Its particles
+//! keep apart from no other meanwhile, since that would hold them in place.
 
 use glam::Vec3A;
 use toile_base::garment::Part;
@@ -21,9 +21,10 @@ use super::pair::{PairScene, opposite};
 use super::uncross::{Tangle, Uncross};
 use crate::cloth::state::get;
 
-/// Pairs that one worker keeps of a garment's particles, a particle of it. Of more the nearest are kept, by how far apart they are to
-/// be, then those of the lowest index; the others are counted. There is room enough: a particle has at most twelve others around it that keep apart, each
-/// pair is one share's, and few are folded everywhere; wide skirts and trouser legs come to more than six while they fall.
+/// Capacity of one worker for pairs of a garment's particles, per particle. If there are more pairs, it keeps the nearest, relative
+/// to the distance that they are to keep, then those of the lowest index; the others are counted. The capacity is enough: at most
+/// twelve particles around another keep apart from it, each pair is one share's, and few garments are folded everywhere. Wide
+/// skirts and trouser legs come to more than six while they fall.
 pub const PAIRS_A_PARTICLE: usize = 8;
 
 /// Which pairs are taken, by how far apart they are as a part of what they keep apart (1): all, and where there is no room those
@@ -42,7 +43,7 @@ const FACING: f32 = -0.3;
 /// What folds of one garment are found from.
 #[derive(Clone, Copy)]
 pub struct FoldScene<'a> {
-    /// How far who keeps from whom.
+    /// Distances that the particles keep from each other.
     pub surface: &'a FoldSurface,
     /// Where the clusters are and how they move.
     pub motion: &'a FoldMotion,
@@ -63,7 +64,7 @@ pub struct FoldShare {
     uncross: Uncross,
 }
 
-/// What there was no room for, counted since the garment was made.
+/// Pairs and crossings that did not fit, counted since the garment was made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct FoldCounts {
     /// Most pairs that one worker kept at once.
@@ -147,7 +148,7 @@ impl FoldShare {
         self.unknown = true;
     }
 
-    /// What there was no room for.
+    /// Counts of the pairs and crossings that did not fit.
     pub fn counts(&self) -> FoldCounts {
         let Uncross { most, left_out, .. } = self.uncross;
         let pairs_room = self.pairs.iter().map(Vec::capacity).sum::<usize>() as u64;

@@ -1,4 +1,4 @@
-//! How far the particles of one garment keep from each other: found at load from where it starts.
+//! Distances that the particles of one garment keep from each other: found at load from its start.
 
 use glam::Vec3;
 use toile_base::garment::Garment;
@@ -32,7 +32,7 @@ pub type Joined = [u16; MOST];
 pub struct NearCluster {
     /// Which.
     pub other: u32,
-    /// Where it stands in the list who is joined with whom.
+    /// Index in the list of joined particles.
     joined: u32,
 }
 
@@ -56,7 +56,7 @@ pub struct FoldSurface {
     /// Where each cluster's near ones begin in `near`, and the end of the last `[clusters + 1]`.
     near_start: Box<[u32]>,
     near: Box<[NearCluster]>,
-    /// Who is joined with whom, of near clusters; the first is nobody with nobody.
+    /// Particles of near clusters that are joined with each other; the first entry joins none.
     joined: Box<[Joined]>,
 }
 
@@ -119,7 +119,7 @@ impl FoldSurface {
         &self.near[self.near_start[cluster] as usize..self.near_start[cluster + 1] as usize]
     }
 
-    /// Who of a cluster is joined with whom of one that is near to it; nobody where none is.
+    /// Particles of a cluster that are joined with those of a near one; no pair if `near` is `None`.
     #[inline(always)]
     pub fn joined(&self, near: Option<&NearCluster>) -> &Joined {
         &self.joined[near.map_or(0, |n| n.joined as usize)]
@@ -131,7 +131,7 @@ impl FoldSurface {
         self.neighbours[range].contains(&j) || self.at(i).distance_squared(self.at(j)) < self.sewn2
     }
 
-    /// Finds which clusters are near to each other, and who is joined with whom.
+    /// Finds the clusters that are near to each other, and their joined particles.
     fn take_near(&mut self, clusters: &Clusters, at: &[Vec3]) {
         let mut cluster_of = vec![0; self.start.len() - 1];
         for c in 0..clusters.len() {

@@ -1,7 +1,6 @@
 //! Layers: garments over one another, stepped together so that the outer one stays outside.
 //!
-//! Budget: 1 ms a step for 10,000 particles that lie on each other, shared by two workers; no allocation after load.
-//! Thread: physics; two workers share a step.
+//! A step of 10,000 particles that lie on each other may take 1 ms, shared by two workers. Nothing is allocated after load.
 //!
 //! The side of a contact comes from the wearing order alone: a particle of an outer garment belongs in front of an inner
 //! garment's face, one of an inner garment behind an outer garment's. So an order that was lost comes back. Within a substep each
@@ -53,8 +52,8 @@ pub use order::wearing_order;
 pub use tuck::{TuckError, tuck_in};
 pub use uncross::MOST_CROSSINGS;
 
-/// Garments that lie farther apart than this where they start (m) never meet.
-const MEETING_M: f32 = 0.15;
+/// Garments that lie farther apart than this where they start (m) never touch.
+const NEAR_M: f32 = 0.15;
 
 /// What layer contact did, counted since the garments were made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -121,7 +120,7 @@ impl GarmentContact {
         let boxes: Vec<[Vec3; 2]> = garments.iter().map(bounds).collect();
         let meet = |a: usize, b: usize| {
             let ([low, high], [other_low, other_high]) = (boxes[a], boxes[b]);
-            low.cmple(other_high + MEETING_M).all() && other_low.cmple(high + MEETING_M).all()
+            low.cmple(other_high + NEAR_M).all() && other_low.cmple(high + NEAR_M).all()
         };
         let surfaces: Box<[GarmentSurface]> = garments.iter().map(|g| GarmentSurface::new(g).with_folds(g)).collect();
         let folded = (0..garments.len()).filter(|&g| surfaces[g].folds.is_some());

@@ -3,7 +3,7 @@
 use glam::Vec3A;
 use toile_base::garment::{Garment, Part, Tuck};
 
-use super::contact::{CONTACTS_AN_EDGE, ContactLaw};
+use super::contact::{CONTACTS_AN_EDGE, PairConstants};
 use super::garment_surface::{GarmentMotion, GarmentSurface};
 use super::thickness::thickness;
 use crate::cloth::ContactRates;
@@ -145,7 +145,7 @@ impl GarmentPair {
                 Some(if turned { front } else { (front + own).normalize_or_zero() })
             }
             (Wearing::Inner, _) if !turned => Some(-(front + own).normalize_or_zero()),
-            // Rolled up cloth does not tell, nor does cloth of parts that nobody knows.
+            // Rolled up cloth does not tell, nor does cloth of unknown parts.
             (Wearing::Inner, Some(false)) => None,
             (Wearing::Inner, None) => (height > -FACING_M).then_some(front),
         }
@@ -175,12 +175,12 @@ impl GarmentPair {
         if self.is_fold() { rates.folds } else { rates.layers }
     }
 
-    /// What its contacts have in common in a substep of `dt` (s); `static_friction` is that of what sticks over that of what
-    /// slides.
-    pub fn law(&self, dt: f32, static_friction: f32) -> ContactLaw {
+    /// Constants of its contacts in a substep of `dt` (s); `static_friction` is the coefficient of sticking contacts over that of
+    /// sliding ones.
+    pub fn constants(&self, dt: f32, static_friction: f32) -> PairConstants {
         let friction = [self.friction * static_friction, self.friction];
         let push = PUSH_M_S[usize::from(self.is_fold())];
-        ContactLaw { friction, sticks: !self.is_fold(), push, dt }
+        PairConstants { friction, sticks: !self.is_fold(), push, dt }
     }
 
     /// The particles of a share: the first half and the second.

@@ -196,8 +196,8 @@ impl PairShare {
         self.slack.as_mut()[k] = 0.0;
     }
 
-    /// What of a garment's folds there was no room for; a particle makes one contact with another garment, so that there is room
-    /// for all of these.
+    /// Counts of a garment's folds that did not fit. A particle makes one contact with another garment, so all of those contacts
+    /// fit.
     pub fn fold_counts(&self) -> FoldCounts {
         self.folds.as_ref().map(FoldShare::counts).unwrap_or_default()
     }

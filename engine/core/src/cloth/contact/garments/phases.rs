@@ -1,4 +1,4 @@
-//! The phases of a step of several garments, in their order. Between two of them the workers meet.
+//! The phases of a step of several garments, in their order. A barrier of the workers stands between any two of them.
 
 use toile_base::limits::MAX_GARMENTS;
 

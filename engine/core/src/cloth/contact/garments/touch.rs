@@ -1,7 +1,7 @@
 //! Touch lists: for each particle of a garment the contacts that act on it, level by level, in a fixed order.
 //!
-//! Particles gather what contacts do to them; no contact writes to a particle. So sums have one order, whoever works. They are listed
-//! in two parts, so that two workers gather at once.
+//! Particles gather what contacts do to them; no contact writes to a particle. So sums have one order, whichever worker adds them
+//! up. They are listed in two parts, so that two workers gather at once.
 
 use toile_base::garment::Garment;
 use toile_base::garment::layout::OWNERS;

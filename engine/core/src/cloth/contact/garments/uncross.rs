@@ -2,8 +2,8 @@
 //!
 //! Where cloth passes through itself its faces meet in a curve. Each edge and face that it runs through are moved so that the
 //! curve becomes shorter, until there is none (Volino and Magnenat-Thalmann 2006, "Resolving surface collisions through
-//! intersection contour minimization", section 3). Nothing is remembered for it and no inside is asked for, so it also ends
-//! what nobody saw begin; and it is slow, so that it never throws anything.
+//! intersection contour minimization", section 3). It remembers nothing and needs no inside, so it also removes crossings whose
+//! begin was not detected. It is slow, so that it never throws anything.
 
 use glam::Vec3A;
 use toile_base::numeric::portable;
@@ -22,7 +22,7 @@ pub const MOST_CROSSINGS: usize = 1024;
 /// Every so many steps the edges of two particles are tried: 66 ms.
 const TRIED_STEPS: u64 = 8;
 
-/// So many steps after one of its edges has last crossed anything a particle keeps apart from nobody.
+/// Number of steps after the last crossing of one of its edges in which a particle keeps apart from no other.
 const UNSURE_STEPS: u8 = 32;
 
 /// Fastest that a crossing is drawn apart (m/s).
@@ -68,7 +68,7 @@ impl Crossing {
 #[derive(Debug, Clone)]
 pub struct Uncross {
     active: Vec<Crossing>,
-    /// For how many steps each particle keeps apart from nobody `[particles]`.
+    /// Number of steps for which each particle keeps apart from no other `[particles]`.
     unsure: Box<[u8]>,
     /// Most crossings that were kept at once.
     pub most: usize,

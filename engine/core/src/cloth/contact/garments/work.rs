@@ -1,8 +1,8 @@
-//! What each worker does in each phase of a step of several garments.
+//! Work of each worker in each phase of a step of several garments.
 //!
-//! Between two phases the workers meet. Within one, what a worker writes belongs to it alone: particles to the worker of their
-//! owner's share, or of their garment where one worker owns it whole; contacts to the worker whose half of the particles they are of;
-//! what contacts do to particles to the worker of one half of those that are touched.
+//! A barrier of the workers stands between two phases. Within a phase a worker alone writes its data. Particles belong to the worker
+//! of their owner's share, or of their garment if one worker owns it whole. Contacts belong to the worker of their half of the
+//! particles. Pushes of contacts on particles belong to the worker of one half of the touched particles.
 
 use std::marker::PhantomData;
 use std::sync::atomic::AtomicU64;
@@ -34,7 +34,7 @@ struct Cells<'a, T> {
     owner: PhantomData<&'a mut [T]>,
 }
 
-// SAFETY: it hands out `&mut T` and `&T` to whoever keeps to the rules of `own` and `read`, and T may go to other threads.
+// SAFETY: it hands out `&mut T` and `&T` to callers that keep to the rules of `own` and `read`, and T may go to other threads.
 unsafe impl<T: Send + Sync> Sync for Cells<'_, T> {}
 
 impl<'a, T> Cells<'a, T> {
@@ -43,7 +43,7 @@ impl<'a, T> Cells<'a, T> {
     }
 
     /// # Safety
-    /// Until the workers next meet, nobody else reads or writes the item.
+    /// Until the next barrier, no other thread reads or writes the item.
     #[expect(clippy::mut_from_ref, reason = "each item is one worker's")]
     unsafe fn own(&self, i: usize) -> &mut T {
         assert!(i < self.len, "there is no such item");
@@ -52,7 +52,7 @@ impl<'a, T> Cells<'a, T> {
     }
 
     /// # Safety
-    /// Until the workers next meet, nobody else reads or writes any of them.
+    /// Until the next barrier, no other thread reads or writes any of them.
     #[expect(clippy::mut_from_ref, reason = "all are one worker's")]
     unsafe fn own_all(&self) -> &mut [T] {
         // SAFETY: the slice that it was made of; see above.
@@ -60,7 +60,7 @@ impl<'a, T> Cells<'a, T> {
     }
 
     /// # Safety
-    /// Until the workers next meet, nobody writes the item.
+    /// Until the next barrier, no thread writes the item.
     unsafe fn read(&self, i: usize) -> &T {
         assert!(i < self.len, "there is no such item");
         // SAFETY: within the slice; see above.
@@ -215,7 +215,7 @@ impl<'a> LayerWork<'a> {
         // SAFETY: positions and velocities are written in `Before`, `Stage`, `Whole`, `Finish` and `End`, where each worker writes the
         // particles of its owner's share, as `StepWork::run` says, or of the garments that are its own, and in `Apply`, where each
         // writes those of its part; `Motions` writes what the body gives, by the garment's
-        // worker; they are read by both in `Find`, `Lists` and `Solve`, in which nobody writes them.
+        // worker; they are read by both in `Find`, `Lists` and `Solve`, in which no worker writes them.
         unsafe { self.works[garment].columns.open() }.particles
     }
 
@@ -307,7 +307,7 @@ impl<'a> LayerWork<'a> {
     }
 
     /// Contact with the body and the velocities, and what was seen of what holds what. Of a shared garment one owner's particles,
-    /// which nobody else's depend on.
+    /// which no other particles depend on.
     fn finish(&self, garment: usize, substep: usize, share: usize) {
         self.stage(garment, self.stages(garment).0, substep, share);
         let note = |part: usize| {
@@ -386,7 +386,7 @@ impl<'a> LayerWork<'a> {
         }
         let (above, of) = if pair.wearing == Wearing::Outer { (0, pair.particles) } else { (1, pair.faces) };
         let borne = |i: u32| {
-            // SAFETY: nobody writes them in `Solve`.
+            // SAFETY: no worker writes them in `Solve`.
             let bearing = unsafe { self.bearing[of].read(i as usize) };
             (bearing.owed, bearing.held_by)
         };
@@ -402,15 +402,16 @@ impl<'a> LayerWork<'a> {
             own.contacts.pairs_mut().for_each(|(contact, _)| contact.weigh(columns, load));
         }
         let settings = self.works[0].step.settings;
-        let law = self.pairs[pair].law(settings.step_seconds / self.substeps as f32, settings.static_friction);
+        let dt = settings.step_seconds / self.substeps as f32;
+        let constants = self.pairs[pair].constants(dt, settings.static_friction);
         let resting = of.map(|g| &self.resting[g]);
         for (contact, push) in own.contacts.pairs_mut() {
             let mut rest = [Resting::default(); VERTICES];
             for (k, rest) in rest.iter_mut().enumerate() {
-                // SAFETY: nobody writes them in `Solve`.
+                // SAFETY: no worker writes them in `Solve`.
                 *rest = *unsafe { resting[contact.side(k)].read(contact.vertices[k] as usize) };
             }
-            contact.solve(columns, &rest, law, push);
+            contact.solve(columns, &rest, constants, push);
         }
     }
 }

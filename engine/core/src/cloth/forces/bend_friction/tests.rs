@@ -1,4 +1,4 @@
-//! Friction in bending against its law in f64, against itself at every width, and against what must stay.
+//! Friction in bending against its curve in f64, against itself at every width, and against the quantities that must stay.
 
 use glam::{DVec3, Quat, Vec3};
 use toile_assets::scene::skirt::{self, Stretch};
@@ -93,7 +93,7 @@ fn bent(garment: &Garment, slot: &FrictionSlot, places: &[Vec3]) -> (DVec3, f64)
     (normal, others.map(|(i, c)| (at(i) - at(slot.centre)) * f64::from(c)).sum::<DVec3>().dot(normal))
 }
 
-/// The same pushes by the law in f64, slot after slot.
+/// The same pushes by the curve in f64, slot after slot.
 fn exact(garment: &Garment, elements: &mut [FrictionElement], places: &[Vec3]) -> Vec<DVec3> {
     let mut out = vec![DVec3::ZERO; places.len()];
     let friction = &garment.layout().friction;
@@ -114,7 +114,7 @@ fn shaken(garment: &Garment, time: f32) -> Vec<Vec3> {
 }
 
 #[test]
-fn the_rows_are_the_law_in_f64_and_the_same_bits_at_every_width() {
+fn rows_follow_the_curve_identically_at_every_width() {
     for garment in garments() {
         let widths: Vec<Width> = Width::ALL.into_iter().filter(|w| w.available()).collect();
         let mut rubbed: Vec<Rubbed<'_>> = widths.iter().map(|w| Rubbed::new(&garment, *w)).collect();

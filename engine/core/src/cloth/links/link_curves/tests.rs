@@ -22,7 +22,7 @@ fn link_curve() -> LinkCurve {
     LinkCurve { knees: [-0.004, 0.02], behind: [0.01, 12.0], half_width: 1.2, ..LinkCurve::plain(300.0) }
 }
 
-/// Of the same law; of friction, elongation at which the link would carry it.
+/// The table of the same curve; for friction, the elongation at which the link would carry it.
 fn table(link_curve: &LinkCurve) -> CurveTable {
     let ([lower, upper], [below, above]) = (link_curve.knees, link_curve.behind);
     let one = [lower, below, upper, above, link_curve.half_width / link_curve.slope].map(|v| v as f32);
@@ -35,7 +35,7 @@ fn strain(link: u32, k: u32) -> f64 {
 }
 
 #[test]
-fn what_links_are_carries_what_the_law_of_f64_says_at_every_width() {
+fn links_carry_the_force_of_their_f64_curve() {
     let table = table(&link_curve());
     let links: Vec<(u32, [u32; 2])> = (0..LINKS).map(|i| (i, [i, LINKS + i])).collect();
     // One by one, they are in no row.
@@ -111,7 +111,7 @@ fn sheet([columns, rows]: [u32; 2], [width, height]: [f32; 2], triangles: bool) 
     (points, faces)
 }
 
-/// A sheet of cloth that has laws, pinned nowhere.
+/// A sheet of cloth that has link curves, pinned nowhere.
 fn cloth((positions, faces): (Vec<Vec3>, Vec<[u32; 4]>), fabric: &Fabric) -> Garment {
     let mut shape = Shape { faces, ..Shape::default() };
     for p in positions {
@@ -186,7 +186,7 @@ fn a_loop_of_shear_gives_stiffness_and_width_back_on_any_mesh() {
 }
 
 #[test]
-fn fabrics_without_numbers_have_no_laws() {
+fn fabrics_without_numbers_have_no_curves() {
     let garment = cloth(sheet([6, 6], [0.02; 2], false), &toile_assets::fabric::built_in("cotton-lawn").unwrap());
     assert!(!garment.layout().link_curves.acts());
     assert_eq!(CurveState::new(garment.layout()).bytes(), 0);

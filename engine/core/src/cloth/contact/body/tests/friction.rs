@@ -33,17 +33,17 @@ fn a_slope_holds_below_the_static_angle_and_not_beyond() {
     // Beyond it the kinetic coefficient brakes: s = g (sin - mu cos) t^2 / 2.
     let tangent = HOW.friction_static * 1.05;
     let cosine = 1.0 / (1.0 + tangent * tangent).sqrt();
-    let law = 0.5 * GRAVITY * cosine * (tangent - HOW.friction_kinetic);
+    let exact = 0.5 * GRAVITY * cosine * (tangent - HOW.friction_kinetic);
     let went = slope(tangent, 0.0, 1.0);
-    assert!((went / law - 1.0).abs() < 0.01, "{went} m instead of {law} m");
+    assert!((went / exact - 1.0).abs() < 0.01, "{went} m instead of {exact} m");
 }
 
 #[test]
-fn what_slides_on_the_level_stops_after_the_laws_distance_and_time() {
+fn sliding_on_the_level_stops_after_coulombs_distance() {
     let v = 1.0;
-    let law = v * v / (2.0 * HOW.friction_kinetic * GRAVITY);
+    let exact = v * v / (2.0 * HOW.friction_kinetic * GRAVITY);
     let went = slope(0.0, v, 1.0);
-    assert!((went / law - 1.0).abs() < 0.02, "{went} m instead of {law} m");
+    assert!((went / exact - 1.0).abs() < 0.02, "{went} m instead of {exact} m");
 }
 
 #[test]

@@ -34,7 +34,7 @@ fn every_width_and_every_split_gives_the_same_bits() {
 }
 
 #[test]
-fn contact_is_that_of_the_plain_twin() {
+fn contact_agrees_with_the_scalar_reference() {
     let mut random = Random(3);
     let mut touched = 0;
     for case in 0..4_000 {

@@ -1,4 +1,4 @@
-//! The plain twin: contact of one particle and one capsule in f64, written for reading.
+//! Scalar reference: contact of one particle and one capsule in f64, written for reading.
 
 use glam::{DVec3, Vec4, Vec4Swizzles};
 
