@@ -145,7 +145,7 @@ fn share(picture: &Picture, from: f64, colour: [u8; 3]) -> f64 {
     part.chunks_exact(3).filter(close).count() as f64 / (part.len() / 3) as f64
 }
 
-/// Where the page begins on which nobody is there; other pages stand anywhere.
+/// Where the page begins on which no person is in view; other pages stand anywhere.
 const LOW: f64 = 0.6;
 
 #[test]
@@ -173,7 +173,7 @@ fn a_shop_shows_its_own_screens_and_a_change_is_seen_when_the_visitor_has_left()
     kiosk.enter(0);
     kiosk.wait("the page of clothes", |seen| !has_primary(seen) && share(seen, 0.0, PAPER) > 0.1);
     kiosk.keep("garments");
-    // The shop changes while somebody looks: they keep what they see.
+    // The shop changes while a person looks: they keep what they see.
     let text = fs::read_to_string(folder.join("catalogue.toml")).unwrap();
     let night = text
         .replace("garments = [", "garments = [\"half.toile\", ")

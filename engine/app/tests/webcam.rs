@@ -29,7 +29,7 @@ fn is_fetched() -> bool {
     false
 }
 
-/// A folder of pictures of somebody who stands, each with noise of its own; every tenth is cut short.
+/// A folder of pictures of a person who stands, each with noise of its own; every tenth is cut short.
 fn write_pictures(folder: &Path, count: usize) {
     fs::create_dir_all(folder).unwrap();
     let person = image::load_from_memory(include_bytes!("../../../engine/pose/tests/data/standing.png")).unwrap();

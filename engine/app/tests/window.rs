@@ -67,7 +67,7 @@ impl Kiosk {
         let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/screens").join(format!("{name}.png"));
         let shot = self.shots.join(format!("{name}.png"));
         if std::env::var_os("TOILE_KEEP_SCREENS").is_some() {
-            // Somebody steps in soon after the start, and is measured and dressed.
+            // A person steps in soon after the start, and is measured and dressed.
             std::thread::sleep(Duration::from_secs(match name {
                 "1-attract" => 4,
                 "2-fitting" => 16,
@@ -149,7 +149,7 @@ fn a_visit_by_mouse_and_keys_from_arriving_to_leaving() {
     let kiosk = Kiosk::start(&scratch);
     kiosk.expect("1-attract", LOW);
     kiosk.display.give_keys("Toile");
-    // Somebody steps in and is measured; nothing is pressed for it.
+    // A person steps in and is measured; nothing is pressed for it.
     kiosk.expect("2-fitting", COLUMN);
     kiosk.click(3);
     kiosk.expect("3-zones", COLUMN);

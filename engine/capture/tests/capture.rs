@@ -82,7 +82,7 @@ fn a_sequence_of_silhouettes_is_followed_and_written() {
         let positions: Vec<DVec3> = body.positions.iter().map(|p| p.as_dvec3() + along).collect();
         let mut buffer = DepthBuffer::new([240, 320], 1.0);
         buffer.draw(&rig.cameras[camera], &positions, &body.triangles);
-        // Nobody is there in the third frame.
+        // No person is in view in the third frame.
         let white = |x: u32, y: u32| frame != 2 && buffer.triangle[(y * 240 + x) as usize] != u32::MAX;
         png(&scratch, &format!("masks/cam{}/{frame:03}.png", camera + 1), [240, 320], white);
     }

@@ -23,7 +23,7 @@ pub struct MountArgs {
     /// Turn its images clockwise by so many degrees, for a camera that lies on its side: 0, 90, 180 or 270
     #[arg(long, value_name = "DEG", value_parser = PossibleValuesParser::new(TURNS), default_value = "0")]
     pub turned: String,
-    /// Height of a webcam above the floor (mm), if it is to say how tall somebody is
+    /// Height of a webcam above the floor (mm), if it is to say how tall a person is
     #[arg(long, value_name = "MM", value_parser = RangedU64ValueParser::<u32>::new().range(200..=4_000))]
     pub camera_height: Option<u32>,
     /// By how much a webcam looks down (degrees)
@@ -63,7 +63,7 @@ impl MountArgs {
 pub struct CameraUse {
     /// Its colour images, where they are looked at.
     pub colour: bool,
-    /// Its pictures with all that was seen in them, for somebody to see themselves.
+    /// Its pictures with all that was seen in them, for a person to see themselves.
     pub own_picture: bool,
 }
 

@@ -150,7 +150,7 @@ fn a_portrait_becomes_a_head_or_a_word() {
     let made = maker.make(&near, &[Sex::Female]).unwrap();
     println!("a head of a picture in {:.0} ms", begun.elapsed().as_secs_f64() * 1e3);
     assert!(made.len() == 1 && made[0].sex() == Sex::Female);
-    // Somebody who stands before a webcam that sees all of them.
+    // A person who stands before a webcam that sees all of them.
     let whole = Shot { below: 0.7, distance: 2.3, height: 0.35, size: Size::new(720, 1280), fov_y: 0.84, ..SHOT };
     let mut standing = portrait(&whole);
     keep("standing", &standing.picture);

@@ -73,7 +73,7 @@ toile_base::named! {
         Lite = "lite",
         /// Landmarks, the larger one.
         Full = "full",
-        /// Where somebody is.
+        /// Where a person is.
         Detector = "detector",
         /// A face's detector and points, two networks in one file.
         Face = "face",

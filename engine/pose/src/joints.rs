@@ -25,22 +25,22 @@ const KNEES: [usize; 2] = [25, 26];
 const ANKLES: [usize; 2] = [27, 28];
 const HEELS: [usize; 2] = [29, 30];
 
-/// How sure landmarks have to be to say where somebody stands.
+/// How sure landmarks have to be to say where a person stands.
 const SURE: f32 = 0.5;
 
 /// Fewest landmarks that say it.
 const FEWEST: usize = 4;
 
-/// Distances of somebody from the camera (m).
+/// Distances of a person from the camera (m).
 const DISTANCES: std::ops::RangeInclusive<f32> = 0.3..=12.0;
 
 /// Frames of whoever steps in, in which they stand upright to be measured (1): a second.
 const STANDING: u32 = 30;
 
-/// Largest lean that is the camera's or the network's, and not somebody's own (rad): 40 degrees.
+/// Largest lean that is the camera's or the network's, and not a person's own (rad): 40 degrees.
 const LARGEST_LEAN: f32 = 0.7;
 
-/// Smoothing of somebody's distance (m): whoever comes nearer at 1 m/s is some 150 mm behind.
+/// Smoothing of a person's distance (m): whoever comes nearer at 1 m/s is some 150 mm behind.
 const DISTANCE: OneEuroSettings = OneEuroSettings { min_cutoff: 0.6, beta: 0.5 };
 
 /// Longest time between two frames across which a distance is smoothed (s).
@@ -93,7 +93,7 @@ impl LimbLengths {
     }
 }
 
-/// By how much somebody leans away from the camera (rad); camera axes.
+/// By how much a person leans away from the camera (rad); camera axes.
 fn lean(up: Vec3) -> f32 {
     up.z.atan2(-up.y)
 }
@@ -130,13 +130,13 @@ impl JointPlacer {
         }
     }
 
-    /// Somebody else may stand there.
+    /// Another person may stand there.
     pub fn reset(&mut self) {
         self.distance = FollowedDistance::default();
         (self.first, self.leans) = (None, ([0.0; 3], 0));
     }
 
-    /// Joints of landmarks in a picture of this size (px), for somebody of this stature (m).
+    /// Joints of landmarks in a picture of this size (px), for a person of this stature (m).
     pub fn joints(&mut self, landmarks: &Landmarks, size: [u32; 2], stature: f32, time_ns: u64) -> Joints {
         let lengths = LimbLengths::of(&self.mean, stature / self.mean_stature);
         let level = self.level(landmarks, size);
@@ -154,7 +154,7 @@ impl JointPlacer {
         self.map.joints(time_ns, &points)
     }
 
-    /// From the network's axes to level ones. It gives a body as seen along the ray to its hips: a camera that looks down, or has somebody
+    /// From the network's axes to level ones. It gives a body as seen along the ray to its hips: a camera that looks down, or has a person
     /// beside the middle of its picture, sees them turned by as much.
     fn level(&self, landmarks: &Landmarks, [w, h]: [u32; 2]) -> Mat3 {
         let focal = self.mount.focal * w.max(h) as f32;
@@ -212,7 +212,7 @@ impl JointPlacer {
     }
 }
 
-/// How far away somebody is from frame to frame: nobody comes nearer by jumps, and what a limb is turned wrongly by looks like it.
+/// How far away a person is from frame to frame: nobody comes nearer by jumps, and what a limb is turned wrongly by looks like it.
 #[derive(Debug, Clone, Copy, Default)]
 struct FollowedDistance {
     filter: OneEuro,
@@ -296,7 +296,7 @@ mod tests {
     use super::*;
     use crate::landmarks::PoseLandmark;
 
-    /// Somebody of the network's own idea of size, upright before a level camera, seen from a distance.
+    /// A person of the network's own idea of size, upright before a level camera, seen from a distance.
     fn somebody(scale: f32, distance: f32) -> Landmarks {
         let shapes = Shapes::of(Sex::Female);
         let skeleton = shapes.skeleton(shapes.mean());

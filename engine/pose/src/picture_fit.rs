@@ -30,7 +30,7 @@ const FARTHEST_M: f32 = 0.14;
 /// Share of a new distance: size in the picture is noisy, and nobody comes nearer by jumps.
 const DISTANCE_SHARE: f32 = 0.3;
 
-/// Distances of somebody from the camera (m).
+/// Distances of a person from the camera (m).
 const DISTANCES: std::ops::RangeInclusive<f32> = 0.4..=12.0;
 
 /// Landmarks farther than this from a body's joints, in the root of their mean square, are nobody's (part of the picture's longer
@@ -80,7 +80,7 @@ pub struct PictureFitter {
 }
 
 impl PictureFitter {
-    /// Somebody else may stand there.
+    /// Another person may stand there.
     pub fn reset(&mut self) {
         self.distance = None;
     }

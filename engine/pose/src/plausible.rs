@@ -10,7 +10,7 @@ pub const HIPS: [usize; 2] = [23, 24];
 pub const SHOULDERS: [usize; 2] = [11, 12];
 
 /// Limbs, left and right: from, to; and the shortest and the longest that a landmark's own metres have for people (m), from a child of
-/// 1.0 m to somebody of 2.2 m, and a third of error.
+/// 1.0 m to a person of 2.2 m, and a third of error.
 const LIMBS: [([usize; 2], [f32; 2]); 8] = [
     ([11, 13], [0.10, 0.55]),
     ([12, 14], [0.10, 0.55]),
@@ -25,7 +25,7 @@ const LIMBS: [([usize; 2], [f32; 2]); 8] = [
 /// Length of a trunk (m).
 const TRUNK: [f32; 2] = [0.18, 0.90];
 
-/// Breadth of shoulders (m): of somebody seen from the side the network may have it short.
+/// Breadth of shoulders (m): of a person seen from the side the network may have it short.
 const BREADTH: [f32; 2] = [0.05, 0.65];
 
 /// How sure a landmark has to be to count.

@@ -1,4 +1,4 @@
-//! Left and right kept from picture to picture: in single pictures the network takes somebody's front for their back, and limbs change their
+//! Left and right kept from picture to picture: in single pictures the network takes a person's front for their back, and limbs change their
 //! sides, all of them or some, in the picture, in its body in metres, or in both, with depth to match.
 //!
 //! With d the way from the right to the left one of a pair, whoever turns round shows a profile first, in which d is short. A d that is long in two
@@ -112,7 +112,7 @@ mod tests {
 
     const PICTURE_NS: u64 = 33_000_000;
 
-    /// Landmarks that somebody is made of here: left and right, half of the way between them, and the row (px).
+    /// Landmarks that a person is made of here: left and right, half of the way between them, and the row (px).
     const BODY: [([usize; 2], f32, f32); 5] = [
         (SHOULDERS, 34.0, 140.0),
         ([15, 16], 150.0, 150.0),
@@ -121,7 +121,7 @@ mod tests {
         ([27, 28], 18.0, 380.0),
     ];
 
-    /// Somebody turned by an angle from facing the camera (rad).
+    /// A person turned by an angle from facing the camera (rad).
     fn turned(angle: f32) -> Landmarks {
         let mut points = [PoseLandmark { confidence: 1.0, ..PoseLandmark::default() }; POINTS];
         let (sin, cos) = angle.sin_cos();

@@ -1,7 +1,7 @@
 //! Landmarks made steady from frame to frame: One Euro filters, of the settings that MediaPipe has for its own.
 //!
 //! The joints are filtered once more by the sensor thread as those of any sensor are; what is smoothed here is what the network itself
-//! needs: the region of the next frame, and directions that do not tremble while somebody stands.
+//! needs: the region of the next frame, and directions that do not tremble while a person stands.
 
 use glam::{Vec2, Vec3};
 use toile_sensors::filter::one_euro::{OneEuro, OneEuroSettings};

@@ -1,4 +1,4 @@
-//! Bodies: of given measures, of somebody who was measured, of a file.
+//! Bodies: of given measures, of a measured person, of a file.
 
 use std::path::Path;
 
@@ -132,7 +132,7 @@ impl Body {
         &self.shape.mesh.triangles
     }
 
-    /// What there is to say about how it was made, a sentence each.
+    /// Notes on how it was made, a sentence each.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
@@ -151,7 +151,7 @@ fn readings(readings: &Readings) -> Vec<(&'static str, f64)> {
     all().into_iter().map(|(name, measure)| (name, f64::from(readings.of(measure)) * 1e3)).collect()
 }
 
-/// Of somebody of whom nothing was seen.
+/// Of a person of whom nothing was seen.
 fn nothing_known() -> Measurements {
     Measurements {
         measures: Measures::default(),
@@ -163,7 +163,7 @@ fn nothing_known() -> Measurements {
     }
 }
 
-/// What is known of somebody whose measures were taken by tape.
+/// What is known of a person whose measures were taken by tape.
 fn by_tape(sex: Sex, wanted: &Wanted<En>) -> Result<Measurements> {
     let mut taken = TapeReadings::default();
     for (measure, metres) in wanted.given() {

@@ -1,4 +1,4 @@
-//! Recordings: what a sensor saw of somebody, and their measures.
+//! Recordings: what a sensor saw of a person, and their measures.
 
 use std::path::Path;
 
@@ -40,7 +40,7 @@ pub struct Shopper {
     pub by_tape_mm: Vec<(String, f64)>,
 }
 
-/// Somebody who was measured.
+/// A measured person.
 #[derive(Debug, Clone)]
 pub struct Measured {
     pub(crate) inner: measured::MeasuredSubject,
@@ -103,7 +103,7 @@ impl Recording {
         &self.session.depth
     }
 
-    /// Measures whoever stands in it: by a body fitted to depth where there is any, by the joints otherwise.
+    /// Measures the person in it: by a body fitted to depth where there is any, by the joints otherwise.
     ///
     /// # Errors
     /// A recording that shows nobody who can be measured; a measure by tape that nobody has.
@@ -166,7 +166,7 @@ impl Measured {
         self.inner.child
     }
 
-    /// What there is to say about the measures, a sentence each.
+    /// Notes on the measures, a sentence each.
     pub fn notes(&self) -> &[String] {
         &self.inner.best.notes
     }

@@ -41,7 +41,7 @@ toile_base::named! {
     }
 }
 
-/// How a zone of a size is on somebody's true girth.
+/// How a zone of a size is on a person's true girth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ZoneEase {
     /// Where.
@@ -142,7 +142,7 @@ impl TriedGarment {
         carried.map_or_else(|| Ok(self.source.dress(Some(size), body)?), Ok)
     }
 
-    /// Whether it is made for somebody of a sex.
+    /// Whether it is made for a person of a sex.
     pub fn is_for(&self, sex: Sex) -> bool {
         !matches!((self.made_for, sex), (MadeFor::Women, Sex::Male) | (MadeFor::Men, Sex::Female))
     }

@@ -21,7 +21,7 @@ pub struct LevelFractions {
     pub acromion: f32,
 }
 
-/// Where the levels lie, for everybody: a camera does not know whom it sees, and two people of one sex differ more
+/// Where the levels lie, for every person: a camera does not know whom it sees, and two people of one sex differ more
 /// (+- .011 to .016) than the means of the sexes. ANSUR II has the chest (chestheight) at .719 of women's and .735 of
 /// men's stature; the natural waistline of EN 13402-1, midway between tenthribheight and iliocristaleheight, at .630
 /// and .621; the hip (buttockheight) at .512 and .505; the acromion (acromialheight) at .820 of both.

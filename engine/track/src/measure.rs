@@ -70,7 +70,7 @@ pub enum MeasureError {
         /// Frames that were looked at.
         frames: usize,
     },
-    /// Somebody, but beyond what can be measured.
+    /// A person, but beyond what can be measured.
     #[error(
         "the person stands {distance:.1} m from the camera, where its depth is too coarse to measure; come closer \
          than {limit:.1} m."
@@ -119,7 +119,7 @@ pub fn measure(joints: &[Joints], depth: &[DepthFrame], hint: &Hint) -> Result<M
     }
 }
 
-/// Girths that nobody has are none, and a sentence names each: arms, a bag or somebody else were taken with them.
+/// Girths that nobody has are none, and a sentence names each: arms, a bag or another person were taken with them.
 fn possible(mut measured: Measurements, left_out: &mut Vec<String>) -> Measurements {
     let people = tape_readings::population(Population::Mixed);
     let taken = &mut measured.measures;

@@ -131,7 +131,7 @@ fn somebody_is_tracked_through_a_room_that_is_seen_as_well() {
         .enumerate()
         .map(|(i, (frame, truth))| (DepthFrame { time_ns: i as u64 * 33_333_333, ..frame }, truth))
         .collect();
-    // In the last frame nobody is there: nothing is made up.
+    // In the last frame no person is in view: nothing is made up.
     let (last, _) = seen_before(&room, Sex::Female, &Wanted::new(), turned(0.0, Vec3::new(40.0, 0.0, 0.0)));
     let only: Vec<DepthFrame> =
         frames.iter().map(|f| f.0.clone()).chain([DepthFrame { time_ns: 2_000_000_000, ..last }]).collect();
@@ -172,7 +172,7 @@ fn a_body_of_the_family_is_measured_and_twice_alike() {
     assert_eq!(bits(&first), bits(&second));
 }
 
-/// Frames of somebody who stands for a moment and then turns so far (rad), fifteen frames a second.
+/// Frames of a person who stands for a moment and then turns so far (rad), fifteen frames a second.
 fn turning(by: f32) -> (Vec<DepthFrame>, Truth) {
     let wanted = Wanted::new().with(En::Stature, 1.70).with(En::WaistGirth, 0.86);
     let (front, truth) = seen(Sex::Female, &wanted, turned(0.0, Vec3::ZERO));

@@ -1,4 +1,4 @@
-//! `toile convert`: any supported recording as a session, without pictures of anybody unless they are asked for.
+//! `toile convert`: any supported recording as a session, without pictures of people unless they are asked for.
 
 use std::path::PathBuf;
 

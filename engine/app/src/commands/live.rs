@@ -67,7 +67,7 @@ pub struct LiveRates {
     pub depth: f64,
     /// Colour images.
     pub colour: f64,
-    /// Frames in which somebody was followed.
+    /// Frames in which a person was followed.
     pub joints: f64,
 }
 
@@ -96,9 +96,9 @@ pub struct LiveReport {
     pub reopened: u64,
     /// Rates of what came.
     pub rates_hz: LiveRates,
-    /// From a frame's arrival until the body was fitted to it, while somebody is followed (us).
+    /// From a frame's arrival until the body was fitted to it, while a person is followed (us).
     pub latency_us: Quantiles,
-    /// The same where somebody is found for the first time, or nobody is (us).
+    /// The same where a person is found for the first time, or nobody is (us).
     pub finding_us: Quantiles,
     /// Most people who were seen at once.
     pub people: u32,

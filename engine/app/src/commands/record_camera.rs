@@ -49,7 +49,7 @@ pub(super) struct CameraRequest<'a> {
     pub out: &'a Path,
     /// Length (s).
     pub seconds: u32,
-    /// Whether everybody has agreed already.
+    /// Whether every person has agreed already.
     pub consent: bool,
     /// What is printed.
     pub printing: Printing,

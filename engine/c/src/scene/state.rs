@@ -84,7 +84,7 @@ impl SceneHandle {
 impl SceneState {
     /// A garment by its number.
     pub fn worn(&self, garment: usize) -> Result<&WornGarment> {
-        // What there is to say about a number that there is not, the scene says.
+        // Notes on a number that there is not, the scene says.
         self.scene.faces(garment)?;
         Ok(&self.scene.garments()[garment])
     }

@@ -83,7 +83,7 @@ fn views<'a>(rig: &'a [CalibratedCamera], masks: &'a [Mask]) -> Vec<SilhouetteVi
 fn a_body_of_the_own_family_comes_back_from_four_silhouettes() {
     let wanted = Wanted::<En>::new().with(En::Stature, 1.71).with(En::WaistGirth, 0.79).with(En::HipGirth, 1.03);
     let truth = toile_assets::body::fitted(Sex::Female, &wanted).unwrap();
-    // Turned by half a radian: the fit is not told which way somebody faces.
+    // Turned by half a radian: the fit is not told which way a person faces.
     let positions = standing(&truth.body, 0.5);
     let rig = cameras(&[0.0, 90.0, 180.0, 270.0]);
     let masks = masks(&rig, &positions, &truth.body.mesh.triangles);

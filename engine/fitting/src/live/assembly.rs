@@ -34,7 +34,7 @@ pub struct LoopParts<S, E: Renderer, F, A> {
     pub source: F,
     /// What the system counts of the physics thread.
     pub account: A,
-    /// Where what a replay needs goes, where somebody keeps it.
+    /// Where what a replay needs goes, where a person keeps it.
     pub recording: Option<Sender<Entry>>,
 }
 

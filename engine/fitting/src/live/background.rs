@@ -6,7 +6,7 @@ use std::thread::{self, JoinHandle};
 /// A job that has ended.
 #[derive(Debug)]
 pub enum Finished<T> {
-    /// It gave this; whether somebody still wants it.
+    /// It gave this; whether a person still wants it.
     Done {
         /// What the job returned.
         value: T,

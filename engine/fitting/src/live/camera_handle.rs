@@ -26,7 +26,7 @@ pub struct CameraFigures {
     pub state: CameraState,
     /// What was counted of its frames.
     pub counts: CameraCounts,
-    /// Frames in which somebody was looked for, and in which somebody was found.
+    /// Frames in which a person was looked for, and in which a person was found.
     pub tracked: [u64; 2],
     /// Colour images that came.
     pub colours: u64,
@@ -51,7 +51,7 @@ struct SharedFigures {
 /// What is gathered for measuring.
 #[derive(Debug)]
 struct Gathered {
-    /// Whether somebody is measured.
+    /// Whether a person is measured.
     wanted: bool,
     frames: Vec<Arc<DepthFrame>>,
     /// Joints, of a camera without depth.
@@ -98,7 +98,7 @@ impl CameraHandle {
         }
     }
 
-    /// Somebody begins to be measured: from now on a second is gathered at full rate, and then a turn.
+    /// A person begins to be measured: from now on a second is gathered at full rate, and then a turn.
     pub fn gather_anew(&self) {
         let mut gathered = self.lock();
         gathered.frames.clear();
@@ -195,7 +195,7 @@ impl CameraHandle {
         }
     }
 
-    /// Counts a frame that was looked at, and whether somebody was found in it.
+    /// Counts a frame that was looked at, and whether a person was found in it.
     pub(super) fn count_tracked(&self, found: bool) {
         let [looked, some] = &self.figures.tracked;
         looked.fetch_add(1, Relaxed);

@@ -62,9 +62,9 @@ pub struct TrackerOptions {
 /// Times of the camera's two threads.
 #[derive(Debug, Default)]
 pub struct CameraMeters {
-    /// From the arrival of a frame until it was looked at, by frames in which somebody was followed.
+    /// From the arrival of a frame until it was looked at, by frames in which a person was followed.
     pub followed: Meter,
-    /// The same where somebody was found for the first time, or nobody was.
+    /// The same where a person was found for the first time, or nobody was.
     pub found: Meter,
 }
 
@@ -210,7 +210,7 @@ impl<C: Clock> Tracking<C> {
         self.meters
     }
 
-    /// Hands the colour image of a depth image on with its joints, where somebody looks at themselves.
+    /// Hands the colour image of a depth image on with its joints, where a person looks at themselves.
     fn send_picture(&mut self, frame: &Arc<DepthFrame>, joints: &Joints, found: bool, arrived_ns: u64) {
         let Some((colours, pictures)) = &mut self.pictures else { return };
         let colour = colours.latest();

@@ -1,5 +1,5 @@
 //! The camera's pictures on their way to the mirror, and to whoever takes a shopper's face, each with what was seen in it: the latest only, in
-//! memory alone, and only while somebody looks at themselves or has their face taken.
+//! memory alone, and only while a person looks at themselves or has their face taken.
 //!
 //! A picture is handed on once its joints are there, so that garment and picture are of one moment. What the renderer shows of it comes
 //! back as a number that means something to the two of them.
@@ -69,7 +69,7 @@ pub(super) fn copy(from: &ColourImage, to: &mut ColourImage) {
 /// What both ends and whoever decides share. Relaxed throughout: each stands by itself and orders nothing.
 #[derive(Debug, Default)]
 struct Shared {
-    /// Whether somebody looks at themselves.
+    /// Whether a person looks at themselves.
     wanted: AtomicBool,
     /// What the renderer last made of a picture.
     outcome: AtomicU8,
@@ -169,7 +169,7 @@ impl PictureSender {
         }
     }
 
-    /// Whether somebody wants pictures.
+    /// Whether a person wants pictures.
     pub fn is_on(&self) -> bool {
         self.outlets.iter().any(PictureOutlet::is_on)
     }
@@ -204,7 +204,7 @@ impl PictureReceiver {
         self.switch.0.outcome.store(outcome, Relaxed);
     }
 
-    /// Whether somebody looks at themselves.
+    /// Whether a person looks at themselves.
     pub fn is_on(&self) -> bool {
         self.switch.is_on()
     }

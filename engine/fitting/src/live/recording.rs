@@ -91,7 +91,7 @@ pub fn keep(first: &DressedWorld, path: PathBuf) -> Result<(Arc<FlightRecorder>,
 /// Takes a kiosk's recording again: the last frame, and what came out.
 ///
 /// # Errors
-/// A recording that does not begin where somebody was dressed, or a scene that cannot be made.
+/// A recording that does not begin where a person was dressed, or a scene that cannot be made.
 pub fn again(notes: &[SceneNote], entries: &[Entry], workers: usize) -> Result<(World, Replayed), FittingError> {
     let Some((Entry::Changed { number, .. }, entries)) = entries.split_first() else {
         return Err(FittingError::Input("it does not begin where somebody was dressed; record it again".into()));

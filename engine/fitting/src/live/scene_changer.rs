@@ -32,7 +32,7 @@ pub struct DressedScene<S, O> {
 }
 
 impl<S, O> DressedScene<S, O> {
-    /// Somebody dressed, as `stage` makes a scene of their frame.
+    /// A person dressed, as `stage` makes a scene of their frame.
     pub fn new(dressed: DressedWorld, stage: impl FnOnce(World) -> (S, O)) -> Self {
         let (still, note) = (dressed.stands(), Some(dressed.note(0)));
         let (scene, outfit) = stage(dressed.world);
@@ -97,7 +97,7 @@ impl<S: LoopScene, O> SceneChanger<S, O> {
         self.wants_still = true;
     }
 
-    /// Whether a mannequin has to be made, for the next time that nobody is there. One is dressed anew each time, so that a
+    /// Whether a mannequin has to be made, for the next time that no person is in view. One is dressed anew each time, so that a
     /// recording that begins with it can be replayed.
     pub fn lacks_mannequin(&self) -> bool {
         (!self.is_still || self.stale) && self.mannequin.is_none()
@@ -108,7 +108,7 @@ impl<S: LoopScene, O> SceneChanger<S, O> {
         (self.mannequin, self.stale) = (Some(mannequin), self.is_still);
     }
 
-    /// Keeps a mannequin for the next time that nobody is there.
+    /// Keeps a mannequin for the next time that no person is in view.
     pub fn stand_by(&mut self, mannequin: DressedScene<S, O>) {
         self.mannequin = Some(mannequin);
     }
@@ -299,7 +299,7 @@ mod tests {
         turns(&mut changing, &mut threads);
         assert_eq!(threads.shown(), [5; 2]);
         assert!(changing.is_wiped() && !changing.lacks_mannequin());
-        // Somebody steps in before it was shown: it is there when they have left.
+        // A person steps in before it was shown: it is there when they have left.
         changing.show(scene(7), true);
         turns(&mut changing, &mut threads);
         changing.stand_by(scene(0));

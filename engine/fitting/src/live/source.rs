@@ -14,13 +14,13 @@ use toile_sensors::source::vmc::VmcReceiver;
 
 use super::depth_camera::CameraFeed;
 
-/// Time between two frames in which nobody is seen (ns): a camera of 30 Hz.
+/// Time between two frames in which no person is in view (ns): a camera of 30 Hz.
 const EMPTY_NS: u64 = SECOND_NS / 30;
 
 /// Time between two looks for messages (ns): half a step, so that none waits for longer.
 const LOOK_NS: u64 = SECOND_NS / 240;
 
-/// Visits of a recording: it is played, nobody is seen for a while, it is played again. The first visit begins after a
+/// Visits of a recording: it is played, no person is in view for a while, it is played again. The first visit begins after a
 /// pause too.
 #[derive(Debug, Clone)]
 pub struct Visits {

@@ -97,7 +97,7 @@ fn allow_reading(_file: &File) -> io::Result<()> {
     Ok(())
 }
 
-/// Whether somebody holds a lock; one that cannot be looked at is nobody's.
+/// Whether a person holds a lock; one that cannot be looked at is nobody's.
 fn is_held(path: &Path) -> bool {
     let is_file = fs::symlink_metadata(path).is_ok_and(|found| found.is_file());
     // Shared and for a moment: two that look at it do not see each other.

@@ -1,7 +1,7 @@
 //! The service: the whole loop, unattended, from shopper to shopper, until it is asked to end.
 //!
 //! Budget: ready within 5 s of its start; a round of the service each 20 ms, under 100 us of the first core.
-//! Thread: the loop's own; a service thread, a dressing thread while somebody is measured, one that watches the catalogue, one
+//! Thread: the loop's own; a service thread, a dressing thread while a person is measured, one that watches the catalogue, one
 //! for metrics.
 //!
 //! [`session`] is the state machine that a window drives too, [`controller`] decides by it, and [`runner`] polls the loop. How the
@@ -79,7 +79,7 @@ pub struct KioskOptions {
     pub may_lock_memory: bool,
 }
 
-/// Prints a line for whoever looks after the kiosk.
+/// Prints a line for the operator.
 pub type PrintLine<'a> = &'a (dyn Fn(&str) + Sync);
 
 /// Runs a kiosk by `front`, with a window or without.
@@ -175,7 +175,7 @@ where
 {
     let KioskRun { options, config, stock, begun, clock, stop, print_line, figures } = run;
     let session = played_session(config)?;
-    // The mannequin stands as somebody does in the recording: a pose, and no body.
+    // The mannequin stands as a person does in the recording: a pose, and no body.
     let pose = sessions::standing(&session)?[0];
     let dressed = stock.first.on_mannequin(&pose)?;
     let SensorFeeds { feed, played, pictures, switch, portraits } = feed(config, session, clock)?;

@@ -82,7 +82,7 @@ pub struct CameraReport {
     pub lost: u64,
     /// Times that it was opened anew.
     pub reopened: u64,
-    /// Frames in which somebody was followed.
+    /// Frames in which a person was followed.
     pub followed: u64,
 }
 

@@ -61,13 +61,13 @@ pub struct ServiceEnvironment<'a, S, O> {
     pub print_line: &'a dyn Fn(&str),
     /// Receives the figures, where metrics are served.
     pub figures: Option<Writer<HealthFigures>>,
-    /// The request that everybody begins with.
+    /// The request that every person begins with.
     pub first: Arc<TryOn>,
     /// What a dressed frame becomes in the loop, and what the renderer has to know of it.
     pub to_scene: ToScene<S, O>,
     /// How the mannequin stands.
     pub pose: Joints,
-    /// What is kept for a crash, where somebody asked for it.
+    /// What is kept for a crash, where a person asked for it.
     pub flight_recorder: Option<Arc<FlightRecorder>>,
 }
 

@@ -8,13 +8,13 @@ toile_base::named! {
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
     #[serde(rename_all = "kebab-case")]
     pub enum SessionState {
-        /// Nobody is there: the mirror shows what it can do.
+        /// No person is in view: the mirror shows what it can do.
         Attract = "attract",
-        /// Somebody stands there and is measured.
+        /// A person stands there and is measured.
         Measuring = "measuring",
         /// They see themselves dressed.
         TryOn = "try-on",
-        /// They have left, or nobody is seen: what is known of them is about to be wiped.
+        /// They have left, or no person is in view: what is known of them is about to be wiped.
         Left = "left",
     }
 }
@@ -22,7 +22,7 @@ toile_base::named! {
 /// Times of a session.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SessionTimes {
-    /// Somebody must be seen for so long to have stepped in (ns): a passer-by has not.
+    /// A person must be seen for so long to have stepped in (ns): a passer-by has not.
     pub step_in_ns: u64,
     /// Nobody must be seen for so long for the shopper to have left (ns): a turn or a lost frame is no leave.
     pub step_out_ns: u64,
@@ -61,7 +61,7 @@ pub struct SessionMachine {
 }
 
 impl SessionMachine {
-    /// Nobody is there, at this time (ns).
+    /// No person is in view, at this time (ns).
     pub fn new(times: SessionTimes, now_ns: u64) -> Self {
         Self { times, state: SessionState::Attract, entered_ns: now_ns, seen: false, since_ns: now_ns }
     }

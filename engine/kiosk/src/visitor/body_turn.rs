@@ -11,7 +11,7 @@ use toile_track::fit;
 /// Sides that are distinguished: of ten degrees each, so that the count of them says the gap to within a side.
 pub const SIDES: usize = 36;
 
-/// Largest gap between neighbouring sides around somebody who was seen from all sides, in sides: as the body fit takes it.
+/// Largest gap between neighbouring sides around a person who was seen from all sides, in sides: as the body fit takes it.
 const CLOSED: usize = (fit::CLOSED / TAU * SIDES as f32) as usize;
 
 /// The offer stands for so long (ns): the sentence is read twice in that time. The front is measured and dressed meanwhile, and nobody
@@ -112,7 +112,7 @@ impl BodyTurn {
     }
 
     fn face(&mut self, now_ns: u64, facing: f32) {
-        // Sensors that take everybody for facing them name left and right the wrong way round from behind: nobody turns by half a circle
+        // Sensors that take every person for facing them name left and right the wrong way round from behind: nobody turns by half a circle
         // between two frames.
         let jumped =
             |&(then, last): &(u64, f32)| now_ns.saturating_sub(then) <= CONTINUOUS_NS && apart(facing, last) > 0.5 * PI;

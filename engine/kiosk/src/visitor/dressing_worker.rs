@@ -43,7 +43,7 @@ const WORN_OPEN: usize = 8;
 /// A frame that was dressed, and the snapshot of it.
 pub type DrapedFrame = (World, Snapshot);
 
-/// Somebody who was measured, in the pose in which they are dressed.
+/// A measured person, in the pose in which they are dressed.
 #[derive(Debug, Clone)]
 pub struct MeasuredVisitor {
     /// Measures of the visitor, as far as they are known.
@@ -52,7 +52,7 @@ pub struct MeasuredVisitor {
     pub pose: Joints,
 }
 
-/// Somebody to be measured.
+/// A person to be measured.
 #[derive(Debug, Clone)]
 pub struct MeasuringJob {
     /// What was seen of them.
@@ -66,9 +66,9 @@ pub struct MeasuringJob {
 /// A job for the dressing worker.
 #[derive(Debug, Clone)]
 pub enum DressingJob {
-    /// Measure somebody.
+    /// Measure a person.
     Measure(MeasuringJob),
-    /// Dress somebody in an outfit.
+    /// Dress a person in an outfit.
     Dress(Box<MeasuredVisitor>, Outfit),
     /// Drape two outfits on them.
     Two(Box<MeasuredVisitor>, Box<[Outfit; 2]>),
@@ -80,9 +80,9 @@ pub enum DressingJob {
 
 /// Result of a job.
 pub enum JobResult {
-    /// The measures of somebody.
+    /// The measures of a person.
     Measured(Box<VisitorMeasures>),
-    /// The dressed body of somebody.
+    /// The dressed body of a person.
     Dressed(Box<DressedWorld>),
     /// Both outfits are draped.
     Two(Box<[DrapedFrame; 2]>),
@@ -98,7 +98,7 @@ pub enum JobResult {
 pub struct DressingContext {
     /// The garments that can be chosen.
     pub wardrobe: Arc<Wardrobe>,
-    /// What everybody wears first, open.
+    /// What every person wears first, open.
     first: Arc<TryOn>,
     /// How their cloth is stepped.
     quality: Quality,
@@ -270,7 +270,7 @@ impl DressingContext {
         Ok(TryOn::of_body("shopper", sex, body.measures, garments).in_quality(self.quality))
     }
 
-    /// The sex of the body that is shown of somebody in an outfit: that of the innermost garment that is made for one, where it was not measured.
+    /// The sex of the body that is shown of a person in an outfit: that of the innermost garment that is made for one, where it was not measured.
     fn sex(&self, client: &MeasuredVisitor, worn: &Outfit) -> Sex {
         let made_for = worn.iter().filter_map(|w| self.wardrobe.items.get(w.item)).map(|item| item.population);
         let garments = made_for.into_iter().find(|p| *p != Population::Mixed).unwrap_or(Population::Mixed);

@@ -30,13 +30,13 @@ pub struct VisitTimes {
     pub walk_ns: u64,
     /// Measuring takes so long, without what comes of it.
     pub measure_ns: u64,
-    /// Somebody else is there for so long before they are asked who they are.
+    /// Another person is there for so long before they are asked who they are.
     pub stranger_ns: u64,
     /// Who is asked answers within that, or everything is forgotten.
     pub answer_ns: u64,
     /// Who touched something is there for so long, seen or not.
     pub touch_ns: u64,
-    /// Who has touched something while nobody is seen is waited for so long.
+    /// Who has touched something while no person is in view is waited for so long.
     pub begin_ns: u64,
     /// A picture is kept for so long.
     pub picture_ns: u64,
@@ -66,13 +66,13 @@ impl VisitTimes {
 pub struct VisitDefaults {
     /// Times of a visit.
     pub times: VisitTimes,
-    /// The language before somebody chooses one.
+    /// The language before a person chooses one.
     pub language: Language,
-    /// Whether type is large before somebody chooses.
+    /// Whether type is large before a person chooses.
     pub large: bool,
-    /// What everybody wears first, by name, inner first; those that the wardrobe does not have are left out.
+    /// What every person wears first, by name, inner first; those that the wardrobe does not have are left out.
     pub wear: Vec<String>,
-    /// The size that everybody wears first, where a garment is made in it; else each gets the one that fits.
+    /// The size that every person wears first, where a garment is made in it; else each gets the one that fits.
     pub size: Option<String>,
     /// Measures by tape that are known beforehand, for a fitting by appointment.
     pub tape: TapeReadings,
@@ -123,7 +123,7 @@ pub enum Input {
     Typed(Action),
     /// A gesture was recognised.
     Gesture(Gesture),
-    /// Somebody was measured.
+    /// A person was measured.
     Measured(u32, Box<VisitorMeasures>),
     /// A body of theirs stands dressed.
     Dressed(u32),
@@ -182,7 +182,7 @@ pub enum Effect {
         /// What the body wears, for whom its drawing may be.
         outfit: Outfit,
     },
-    /// Show the mannequin at once, without a face: somebody else looks, or the shopper takes their face away.
+    /// Show the mannequin at once, without a face: another person looks, or the shopper takes their face away.
     Hide,
     /// The shopper has left: nothing of them is to stay anywhere.
     Forget,

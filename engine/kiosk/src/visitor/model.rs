@@ -31,7 +31,7 @@ pub struct VisitModel {
     pub(super) own_picture: Option<u8>,
     /// Whether shoppers may have their own face taken.
     pub(super) face_offered: bool,
-    /// Since when nobody is seen (ns), and whether the one who has said that they are done is still there.
+    /// Since when no person is in view (ns), and whether the one who has said that they are done is still there.
     unseen_ns: u64,
     resting: bool,
     pub(super) visit: Visit,
@@ -42,7 +42,7 @@ pub struct VisitModel {
 }
 
 impl VisitModel {
-    /// Nobody is there, at this time (ns).
+    /// No person is in view, at this time (ns).
     pub fn new(defaults: VisitDefaults, wardrobe: Arc<Wardrobe>, now_ns: u64) -> Self {
         Self {
             session: SessionMachine::new(defaults.times.session, now_ns),
@@ -66,12 +66,12 @@ impl VisitModel {
         self.face_offered = true;
     }
 
-    /// Whether nobody is there and nobody looks: then another stock may hang.
+    /// Whether no person is in view and nobody looks: then another stock may hang.
     pub fn is_idle(&self) -> bool {
         self.page() == Page::Attract && self.visit.touched_ns.is_none()
     }
 
-    /// Other garments hang from now on, of which everybody wears these first.
+    /// Other garments hang from now on, of which every person wears these first.
     pub fn restock(&mut self, wardrobe: Arc<Wardrobe>, wear: Vec<String>) {
         (self.wardrobe, self.defaults.wear) = (wardrobe, wear);
         self.visit = Visit::new(&self.defaults);
@@ -203,7 +203,7 @@ impl VisitModel {
         !self.resting && (seen || (touched && self.session.state() != SessionState::Attract))
     }
 
-    /// Whether somebody else is there, or nearer than the shopper.
+    /// Whether another person is there, or nearer than the shopper.
     fn is_stranger(&self) -> bool {
         let other = self.seen.who.is_some() && self.visit.shopper.is_some() && self.seen.who != self.visit.shopper;
         other || (self.seen.nearer && self.visit.shopper.is_some())
@@ -238,7 +238,7 @@ impl VisitModel {
         self.follow_turn(effects);
     }
 
-    /// Looks whether somebody else has stepped in, and gives up waiting for an answer.
+    /// Looks whether another person has stepped in, and gives up waiting for an answer.
     fn strangers(&mut self, effects: &mut Effects) {
         let times = self.defaults.times;
         if let Some(asked) = self.visit.asked_ns {
@@ -319,7 +319,7 @@ impl VisitModel {
         self.unseen_ns = self.now_ns;
     }
 
-    /// Somebody says that they are there.
+    /// A person says that they are there.
     pub(super) fn begin(&mut self, effects: &mut Effects) {
         if self.visit.asked_ns.is_some() {
             self.forget(effects);

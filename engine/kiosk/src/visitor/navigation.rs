@@ -42,7 +42,7 @@ impl VisitModel {
     }
 
     pub(super) fn gesture(&mut self, gesture: Gesture, effects: &mut Effects) {
-        // Somebody else's hands press nothing that is the shopper's.
+        // Another person's hands press nothing that is the shopper's.
         let strange = self.visit.shopper.is_some() && self.seen.who != self.visit.shopper;
         if strange && self.page() != Page::Second {
             return;

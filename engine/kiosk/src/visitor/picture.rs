@@ -210,7 +210,7 @@ fn base64(bytes: &[u8]) -> String {
 pub(super) mod tests {
     use super::*;
 
-    /// Somebody of that colour before a lit wall.
+    /// A person of that colour before a lit wall.
     pub(crate) fn figure(size: Size, colour: [u8; 3]) -> RgbImage {
         let mut bytes = Vec::new();
         for y in 0..size.height {

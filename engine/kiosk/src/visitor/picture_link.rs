@@ -22,7 +22,7 @@ const MOST_ANSWERS: usize = 16;
 /// Random bytes of a name: 128 bits, which nobody tries out in two minutes.
 const NAME_BYTES: usize = 16;
 
-/// Time between two looks at whether somebody asks or the picture is forgotten.
+/// Time between two looks at whether a person asks or the picture is forgotten.
 const LOOK: Duration = Duration::from_millis(30);
 
 /// Bytes that are written between two looks at whether the picture is forgotten.

@@ -67,7 +67,7 @@ impl DisplayMount {
         })
     }
 
-    /// The controls' place for somebody whose head's joint is so high (mm); as high as is allowed where that is not known.
+    /// The controls' place for a person whose head's joint is so high (mm); as high as is allowed where that is not known.
     pub fn band(&self, head_mm: Option<f32>) -> ControlBand {
         let (bottom, top) = (LOWEST_MM.max(self.lower_edge_mm), HIGHEST_MM.min(self.lower_edge_mm + self.height_mm));
         let hand = head_mm.filter(|h| h.is_finite()).map_or(HIGHEST_MM, |h| h - HEAD_TO_HAND_MM);

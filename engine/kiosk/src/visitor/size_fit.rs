@@ -83,7 +83,7 @@ pub enum MeasureBasis {
     Guessed,
 }
 
-/// What was measured of somebody.
+/// What was measured of a person.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VisitorMeasures {
     /// The measures that were taken, with those by tape laid over them.
@@ -104,7 +104,7 @@ pub struct VisitorMeasures {
 }
 
 impl VisitorMeasures {
-    /// Of somebody measured seated or standing; what is missing is found out.
+    /// Of a person measured seated or standing; what is missing is found out.
     pub fn new(measured: Measurements, seated: bool) -> Self {
         Self {
             missing: missing(&measured),
@@ -196,7 +196,7 @@ pub struct ZoneFit {
     pub zone: Girth,
     /// Whether the size is chosen by this zone.
     pub primary: bool,
-    /// How the zone feels, in one of seven words; none where nobody saw the body there.
+    /// How the zone feels, in one of seven words; none where the body was not seen there.
     pub feel: Option<Feel>,
     /// How it may feel too: what the ease less or more its error comes to, where that is comfortable when this is not or the
     /// other way round.
@@ -209,7 +209,7 @@ pub struct ZoneFit {
     pub garment_m: f32,
     /// Least and most ease that is comfortable (m).
     pub comfort_m: [f32; 2],
-    /// -1 (loose) .. 1 (tight), within half of it where the zone is comfortable; none where nobody saw the body there.
+    /// -1 (loose) .. 1 (tight), within half of it where the zone is comfortable; none where the body was not seen there.
     pub tightness: Option<f32>,
 }
 

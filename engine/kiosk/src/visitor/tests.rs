@@ -81,7 +81,7 @@ impl Play {
         }
     }
 
-    /// With somebody measured and dressed.
+    /// With a person measured and dressed.
     pub(crate) fn dressed() -> Self {
         let mut play = Self::new();
         play.see(Some(1));
@@ -208,7 +208,7 @@ fn texts_of(screen: &Screen) -> Vec<String> {
     all
 }
 
-/// A picture of somebody.
+/// A picture of a person.
 fn still() -> picture::RgbImage {
     picture::tests::figure(Size::new(96, 160), [180, 80, 70])
 }

@@ -132,7 +132,7 @@ pub(super) struct Visit {
     pub snap_failed: bool,
     /// Their own face.
     pub face: OwnFace,
-    /// Since when somebody else stands there (ns), and since when they are asked (ns).
+    /// Since when another person stands there (ns), and since when they are asked (ns).
     pub stranger_ns: Option<u64>,
     pub asked_ns: Option<u64>,
     pub language: Language,

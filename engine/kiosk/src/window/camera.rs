@@ -4,7 +4,7 @@ use glam::Vec3;
 use toile_base::numeric::statistics;
 use toile_view::scene::{Bounds, OrbitCamera};
 
-/// Arm's reach beside the body (m): what stays in the picture when somebody lifts their arms.
+/// Arm's reach beside the body (m): what stays in the picture when a person lifts their arms.
 const HALF_REACH_M: f32 = 0.5;
 
 /// Half of what a body with its arms at rest needs, in statures, where there is no room for more.

@@ -82,7 +82,7 @@ impl WindowApp {
             None => covering(on, attributes.with_decorations(false)),
         };
         let window = on.create_window(attributes).map_err(|e| format!("no window can be opened ({e})"))?;
-        // A shop's screen shows no arrow until somebody moves a mouse.
+        // A shop's screen shows no arrow until a person moves a mouse.
         window.set_cursor_visible(self.windowed.is_some());
         Ok(Arc::new(window))
     }

@@ -35,7 +35,7 @@ impl FramePacer {
         self.due = Some(now + HIDDEN);
     }
 
-    /// Somebody has touched it: the answer does not wait.
+    /// A person has touched it: the answer does not wait.
     pub fn hurry(&mut self) {
         self.due = None;
     }

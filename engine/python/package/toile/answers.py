@@ -69,7 +69,7 @@ class Wind:
 
 @dataclass(frozen=True)
 class Measure:
-    """A measure of somebody: its name, value and standard deviation (mm), whether it was seen, where it is taken."""
+    """A measure of a person: its name, value and standard deviation (mm), whether it was seen, where it is taken."""
 
     name: str
     mm: float

@@ -61,7 +61,7 @@ pub(super) fn shares(garment: &GarmentSummary) -> String {
     svg(920.0, 16.0 + row * garment.sizes.len() as f64, &inside)
 }
 
-/// Stature against the girth that designates sizes: everybody by the size recommended, filled where it fits.
+/// Stature against the girth that designates sizes: every person by the size recommended, filled where it fits.
 pub(super) fn map(garment: &GarmentSummary) -> String {
     let girth = |w: &crate::shares::SummaryWearer| match garment.primary.as_str() {
         "waist" => w.girths_mm[1],

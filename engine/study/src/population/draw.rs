@@ -36,7 +36,7 @@ const GIVEN: [En; 10] = [
     En::ThighGirth,
 ];
 
-/// Draws until there is somebody whom a body can be built for: one of a million is not.
+/// Draws until there is a person whom a body can be built for: one of a million is not.
 const DRAWS: usize = 16;
 
 /// A body of the survey: measures drawn from its means and covariance, with one of them as given (m) where that is so, and the shape

@@ -36,7 +36,7 @@ const WORDS: [(&str, &str); 6] = [
     ("shoulders", "shoulder_breadth"),
 ];
 
-/// Somebody of a table.
+/// A person of a table.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct TableRow {
     pub weight: f64,
@@ -132,7 +132,7 @@ fn row(
                     )));
                 }
             }
-            // What was not taken of somebody follows from what was.
+            // What was not taken of a person follows from what was.
             Holds::Measure(_) if cells.get(at).is_none_or(|c| c.trim().is_empty()) => {}
             Holds::Measure(measure) => {
                 let value = number(at)?;

@@ -109,7 +109,7 @@ pub struct Convergence {
     pub fitted: Share,
 }
 
-/// Somebody of a garment's people.
+/// A person of a garment's people.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SummaryWearer {
     /// Number of the person.
@@ -153,7 +153,7 @@ pub struct DrapedFigures {
     pub unsettled_mm: [f64; 3],
     /// Of these, how many pull at other zones once they have settled.
     pub verdicts_changed: u64,
-    /// Garments that could not be laid on somebody.
+    /// Garments that could not be laid on a person.
     pub troubles: usize,
 }
 
@@ -194,7 +194,7 @@ impl Counted<'_> {
         self.bootstrap.mean(self.wearers.all.iter().map(counted))
     }
 
-    /// Whether a size fits somebody at every zone.
+    /// Whether a size fits a person at every zone.
     fn fits(&self, wearer: &Wearer, size: Option<usize>) -> bool {
         size.is_some_and(|size| judge(&self.wearers.note, size, wearer.girths, |_| 0.0).fits())
     }

@@ -1,4 +1,4 @@
-//! The way that somebody who is measured took through the frames.
+//! The way that a person who is measured took through the frames.
 
 use std::f32::consts::TAU;
 
@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::posed_body::FitState;
 
-/// One frame of somebody who is measured.
+/// One frame of a person who is measured.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PathState {
     /// Number of the frame, from 0.

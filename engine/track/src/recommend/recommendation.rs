@@ -31,7 +31,7 @@ pub struct ZoneFit {
     pub sigma: f32,
     /// Whether it is comfortable.
     pub verdict: Verdict,
-    /// How it feels, in one of seven words; none where nobody saw the body there.
+    /// How it feels, in one of seven words; none where the body was not seen there.
     pub feel: Option<Feel>,
     /// How it may feel too: what the ease less or more its error comes to, where that is comfortable when this is not or the
     /// other way round.

@@ -29,7 +29,7 @@ fn open(face: Result<(), FaceTrouble>) -> Play {
     play
 }
 
-/// How often somebody was dressed.
+/// How often a person was dressed.
 fn dressed(play: &Play) -> usize {
     play.effects.iter().filter(|e| matches!(e, Effect::Dress { .. })).count()
 }

@@ -9,7 +9,7 @@ fn place(own: OwnMeasure) -> usize {
     OwnMeasure::ALL.into_iter().position(|o| o == own).unwrap()
 }
 
-/// Somebody whose hip was not seen, on the page of their own measures.
+/// A person whose hip was not seen, on the page of their own measures.
 fn listed() -> Play {
     let mut play = Play::new();
     play.hide_hip();

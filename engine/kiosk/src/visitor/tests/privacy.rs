@@ -1,4 +1,4 @@
-//! What is left of somebody who has left: nothing.
+//! What is left of a person who has left: nothing.
 
 use super::*;
 use crate::visitor::picture::encode;

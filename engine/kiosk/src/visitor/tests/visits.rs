@@ -310,7 +310,7 @@ fn every_page_is_reached_by_keys_alone_and_by_gestures_alone() {
                 play.update(input);
             }
             play.wait(20 * dice.below(60) as u64);
-            // Now and then they leave, or somebody else comes.
+            // Now and then they leave, or another person comes.
             match turn % 400 {
                 150 => play.see(None),
                 200 => play.see(Some(1 + turn / 400)),
@@ -399,7 +399,7 @@ fn whatever_is_pressed_something_has_the_focus_and_one_control_at_most_stands_ou
     let mut dice = Dice(2026);
     for turn in 0..9_000 {
         if turn % 500 == 499 {
-            // Everybody walks away, and what was touched is long ago.
+            // Every person walks away, and what was touched is long ago.
             play.see(None);
             play.wait(13_000);
         }
@@ -455,7 +455,7 @@ fn a_camera_that_is_lost_or_covered_is_said_on_every_page_and_unsaid_when_it_is_
     }
 }
 
-/// Whoever wants to see themselves does, with a word where the clothes cannot be put on the picture, and is the mannequin's again when
+/// A visitor who wants to see themselves does, with a word where the clothes cannot be put on the picture, and is the mannequin's again when
 /// they say so, or have left.
 #[test]
 fn whoever_wants_to_sees_themselves_and_is_forgotten_with_it() {
