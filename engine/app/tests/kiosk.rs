@@ -131,7 +131,7 @@ fn open_to_the_world(pid: u32) -> Vec<String> {
     found
 }
 
-/// A manager that reads what it is told as it comes: a datagram that nobody reads holds its sender up.
+/// A manager that reads what it is told as it comes: an unread datagram holds its sender up.
 struct Manager {
     reading: JoinHandle<Vec<String>>,
     over: Arc<AtomicBool>,

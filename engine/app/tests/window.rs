@@ -32,7 +32,7 @@ const MOST: [f64; 2] = [2.5, 16.5];
 /// The colour of the focus ring, which nothing else has.
 const FOCUS: [u8; 3] = [255, 205, 96];
 
-/// The recording comes and goes; nobody has left while it pauses, which is long enough for a slow machine to show the welcome.
+/// The recording comes and goes; the shopper has not left while it pauses, which is long enough for a slow machine to show the welcome.
 const CONFIG: &str = "[sensor]\npause_s = 12.0\n[session]\nstep_out_s = 16.0\n[display]\nmotion = false\n";
 
 /// The program at a window of its own.

@@ -56,7 +56,7 @@ pub trait Handle: Copy + Default {
         };
         object.may_close()?;
         let taken = slots.take(self.id());
-        // What was in it is freed where nobody waits for the lock.
+        // The content is freed after the lock is released, so that no thread waits for it.
         drop(slots);
         drop(taken);
         Ok(())

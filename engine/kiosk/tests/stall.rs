@@ -26,7 +26,7 @@ use toile_kiosk::service::service_manager::{ServiceManager, ServiceStatus, StopS
 use toile_kiosk::service::stock::Stock;
 use toile_kiosk::visitor::setup::VisitorSetup;
 
-/// Hangs whoever passes it while it is shut.
+/// Blocks the threads that pass it while it is shut.
 type Gate = Arc<AtomicBool>;
 
 fn pass(gate: &Gate) {
@@ -122,7 +122,7 @@ fn serve(diary: &Diary, display: Gate, meanwhile: impl FnOnce() + Send) {
     let stock = Stock::read(&config).unwrap();
     let setup = VisitorSetup::new(&config, &stock, clock.now_ns()).unwrap();
     let dressed = stock.first.on_mannequin(&pose).unwrap();
-    // Nobody ever comes: the stall is the only thing that happens.
+    // No shopper ever comes: the stall is the only thing that happens.
     let source = Feed::Played(Visits::of(&session, clock.now_ns(), 3_600_000_000_000));
     let first = DressedScene::new(dressed, |world| (Gated::new(world), ()));
     let renderer = Display(HeadlessRenderer::default(), display);

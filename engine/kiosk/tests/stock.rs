@@ -186,7 +186,7 @@ fn a_catalogue_that_cannot_be_read_leaves_everything_as_it_was() {
     shop.write("catalogue.toml", "shop = \"Corner shop\"\ngarments = [\"c.toile\", \"a.toile\"]\n");
     assert_eq!(articles(&watched.change("another order")), ["C-1", "A-1"]);
     assert!(!watched.watch.figures().kept);
-    // What cannot be put on the mannequin is worn by nobody.
+    // A garment that cannot be put on the mannequin is never worn.
     let manifest = "article = \"C-1\"\ngarment = \"torn.obj\"\nname = { en = \"Torn\" }\n";
     fs::write(shop.0.join("source/garment.toml"), manifest).unwrap();
     fs::write(shop.0.join("source/torn.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();

@@ -311,7 +311,7 @@ fn who_sees_themselves_is_neither_stored_nor_sent() {
 /// The face that the visitor's figure wears.
 static WORN: LazyLock<WornFace> = LazyLock::new(WornFace::default);
 
-/// Puts a face on, which nobody else holds but whoever is given it.
+/// Puts a face on; the returned handle is the only one.
 fn wear_a_face() -> Arc<OwnHead> {
     let rest = &Shapes::of(Sex::Female).base().positions;
     let picture = OwnHeadPicture { side: 64, rgb: &[120; 3 * 64 * 64], skin: [120; 3], hair: [120; 3] };

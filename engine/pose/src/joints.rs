@@ -1,7 +1,7 @@
 //! From landmarks to joints in our world: directions from the network, lengths from a body of the stature that is known.
 //!
 //! A network that saw a picture knows no size: people report legs 60 mm apart, and shoulders that are not theirs. So only the directions
-//! of limbs are taken; every limb has the length that it has in the mean body of that stature, whoever stands there. A limb can be turned
+//! of limbs are taken; every limb has the length that it has in the mean body of that stature, for every person. A limb can be turned
 //! the wrong way, and never be stretched.
 
 use glam::{Mat3, Quat, Vec2, Vec3};
@@ -34,13 +34,13 @@ const FEWEST: usize = 4;
 /// Distances of a person from the camera (m).
 const DISTANCES: std::ops::RangeInclusive<f32> = 0.3..=12.0;
 
-/// Frames of whoever steps in, in which they stand upright to be measured (1): a second.
+/// Frames of a person who steps in, in which they stand upright to be measured (1): a second.
 const STANDING: u32 = 30;
 
 /// Largest lean that is the camera's or the network's, and not a person's own (rad): 40 degrees.
 const LARGEST_LEAN: f32 = 0.7;
 
-/// Smoothing of a person's distance (m): whoever comes nearer at 1 m/s is some 150 mm behind.
+/// Smoothing of a person's distance (m): a person who comes nearer at 1 m/s is some 150 mm behind.
 const DISTANCE: OneEuroSettings = OneEuroSettings { min_cutoff: 0.6, beta: 0.5 };
 
 /// Longest time between two frames across which a distance is smoothed (s).
@@ -107,9 +107,9 @@ pub struct JointPlacer {
     mount: WebcamMount,
     /// Their distance from frame to frame.
     distance: FollowedDistance,
-    /// Distance at which whoever is followed was first seen (m): they begin at the middle of our world.
+    /// Distance at which the followed person was first seen (m): they begin at the middle of our world.
     first: Option<f32>,
-    /// Leans of trunk, thighs and shins of whoever is followed in their first frames (rad), and how many of them.
+    /// Leans of trunk, thighs and shins of the followed person in their first frames (rad), and the number of these frames.
     leans: ([f32; 3], u32),
 }
 
@@ -163,7 +163,7 @@ impl JointPlacer {
         Mat3::from_rotation_x(-self.mount.down) * Mat3::from_quat(Quat::from_rotation_arc(Vec3::Z, ray))
     }
 
-    /// Whoever steps in stands upright for a second. The network bends them: the trunk towards the camera, the shins away from it, by ten
+    /// A person who steps in stands upright for a second. The network bends them: the trunk towards the camera, the shins away from it, by ten
     /// degrees and more. What each is off then, it is off by later too.
     fn learn_leans(&mut self, world: &[Vec3; POINTS], confidence: &[f32; POINTS], rest: &[f32; 3]) {
         let (means, count) = &mut self.leans;
@@ -212,7 +212,7 @@ impl JointPlacer {
     }
 }
 
-/// How far away a person is from frame to frame: nobody comes nearer by jumps, and what a limb is turned wrongly by looks like it.
+/// How far away a person is from frame to frame: people do not come nearer by jumps, and an error in a limb's direction looks like one.
 #[derive(Debug, Clone, Copy, Default)]
 struct FollowedDistance {
     filter: OneEuro,
@@ -385,7 +385,7 @@ mod tests {
         let trunk = |joints: &Joints| joints.at(Joint::LeftShoulder).position - joints.at(Joint::LeftHip).position;
         let own = placer.mean.at(Joint::LeftShoulder) - placer.mean.at(Joint::LeftHip);
         assert!(trunk(&joints).angle_between(own) < 0.02, "{} instead of {own}", trunk(&joints));
-        // A tilt that nobody said is learnt from whoever steps in upright; who bends afterwards is bent.
+        // An unknown tilt is learnt from a person who steps in upright; a person who bends afterwards is bent.
         let mut placer = JointPlacer::new(Sex::Female, WebcamMount::default());
         let upright = (0..STANDING).map(|_| placer.joints(&tilted, [1280, 720], stature, 0)).last().unwrap();
         assert!(trunk(&upright).angle_between(own) < 0.02, "{} instead of {own}", trunk(&upright));

@@ -24,16 +24,16 @@ const SURE: f32 = 0.5;
 /// Fewest joints that say where the camera is.
 const FEWEST: usize = 6;
 
-/// Farthest that a joint is moved in the plane of the picture (m): more is another limb, or nobody's.
+/// Farthest that a joint is moved in the plane of the picture (m): more is another limb, or an error.
 const FARTHEST_M: f32 = 0.14;
 
-/// Share of a new distance: size in the picture is noisy, and nobody comes nearer by jumps.
+/// Share of a new distance: size in the picture is noisy, and people do not come nearer by jumps.
 const DISTANCE_SHARE: f32 = 0.3;
 
 /// Distances of a person from the camera (m).
 const DISTANCES: std::ops::RangeInclusive<f32> = 0.4..=12.0;
 
-/// Landmarks farther than this from a body's joints, in the root of their mean square, are nobody's (part of the picture's longer
+/// Landmarks farther than this from a body's joints, in the root of their mean square, are rejected (part of the picture's longer
 /// side).
 const FARTHEST_OFF: f32 = 0.25;
 

@@ -1,4 +1,4 @@
-//! Whether landmarks are those of a person: a network that has lost its way gives bodies that nobody has.
+//! Whether landmarks are those of a person: a network that has lost its way gives impossible bodies.
 
 use glam::Vec3;
 

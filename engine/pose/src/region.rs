@@ -49,7 +49,7 @@ impl Region {
         Self { centre: middle, side: times * size.max_element(), turned: along.y.atan2(along.x) }
     }
 
-    /// Whether another square differs by so little that this one shows the same: with a new one in each picture of a person who stands still, the
+    /// Whether another square differs by so little that this one shows the same: with a new one in each picture of a standing person, the
     /// landmarks and the square that comes of them move each other to and fro.
     pub fn is_like(&self, other: &Self) -> bool {
         let side = LIKE * self.side;

@@ -1,4 +1,4 @@
-//! How large a person is: what they say, or what the floor and the camera's height say; never what the network guesses.
+//! Stature of a person: as they say, or by the floor and the camera's height; never as the network guesses.
 //!
 //! The heels stand on the floor, the eyes are above them. A camera of known height that is level, or whose tilt is known, sees both
 //! under angles that say how far away the heels are, and how high the eyes:
@@ -65,7 +65,7 @@ toile_base::named! {
         Given = "as given",
         /// From the floor and the camera's height.
         Floor = "floor and camera height",
-        /// It is nobody's: the middle of all people.
+        /// Assumed: the middle of all people.
         Assumed = "assumed",
     }
 }

@@ -42,7 +42,7 @@ impl Default for LandmarkFilter {
 }
 
 impl LandmarkFilter {
-    /// Forgets whoever was seen.
+    /// Forgets the person who was seen.
     pub fn reset(&mut self) {
         self.last_ns = None;
     }

@@ -92,7 +92,7 @@ impl PoseTracker {
         })
     }
 
-    /// Forgets whoever was seen.
+    /// Forgets the person who was seen.
     pub fn reset(&mut self) {
         self.region = None;
         (self.implausible, self.tries) = (0, 0);
@@ -111,7 +111,7 @@ impl PoseTracker {
         self.region
     }
 
-    /// Looks at a picture that was taken at a time (ns): smoothed landmarks; none of nobody, or of what could be no person. Of several
+    /// Looks at a picture that was taken at a time (ns): smoothed landmarks; none where no person is seen, or the landmarks could be no person's. Of several
     /// people the largest is followed, until they are gone.
     ///
     /// # Errors

@@ -356,7 +356,7 @@ pub fn source(given: &Bound<'_, PyAny>) -> PyResult<SdkRecording> {
 /// Raises
 /// ------
 /// InputError
-///     A recording that shows nobody who can be measured; a measure by tape that nobody has.
+///     A recording that shows no person who can be measured; a measure by tape outside of people's range.
 #[pyfunction]
 #[pyo3(signature = (source, shopper=None))]
 pub fn measure(source: &Bound<'_, PyAny>, shopper: Option<&Bound<'_, PyAny>>) -> PyResult<Measured> {

@@ -13,7 +13,7 @@ macro_rules! answer {
 }
 pub(crate) use answer;
 
-/// Objects of some values as a tuple, which nobody changes.
+/// Objects of some values as a tuple, which is immutable.
 fn tuple<'py, T>(
     py: Python<'py>,
     values: &[T],

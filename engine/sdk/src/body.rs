@@ -84,7 +84,7 @@ impl Body {
         Ok(Self::of_shape(imported.body, known, imported.report.notes))
     }
 
-    /// A body that was fitted, and what is known of whoever it is of.
+    /// A body that was fitted, and what is known of its person.
     pub(crate) fn of_shape(shape: BodyShape, known: Measurements, notes: Vec<String>) -> Self {
         let m = shape.measures;
         let five = [
@@ -151,7 +151,7 @@ fn readings(readings: &Readings) -> Vec<(&'static str, f64)> {
     all().into_iter().map(|(name, measure)| (name, f64::from(readings.of(measure)) * 1e3)).collect()
 }
 
-/// Of a person of whom nothing was seen.
+/// Measurements of a person of whom nothing was seen.
 fn nothing_known() -> Measurements {
     Measurements {
         measures: Measures::default(),

@@ -46,7 +46,7 @@ pub struct TryOn {
 /// draws its end: the same measures, sizes and bits as `toile try-on`.
 ///
 /// # Errors
-/// A recording in which nobody can be measured or followed, a garment that cannot be worn, a size of pictures that there is not.
+/// A recording in which no person can be measured or followed, a garment that cannot be worn, a size of pictures that cannot be drawn.
 pub fn try_on(recording: &Recording, garments: &[Garment], options: &TryOnOptions) -> Result<TryOn> {
     if let Some(size) = options.picture {
         crate::picture::checked_size(size)?;

@@ -1,4 +1,4 @@
-//! Every public item of this crate, as a caller sees it, against the list that was agreed: nobody changes it by accident.
+//! Every public item of this crate, as a caller sees it, against the list that was agreed, so that it does not change by accident.
 
 use std::collections::BTreeSet;
 use std::env;

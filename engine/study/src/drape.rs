@@ -21,7 +21,7 @@ use toile_fitting::wearing::{self, CoveredZone, poses};
 use crate::error::{Result, StudyError};
 use crate::garments::{DrapeStart, TriedGarment};
 
-/// Steps that a person walks: 4 s.
+/// Steps of walking: 4 s.
 const WALK_STEPS: usize = 480;
 
 /// Sectors around the body, nearly all of which a closed section of cloth has.

@@ -127,7 +127,7 @@ impl TriedGarment {
     }
 
     /// The garment in a size on a body: sewn up around it, or taken over from the body of its size (what that is depends on the
-    /// garment and the size alone, so that a row is the same whoever computes it).
+    /// garment and the size alone, so that every worker computes the same row).
     ///
     /// # Errors
     /// A garment that cannot be laid on this body.

@@ -119,7 +119,7 @@ pub fn measure(joints: &[Joints], depth: &[DepthFrame], hint: &Hint) -> Result<M
     }
 }
 
-/// Girths that nobody has are none, and a sentence names each: arms, a bag or another person were taken with them.
+/// Leaves out girths that no person has, and names each in a sentence: arms, a bag or another person were taken with them.
 fn possible(mut measured: Measurements, left_out: &mut Vec<String>) -> Measurements {
     let people = tape_readings::population(Population::Mixed);
     let taken = &mut measured.measures;

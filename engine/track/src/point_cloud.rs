@@ -1,4 +1,4 @@
-//! The shopper of one depth frame after the other as world points: whoever the segmenter finds, and nothing else.
+//! The shopper of one depth frame after the other as world points: the person whom the segmenter finds, and nothing else.
 
 use glam::Vec3;
 use toile_base::frame::{DepthFrame, Intrinsics};

@@ -13,10 +13,10 @@ use crate::fit::measuring::{MEASURES, covariance_of};
 /// All measures of a body, with what their errors have in common, in the order of [`MEASURES`].
 pub type BodyEstimate = Correlated<{ MEASURES.len() }>;
 
-/// Standard deviation of a tape in the hands of whoever is at hand (m): ISO 20685 allows trained ones 4 to 9 mm.
+/// Standard deviation of a tape in untrained hands (m): ISO 20685 allows trained ones 4 to 9 mm.
 const TAPE: f32 = 0.005;
 
-/// A measure by tape farther from what the others let expect than this many standard deviations is nobody's.
+/// A measure by tape farther from the value expected by the others than this many standard deviations is refused.
 const NOBODY: f32 = 5.0;
 
 /// A measure by tape farther from the camera's than this many standard deviations of both is said to be.
@@ -39,7 +39,7 @@ const UNITS: [(&str, f32); 6] =
     [("mm", 1e-3), ("cm", 1e-2), ("in", 0.0254), ("inch", 0.0254), ("\"", 0.0254), ("m", 1.0)];
 
 /// Standard deviations that people of the survey stray by: within them a measure by tape is taken for its unit's, and beyond them
-/// none is anybody's.
+/// it is refused.
 pub(crate) const ANYBODY: f32 = 6.0;
 
 /// Why a measure by tape is refused; each message says what and the cure.
@@ -53,10 +53,10 @@ pub enum TapeError {
     Name {
         /// What was given.
         name: String,
-        /// What there is.
+        /// The names that exist.
         names: String,
     },
-    /// A length that nobody has.
+    /// A length outside of people's range.
     #[error("nobody's {measure} is {given_mm:.0} mm: people's lie between {low_mm:.0} and {high_mm:.0} mm{cure}")]
     Unit {
         /// The measure.
@@ -70,7 +70,7 @@ pub enum TapeError {
         /// What was probably meant.
         cure: String,
     },
-    /// Two of them that nobody has together.
+    /// Two of them that no person has together.
     #[error(
         "a {measure} of {given_mm:.0} mm does not go with the other measures by tape: with these it is {expected_mm:.0} mm, give \
          or take {sigma_mm:.0}; take it again, or leave one out"
@@ -155,7 +155,7 @@ impl TapeReadings {
     /// Adds a measure by its place in [`MEASURES`] (m).
     ///
     /// # Errors
-    /// A length that nobody has.
+    /// A length outside of people's range.
     pub fn with(mut self, index: usize, value: f32) -> Result<Self, TapeError> {
         let all = population(Population::Mixed);
         let ranges = |index: usize| {
@@ -186,7 +186,7 @@ impl TapeReadings {
     /// Adds a measure in words, `chest=912` (mm), `chest=91.2cm` or `chest=36in`.
     ///
     /// # Errors
-    /// Words that are no measure, or a length that nobody has.
+    /// Words that are no measure, or a length outside of people's range.
     pub fn and(self, words: &str) -> Result<Self, TapeError> {
         let form = || TapeError::Form(words.to_owned());
         let (name, length) = words.split_once('=').ok_or_else(form)?;
@@ -205,7 +205,7 @@ impl TapeReadings {
     /// All measures in words, checked against one another.
     ///
     /// # Errors
-    /// As [`TapeReadings::and`], and measures that nobody has together.
+    /// As [`TapeReadings::and`], and measures that no person has together.
     pub fn of<S: AsRef<str>>(words: &[S]) -> Result<Self, TapeError> {
         let tape = words.iter().try_fold(Self::default(), |tape, w| tape.and(w.as_ref()))?;
         tape.check()?;
@@ -215,7 +215,7 @@ impl TapeReadings {
     /// Checks each measure against what all others let expect of either sex.
     ///
     /// # Errors
-    /// The measure that stands out most, if nobody has it.
+    /// The measure that stands out most, if no person has it.
     pub fn check(&self) -> Result<(), TapeError> {
         let mut worst: Option<(f32, TapeError)> = None;
         for (index, value) in self.given() {

@@ -126,7 +126,7 @@ fn a_whole_woman_with_shoes_and_hair_is_as_tall_as_her_picture() {
     let stature = m.measures.stature.unwrap();
     // 1.750 m between the 0.2 and 99.8 percentiles, 1.782 m from end to end.
     assert!((1.74..1.80).contains(&stature.value), "{stature:?}");
-    // A slim woman in tight clothes; nobody measured her, so the bounds are those of slim women of her stature.
+    // A slim woman in tight clothes; she was not measured by hand, so the bounds are those of slim women of her stature.
     for (name, estimate, range) in [
         ("chest", m.measures.chest_girth, 0.75..1.05),
         ("waist", m.measures.waist_girth, 0.60..0.95),

@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p toile --example shop -- DIR` writes `catalogue.toml`, a logo and six packages into DIR, which is made where
 //! it is missing, and what they are made from into DIR/source. The photographs are the mirror's own pictures, the logo is drawn
-//! here: nothing of it belongs to anybody.
+//! here: nothing of it is under another owner's rights.
 
 mod garments;
 mod logo;

@@ -35,7 +35,7 @@ const SHOWN_MM: [f32; 2] = [500.0, 4_500.0];
 
 /// Show what a live camera gives: size, rates, losses, latency, people.
 ///
-/// Opens the camera through its own library, which is loaded while the program runs, follows whoever stands before it, and says once a
+/// Opens the camera through its own library, which is loaded while the program runs, follows the person before it, and says once a
 /// second what came. Nothing is stored but the pictures that --out asks for.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(
@@ -53,7 +53,7 @@ pub struct LiveArgs {
     /// How it is mounted
     #[command(flatten)]
     pub mount: MountArgs,
-    /// Folder for pictures of the last depth and colour; they show whoever stands there
+    /// Folder for pictures of the last depth and colour; they show the people in view
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     #[command(flatten)]
@@ -98,7 +98,7 @@ pub struct LiveReport {
     pub rates_hz: LiveRates,
     /// From a frame's arrival until the body was fitted to it, while a person is followed (us).
     pub latency_us: Quantiles,
-    /// The same where a person is found for the first time, or nobody is (us).
+    /// The same where a person is found for the first time, or none is (us).
     pub finding_us: Quantiles,
     /// Most people who were seen at once.
     pub people: u32,

@@ -34,7 +34,7 @@ const _: () = assert!(scene::LENGTH_S == 10.0);
 
 /// Record a session: from a live camera, or a synthetic one such as the embedded one.
 ///
-/// With --camera it records whoever stands before a depth camera, once they have agreed. Without, it renders what a depth camera would see of a moving body, with the camera's noise, and writes it as a session. Without
+/// With --camera it records the people before a depth camera, once they have agreed. Without, it renders what a depth camera would see of a moving body, with the camera's noise, and writes it as a session. Without
 /// --seed and --seconds it makes the session that is embedded in the program.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(

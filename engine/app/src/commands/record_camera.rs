@@ -1,4 +1,4 @@
-//! `toile record --camera`: a session of whoever stands before a camera, with their consent.
+//! `toile record --camera`: a session of the people before a camera, with their consent.
 
 use std::io::{self, BufRead, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -49,7 +49,7 @@ pub(super) struct CameraRequest<'a> {
     pub out: &'a Path,
     /// Length (s).
     pub seconds: u32,
-    /// Whether every person has agreed already.
+    /// Whether every person in view has agreed already.
     pub consent: bool,
     /// What is printed.
     pub printing: Printing,
@@ -110,7 +110,7 @@ pub(super) fn run(args: &CameraRequest<'_>) -> Result<(), AppError> {
     ))
 }
 
-/// Asks whoever stands there, by way of whoever types.
+/// Asks for the consent of the people in view, through the person at the keyboard.
 fn ask(given: bool) -> Result<(), AppError> {
     if given {
         return Ok(());

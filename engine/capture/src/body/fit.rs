@@ -2,7 +2,7 @@
 //!
 //! With the plane of a stretch of outline in a camera at `c` with normal `n`, and the place `x` of the rim that belongs to it, the
 //! residual is `n . (x - c)`: how far the body reaches out of the silhouette there, from inside and outside alike. The prior of the
-//! shape is the population (ANSUR II), that of the pose a person who stands.
+//! shape is the population (ANSUR II), that of the pose is a standing person.
 
 use std::sync::Arc;
 

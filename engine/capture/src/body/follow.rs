@@ -71,7 +71,7 @@ impl BodyFollower {
         }
         let (agreement, state) = self.search();
         if agreement < LEAST_AGREEMENT.min(self.expected - 2.0 * LOST) {
-            // Another person, or nobody: what comes next starts from where the person was.
+            // Another person, or none: what comes next starts from where the person was.
             self.before = None;
             return self.frame(agreement, false);
         }

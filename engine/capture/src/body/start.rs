@@ -1,4 +1,4 @@
-//! The start of a fit without anybody's help: from the visual hull or from joints, the way a person faces and how they hold their arms.
+//! The automatic start of a fit: from the visual hull or from joints, the way a person faces and how they hold their arms.
 
 use glam::{DVec3, Quat, Vec3};
 use toile_base::skeleton::{JOINTS, Joint};

@@ -155,7 +155,7 @@ fn somebody_who_moves_is_followed_by_their_silhouettes() {
         let (positions, masks) = film(frame);
         let mut seen = views(&rig, &masks);
         match frame {
-            // One camera sees nobody; then all but one do, and the body stands where it was.
+            // One camera sees no person; then all but one do, and the body stands where it was.
             4 => drop(seen.remove(1)),
             6 => seen.truncate(1),
             _ => {}

@@ -46,7 +46,7 @@ pub struct BodyCaptureArgs {
     /// Folder with the same pictures without the person: whatever differs is the person
     #[arg(long, value_name = "DIR")]
     pub background: Option<PathBuf>,
-    /// Folder of OpenPose keypoints (BODY_25B) with a calibration in the same world: its first frame with anybody starts the fit
+    /// Folder of OpenPose keypoints (BODY_25B) with a calibration in the same world: its first frame with a person starts the fit
     #[arg(long, value_name = "DIR")]
     pub joints: Option<PathBuf>,
     /// The person's sex, if it is known: female or male

@@ -61,7 +61,7 @@ pub struct FaceArgs {
     printing: Printing,
 }
 
-/// Standard deviation of a point that a person marked, where nothing is said (px).
+/// Standard deviation of a point that was marked by hand, where nothing is said (px).
 const MARKED_SIGMA_PX: f64 = 2.0;
 
 fn pixels(text: &str) -> Result<f64, String> {

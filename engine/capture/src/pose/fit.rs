@@ -30,7 +30,7 @@ const START: f64 = 1.0;
 /// Iterations a frame.
 const ROUNDS: usize = 12;
 
-/// Frames without anybody over which the pose is carried.
+/// Frames without a person over which the pose is carried.
 const CARRIED: usize = 12;
 
 /// The pose of every frame.
@@ -40,7 +40,7 @@ pub struct PoseMotion {
     pub lengths: Vec<f64>,
     /// Ends of each bone, as keypoints of BODY_25B.
     pub bones: Vec<[usize; 2]>,
-    /// Keypoints of each frame (m, the cameras' world); none where nobody was seen.
+    /// Keypoints of each frame (m, the cameras' world); none where no person was seen.
     #[serde(skip)]
     pub frames: Vec<Option<[DVec3; POINTS]>>,
     /// Frames a second.

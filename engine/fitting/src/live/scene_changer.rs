@@ -85,7 +85,7 @@ impl<S: LoopScene, O> SceneChanger<S, O> {
     /// Shows a shopper who follows the sensor: another one than before (`afresh`), or the same in other garments. A scene that
     /// still waits is dropped.
     pub fn show(&mut self, scene: DressedScene<S, O>, afresh: bool) {
-        // A shopper who was never shown is followed by one whom nobody has seen either.
+        // After a shopper who was never shown, the next one was not shown either.
         let afresh = afresh || self.is_still || self.waiting.as_ref().is_some_and(|(_, afresh)| *afresh);
         self.waiting = Some((scene, afresh));
         self.wants_still = false;
@@ -97,7 +97,7 @@ impl<S: LoopScene, O> SceneChanger<S, O> {
         self.wants_still = true;
     }
 
-    /// Whether a mannequin has to be made, for the next time that no person is in view. One is dressed anew each time, so that a
+    /// Whether a mannequin has to be made for the next time without a person in view. One is dressed anew each time, so that a
     /// recording that begins with it can be replayed.
     pub fn lacks_mannequin(&self) -> bool {
         (!self.is_still || self.stale) && self.mannequin.is_none()
@@ -108,7 +108,7 @@ impl<S: LoopScene, O> SceneChanger<S, O> {
         (self.mannequin, self.stale) = (Some(mannequin), self.is_still);
     }
 
-    /// Keeps a mannequin for the next time that no person is in view.
+    /// Keeps a mannequin for the next time without a person in view.
     pub fn stand_by(&mut self, mannequin: DressedScene<S, O>) {
         self.mannequin = Some(mannequin);
     }
@@ -299,7 +299,7 @@ mod tests {
         turns(&mut changing, &mut threads);
         assert_eq!(threads.shown(), [5; 2]);
         assert!(changing.is_wiped() && !changing.lacks_mannequin());
-        // A person steps in before it was shown: it is there when they have left.
+        // A shopper steps in before it was shown: it is there when they have left.
         changing.show(scene(7), true);
         turns(&mut changing, &mut threads);
         changing.stand_by(scene(0));

@@ -1,4 +1,4 @@
-//! What the sensor's thread reads: a recording played round after round with nobody there in between, or a live sender.
+//! Sources of the sensor's thread: a recording played round after round with an empty pause in between, or a live sender.
 
 use std::fmt;
 use std::io;

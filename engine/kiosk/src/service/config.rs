@@ -65,7 +65,7 @@ pub struct WearConfig {
     pub garments: Vec<String>,
     /// A folder of garment packages that hang in place of the built-in wardrobe.
     pub catalogue: Option<PathBuf>,
-    /// A size for every person.
+    /// A size for every shopper.
     pub size: Option<String>,
     /// Tested settings of the cloth.
     pub quality: String,
@@ -80,7 +80,7 @@ pub struct WearConfig {
 pub struct ShopperConfig {
     /// Whose proportions apply: female or male; none is found from what is seen.
     pub sex: Option<String>,
-    /// Whether every person is an adult, or a child: `adult` or `child`; none is estimated.
+    /// Whether every shopper is an adult, or a child: `adult` or `child`; none is estimated.
     pub age: Option<String>,
     /// Measures taken by tape, such as `chest=912`: for a fitting by appointment, or a demonstration.
     pub measures: Vec<String>,
@@ -214,9 +214,9 @@ pub struct DisplayConfig {
     pub lower_edge_mm: f32,
     /// Height of the picture (mm).
     pub height_mm: f32,
-    /// The language before a person chooses one.
+    /// The language before the visitor chooses one.
     pub language: String,
-    /// Whether type is large before a person chooses.
+    /// Whether type is large before the visitor chooses.
     pub large_type: bool,
     /// Whether anything moves by itself: a mannequin that turns.
     pub motion: bool,
@@ -392,7 +392,7 @@ impl Config {
             .or_else(|| self.wear.quality.parse::<Quality>().err().map(|e| format!("wear.quality: {e}")))
     }
 
-    /// The request that every person begins with, as it is configured.
+    /// The request that every visitor begins with, as it is configured.
     pub fn request(&self) -> TryOn {
         let shopper = self.shopper.facts().unwrap_or_default();
         let request = TryOn::of_shopper(&self.wear.garments, self.wear.size.as_deref(), shopper);

@@ -21,7 +21,7 @@ pub type ToScene<S, O> = Box<dyn Fn(World) -> (S, O)>;
 pub struct ControllerContext<S, O> {
     /// How scenes are changed.
     pub changer: SceneChanger<S, O>,
-    /// The request that every person begins with, the mannequin too.
+    /// The request that every visitor begins with, the mannequin too.
     pub first: Arc<TryOn>,
     /// The mannequin that is being dressed.
     pub dressing: BackgroundJob<Result<DressedWorld, KioskError>>,
@@ -67,12 +67,12 @@ impl<S: LoopScene, O> ControllerContext<S, O> {
         }
     }
 
-    /// Whether nobody is shown but the mannequin, and nobody is being dressed.
+    /// Whether only the mannequin is shown, and no shopper is being dressed.
     pub fn is_at_rest(&self) -> bool {
         self.changer.is_wiped() && !self.dressing.is_running()
     }
 
-    /// From now on every person wears something else first, the mannequin too, where there is another one.
+    /// From now on every visitor wears something else first, the mannequin too, where there is another one.
     pub fn restock(&mut self, first: Arc<TryOn>, mannequin: Option<Box<DressedWorld>>) {
         self.first = first;
         if let Some(mannequin) = mannequin {

@@ -112,7 +112,7 @@ impl HealthCounter {
         }
     }
 
-    /// A person is measured, who counts where they are `new`.
+    /// Counts a measured person where they are `new`.
     pub fn stepped_in(&mut self, new: bool) {
         self.figures.sessions += u64::from(new);
     }

@@ -22,11 +22,11 @@ toile_base::named! {
 /// Times of a session.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SessionTimes {
-    /// A person must be seen for so long to have stepped in (ns): a passer-by has not.
+    /// Time in view after which a person has stepped in (ns): a passer-by has not.
     pub step_in_ns: u64,
-    /// Nobody must be seen for so long for the shopper to have left (ns): a turn or a lost frame is no leave.
+    /// Time without a person in view after which the shopper has left (ns): a turn or a lost frame is no leave.
     pub step_out_ns: u64,
-    /// So long after that everything is wiped (ns): who comes back before goes on where they were.
+    /// Time from then until everything is wiped (ns): a shopper who comes back before goes on where they were.
     pub wipe_ns: u64,
 }
 

@@ -103,7 +103,7 @@ pub struct WatchStart<H> {
     pub config: Config,
     /// The stock as it is.
     pub stock: Stock,
-    /// What was left out of it, by whoever hung it too.
+    /// What was left out of it, also when it was hung.
     pub left_out: Vec<LeftOut>,
     /// How the mannequin stands.
     pub pose: Joints,
@@ -239,7 +239,7 @@ impl<H> Watcher<H> {
         let stock = self.stock.read_again(&self.config)?;
         left_out.extend(stock.left_out.iter().cloned());
         let hung = (self.hang)(&stock, left_out)?;
-        // Whatever every person is to wear first is tried here, before anybody wears it.
+        // The first outfit is tried here, before a visitor wears it.
         let mannequin = if stock.wears_the_same(&self.stock) {
             None
         } else {

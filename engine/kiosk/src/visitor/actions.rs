@@ -170,7 +170,7 @@ impl VisitModel {
         if self.offers_face() {
             add(&[Open(Page::Face)]);
         }
-        // Whoever sees themselves turns by turning.
+        // A visitor who sees themselves turns the picture by turning.
         if !self.sees_themselves() {
             add(&[Turn(-1), Turn(1)]);
         }

@@ -61,7 +61,7 @@ impl VisitWindow for NoWindow {
     fn show_two(&mut self, _two: Option<&[DrapedFrame; 2]>) {}
 }
 
-/// Measuring that takes longer than this many times its own time has found nobody.
+/// Measuring that takes longer than this many times its own time has found no person.
 const PATIENCE: u64 = 4;
 
 /// Jobs that wait for the worker: the last of each kind.
@@ -160,7 +160,7 @@ impl<'a> VisitController<'a> {
         Self { switch, ..self }
     }
 
-    /// The same, which takes the faces of those who ask for it; whoever dresses them looks at `worn`. Nothing is offered where no face can be
+    /// The same, which takes the faces of those who ask for it; the dressing side reads `worn`. Nothing is offered where no face can be
     /// taken.
     #[must_use]
     pub fn taking_faces(mut self, faces: Option<FaceCamera>, worn: WornFace) -> Self {
@@ -293,7 +293,7 @@ impl<'a> VisitController<'a> {
         let Some(OngoingMeasurement { number, seated, frames, .. }) = self.measuring.take() else { return };
         if enough {
             let source = self.played.clone().unwrap_or(ShopperSource::Joints(frames));
-            // The front first: nobody waits for a turn that may not come.
+            // The front first: the shopper does not wait for a turn that may not come.
             self.jobs.measure = Some((number, MeasuringJob { source, seated, until_ns: 0 }));
         } else {
             self.update(now, Input::Failed(number), context);
@@ -384,7 +384,7 @@ impl<S: LoopScene, O> SessionController<S, O> for VisitController<'_> {
         self.measure(now, context);
         self.start_next_job()?;
         self.restock(context);
-        // Pictures are copied only while a person looks at themselves.
+        // Pictures are copied only while the visitor looks at themselves.
         if let Some(switch) = &self.switch {
             let shows = self.model.shows_own_picture();
             if switch.is_on() != shows {

@@ -98,7 +98,7 @@ pub enum JobResult {
 pub struct DressingContext {
     /// The garments that can be chosen.
     pub wardrobe: Arc<Wardrobe>,
-    /// What every person wears first, open.
+    /// What every visitor wears first, open.
     first: Arc<TryOn>,
     /// How their cloth is stepped.
     quality: Quality,
@@ -174,7 +174,7 @@ impl DressingWorker {
 }
 
 impl DressingContext {
-    /// Nobody has worn anything yet.
+    /// A context in which nothing was worn yet.
     pub fn new(
         wardrobe: Arc<Wardrobe>,
         first: Arc<TryOn>,
@@ -244,7 +244,7 @@ impl DressingContext {
         })
     }
 
-    /// Measures whoever stands or sits there.
+    /// Measures the person who stands or sits in view.
     fn measure(&self, job: MeasuringJob) -> Result<VisitorMeasures, KioskError> {
         let MeasuringJob { source, seated, until_ns } = job;
         let measured = measured::measure(&source.session(), ShopperFacts { seated, until_ns, ..self.facts })?;
@@ -270,7 +270,7 @@ impl DressingContext {
         Ok(TryOn::of_body("shopper", sex, body.measures, garments).in_quality(self.quality))
     }
 
-    /// The sex of the body that is shown of a person in an outfit: that of the innermost garment that is made for one, where it was not measured.
+    /// Sex of the body shown in an outfit: as measured, else that of the innermost garment that is made for one.
     fn sex(&self, client: &MeasuredVisitor, worn: &Outfit) -> Sex {
         let made_for = worn.iter().filter_map(|w| self.wardrobe.items.get(w.item)).map(|item| item.population);
         let garments = made_for.into_iter().find(|p| *p != Population::Mixed).unwrap_or(Population::Mixed);

@@ -114,7 +114,7 @@ impl LengthUnit {
 pub enum EntryFault {
     /// Nothing was typed that is a number.
     Empty,
-    /// A length that nobody has.
+    /// A length outside of people's range.
     Impossible {
         /// The least that people have (m).
         low_m: f32,

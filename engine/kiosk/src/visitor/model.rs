@@ -66,12 +66,12 @@ impl VisitModel {
         self.face_offered = true;
     }
 
-    /// Whether no person is in view and nobody looks: then another stock may hang.
+    /// Whether no person is in view and the screen was not touched: then another stock may hang.
     pub fn is_idle(&self) -> bool {
         self.page() == Page::Attract && self.visit.touched_ns.is_none()
     }
 
-    /// Other garments hang from now on, of which every person wears these first.
+    /// Hangs other garments from now on, of which every visitor wears these first.
     pub fn restock(&mut self, wardrobe: Arc<Wardrobe>, wear: Vec<String>) {
         (self.wardrobe, self.defaults.wear) = (wardrobe, wear);
         self.visit = Visit::new(&self.defaults);
@@ -195,7 +195,7 @@ impl VisitModel {
         }
     }
 
-    /// Whether the shopper is there: seen as the same one, or touching something; before there is one, whether anybody is.
+    /// Whether the shopper is there: seen as the same one, or touching something; before there is one, whether any person is.
     fn is_there(&self) -> bool {
         let Visit { shopper, touched_ns, .. } = self.visit;
         let seen = self.seen.who.is_some() && (shopper.is_none() || shopper == self.seen.who);
@@ -238,7 +238,7 @@ impl VisitModel {
         self.follow_turn(effects);
     }
 
-    /// Looks whether another person has stepped in, and gives up waiting for an answer.
+    /// Checks whether another person has stepped in, and gives up waiting for an answer.
     fn strangers(&mut self, effects: &mut Effects) {
         let times = self.defaults.times;
         if let Some(asked) = self.visit.asked_ns {
@@ -258,7 +258,7 @@ impl VisitModel {
         if self.visit.known.is_none()
             && matches!(self.visit.progress, MeasureProgress::No | MeasureProgress::Guide { .. })
         {
-            // Nothing is known of the first one: whoever is there is measured.
+            // Nothing is known of the first one: the person in view is measured.
             self.visit.shopper = self.seen.who;
             self.visit.stranger_ns = None;
             return;
@@ -312,14 +312,14 @@ impl VisitModel {
         let _ = effects.push(Effect::Forget);
     }
 
-    /// The shopper has said that they are done: everything goes, and nobody is measured until they have stepped away or begin.
+    /// The shopper has said that they are done: everything goes, and no person is measured until they have stepped away or begin.
     pub(super) fn leave(&mut self, effects: &mut Effects) {
         self.forget(effects);
         self.resting = true;
         self.unseen_ns = self.now_ns;
     }
 
-    /// A person says that they are there.
+    /// The visitor says that they are there.
     pub(super) fn begin(&mut self, effects: &mut Effects) {
         if self.visit.asked_ns.is_some() {
             self.forget(effects);
@@ -328,7 +328,7 @@ impl VisitModel {
         self.visit.begun_ns = Some(self.now_ns);
     }
 
-    /// Whoever is there says that it is still them.
+    /// The person in view says that it is still them.
     pub(super) fn stay(&mut self, effects: &mut Effects) {
         if self.visit.asked_ns.take().is_some() {
             self.visit.shopper = self.seen.who.or(self.visit.shopper);

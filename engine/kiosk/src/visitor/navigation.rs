@@ -159,7 +159,7 @@ impl VisitModel {
         }
     }
 
-    /// Measures, or measures again, once whoever pressed has walked back and stands as they should.
+    /// Measures, or measures again, once the visitor has walked back and stands as they should.
     fn measure_again(&mut self, walk_ns: u64) {
         let visit = &mut self.visit;
         if self.session.state() == SessionState::TryOn && visit.open != Page::Unmeasured {

@@ -12,7 +12,7 @@ pub struct PictureLink {
     pub code: PictureCode,
     /// Name of the network that it works in, where it is known.
     pub network: Option<String>,
-    /// Serves the picture for as long as a person has this.
+    /// Serves the picture for as long as this value lives.
     pub server: Arc<PictureServer>,
 }
 

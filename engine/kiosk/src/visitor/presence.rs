@@ -1,9 +1,9 @@
 //! Presence: what the sensor's joints say of who is there: the same person or another, seated or standing, how tall, how far
 //! from the mark.
 //!
-//! One skeleton a frame arrives, that of whoever the sensor follows. Two people are told apart by the lengths of their bones, looked at
-//! anew whenever nobody was seen or the skeleton leapt. People of nearly the same size are not told apart: then the first, as long as they
-//! are seen, or the countdown when they have left, is all that there is between them.
+//! One skeleton a frame arrives, that of the person whom the sensor follows. Two people are told apart by the lengths of their bones. These
+//! are measured anew whenever no person was in view or the skeleton leapt. People of nearly the same size are not told apart: only the
+//! presence of the first, or the countdown when they have left, separates them.
 
 use glam::Vec3;
 use toile_base::frame::Joints;
@@ -34,7 +34,7 @@ pub struct Presence {
     pub depth: bool,
 }
 
-/// Nobody seen for so long (ns), or a leap: who comes is looked at anew.
+/// After so long without a person (ns), or a leap, the bones are measured anew.
 const GAP_NS: u64 = 400_000_000;
 
 /// The hips move farther than this between two frames only where the sensor follows another person (m): 15 m/s at 30 Hz.
@@ -76,7 +76,7 @@ pub struct PresenceTracker {
     who: Option<u32>,
     known: Option<(u32, BoneLengths)>,
     last: Option<(u64, Vec3)>,
-    /// Bones of the frames since a person came.
+    /// Bones of the frames since the person came.
     frames: Vec<BoneLengths>,
     /// Frames in which they sat, of the last ones: positive is seated.
     sitting: i32,
@@ -90,7 +90,7 @@ impl PresenceTracker {
         Self { mark, ..Self::default() }
     }
 
-    /// Forgets by what people are known; the next one is a person new.
+    /// Forgets the known bones; the next person is new.
     pub fn forget(&mut self) {
         *self = Self { mark: self.mark, count: self.count, ..Self::default() };
     }

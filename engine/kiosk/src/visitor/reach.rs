@@ -1,4 +1,4 @@
-//! Reach: between which heights the controls stand, so that whoever is there reaches them.
+//! Reach: the heights between which the controls stand, so that the visitor reaches them.
 //!
 //! The bounds are those of the 2010 ADA Standards for Accessible Design, 308.2.1 (unobstructed forward reach) and 308.3.1
 //! (unobstructed side reach): at most 48 in (1,220 mm) and at least 15 in (380 mm) over the floor. What is kept here is the

@@ -82,7 +82,7 @@ pub enum BodyView {
 /// What pressing a control asks for. Indices are those of the lists that the screen was made from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Action {
-    /// Begin, where touch is how a person says that they are there.
+    /// Begin, where a visitor starts the session by touch.
     Begin,
     /// Measure, or measure again.
     Measure,
@@ -288,7 +288,7 @@ pub struct Screen {
     pub type_scale: f32,
     /// Upper edge of the controls over the display's lower edge, as a share of its height: within reach of the floor.
     pub reach: f32,
-    /// Lower edge of the controls over the display's lower edge, as a share of its height: nobody has to stoop.
+    /// Lower edge of the controls over the display's lower edge, as a share of its height, so that no visitor has to stoop.
     pub reach_low: f32,
     /// Colours of the garments that are worn, linear RGB, inner first: the order of the snapshot's garments.
     pub colours: Vec<[f32; 3]>,

@@ -153,7 +153,7 @@ impl VisitorMeasures {
         }
     }
 
-    /// Whether nobody knows the girth of each zone, in the order of `Girth::ALL`: it is a guess, and so would be how anything fits there.
+    /// Whether the girth of each zone is unknown, in the order of `Girth::ALL`. It is then a guess, and so would be any fit there.
     pub fn unknown(&self) -> [bool; 3] {
         Girth::ALL.map(|zone| self.is_unknown(zone))
     }
@@ -230,11 +230,11 @@ pub struct SizeFit {
     pub zones: Vec<ZoneFit>,
     /// Set where the primary girth lies outside of what is made.
     pub outside: Option<OutOfRange>,
-    /// What there is to choose from.
+    /// The sizes to choose from.
     pub choice: SizeChoice,
 }
 
-/// What there is to choose from.
+/// The sizes to choose from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SizeChoice {
     /// Several sizes.
@@ -321,7 +321,7 @@ fn zones(offer: &GarmentOffer, known: &VisitorMeasures, judged: &Recommendation)
             Girth::Hip => hip,
         };
         let comfort_m = offer.comfort(z.zone)?;
-        // What nobody measured is a guess, though a recommendation may be made from it.
+        // A girth that was not measured is a guess, though a recommendation may be made from it.
         let known = (z.verdict != Verdict::Unknown && !known.is_unknown(z.zone)).then_some(());
         Some(ZoneFit {
             zone: z.zone,

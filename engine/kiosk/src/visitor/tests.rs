@@ -144,7 +144,7 @@ impl Play {
         self.update(Input::Presence(seen));
     }
 
-    /// The hip of whoever is measured is not seen.
+    /// Hides the hip of the measured person.
     pub(crate) fn hide_hip(&mut self) {
         self.known.measured.measures.hip_girth = None;
         self.known = VisitorMeasures::new(self.known.measured.clone(), false);

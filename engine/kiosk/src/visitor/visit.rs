@@ -140,7 +140,7 @@ pub(super) struct Visit {
 }
 
 impl Visit {
-    /// Nobody, as every visit begins.
+    /// A visit as it begins: without a shopper.
     pub fn new(defaults: &VisitDefaults) -> Self {
         Self {
             shopper: None,

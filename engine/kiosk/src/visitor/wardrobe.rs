@@ -258,7 +258,7 @@ impl WardrobeItem {
     }
 }
 
-/// The body on which what is made for nobody in particular is judged.
+/// The average body, on which garments made for no particular body are judged.
 fn average() -> Result<Body, KioskError> {
     toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(KioskError::internal)
 }
@@ -477,7 +477,7 @@ mod tests {
         assert_eq!((coat.layer, coat.colours.len()), (Layer::Coat, 1));
         assert_eq!(coat.colours[0].words.as_ref().map(|words| word(words, "de")), Some("Moos"));
         assert!(dress.sizes.len() > 3 && dress.name.ends_with("DR-1.toile"));
-        // What is named besides hangs there as well; what there is not is refused.
+        // Garments that are named besides hang there as well; an unknown name is refused.
         let more = Wardrobe::of(&stock(&["t-shirt"]).unwrap(), Some(&hung), &mut Vec::new()).unwrap();
         assert_eq!(more.items.len(), 3);
         assert!(stock(&["DR-9"]).is_err());

@@ -38,7 +38,7 @@ pub(super) struct Sighting {
     pub by: DVec3,
     /// Where it was seen, as by a lens that bends nothing (px, from the principal point).
     pub at: DVec2,
-    /// Of an outline: the way across it. Where along an outline a place was seen, nobody knows.
+    /// Of an outline: the way across it. Where along an outline a place was seen is unknown.
     pub across: Option<DVec2>,
     /// Standard deviation, and the distance from which it counts little (px).
     pub sigma: f64,

@@ -104,7 +104,7 @@ pub fn texture(head: &AdaptedHead, views: &[FaceView], photographs: &[RgbImage])
     }
     spread(&mut picture, &mut filled);
     let seen = sums.iter().filter(|s| s.1 > WELL).count() as f64 / sums.len().max(1) as f64;
-    // A person could be known by what was summed.
+    // A person could be identified by what was summed.
     sums.fill(([0.0; 3], 0.0));
     black_box(&sums);
     HeadTexture { picture, skin: shown, seen }

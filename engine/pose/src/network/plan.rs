@@ -233,7 +233,7 @@ struct Memory {
     numbers: Vec<usize>,
     /// Buffer of each tensor.
     of: Vec<Option<usize>>,
-    /// Sizes of the buffers, and which nobody has.
+    /// Sizes of the buffers, and the free ones.
     sizes: Vec<usize>,
     free: Vec<usize>,
 }

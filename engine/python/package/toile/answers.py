@@ -99,7 +99,7 @@ class ZoneFit:
     ease_mm, sigma_mm : float
         Girth of the garment less that of the body, and its standard deviation (mm).
     verdict : str
-        "tight", "good", "loose", or "unknown" where nobody saw the body there.
+        "tight", "good", "loose", or "unknown" where the body was not seen there.
     feel : str or None
         From "too tight" over "right" to "too loose".
     tightness : float or None

@@ -73,7 +73,7 @@ impl Scene {
     /// The same with a motion, quality, workers, wind and what is tucked in.
     ///
     /// # Errors
-    /// As [`Self::dress`]; joints that pose nobody, options that cannot be had.
+    /// As [`Self::dress`]; joints that give no pose, options that cannot be had.
     pub fn dress_with(body: &Body, garments: &[Garment], options: &DressOptions) -> Result<Self> {
         let dressed = DressedScene::dress(body, garments, options)?;
         Ok(Self { kind: SceneKind::Dressed(Box::new(dressed)) })
@@ -144,7 +144,7 @@ impl Scene {
     /// One step of a dressed body to joints of the caller's own, those at the step's end (m); it stays there until moved on.
     ///
     /// # Errors
-    /// Joints that pose nobody; a scene without a body, or whose body follows a track.
+    /// Joints that give no pose; a scene without a body, or whose body follows a track.
     pub fn step_to(&mut self, joints: &Joints) -> Result<()> {
         match &mut self.kind {
             SceneKind::Dressed(scene) => scene.step_to(joints),

@@ -119,7 +119,7 @@ pub struct BodyFit {
 }
 
 impl BodyFit {
-    /// A fit that has seen nobody; the body model is that of a sex.
+    /// A fit that has seen no person yet; the body model is that of a sex.
     pub fn new(sex: Sex, options: FitOptions) -> Self {
         let shapes = Shapes::of(sex);
         let model = BodyModel::new(shapes, options.spacing);

@@ -74,7 +74,7 @@ impl Default for Gestures {
 }
 
 impl Gestures {
-    /// A recogniser that has seen nobody. Allocates all that it will ever need.
+    /// A recogniser that has seen no person yet. Allocates all that it will ever need.
     pub fn new() -> Self {
         Self {
             last_ns: None,

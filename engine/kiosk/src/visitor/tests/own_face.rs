@@ -122,7 +122,7 @@ fn a_face_goes_with_who_leaves_and_where_somebody_else_looks() {
     play.wait(1_100);
     assert!(play.page() == Page::Second && play.effects.contains(&Effect::Hide));
     assert_eq!(play.model.visit.face, Default::default());
-    // One that is being taken while they leave is nobody's.
+    // One that is being taken while they leave is thrown away.
     let mut play = open(Ok(()));
     play.press(Action::TakeFace);
     play.press(Action::Back);

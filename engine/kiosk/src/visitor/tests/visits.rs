@@ -455,7 +455,7 @@ fn a_camera_that_is_lost_or_covered_is_said_on_every_page_and_unsaid_when_it_is_
     }
 }
 
-/// A visitor who wants to see themselves does, with a word where the clothes cannot be put on the picture, and is the mannequin's again when
+/// A visitor may choose to see themselves, with a word where the clothes cannot be put on the picture, and is the mannequin's again when
 /// they say so, or have left.
 #[test]
 fn whoever_wants_to_sees_themselves_and_is_forgotten_with_it() {
@@ -467,7 +467,7 @@ fn whoever_wants_to_sees_themselves_and_is_forgotten_with_it() {
     assert!(offers(&play) && !sees(&play), "the mannequin first");
     play.press(Action::OwnPicture);
     assert!(sees(&play) && play.model.shows_own_picture());
-    // Whoever sees themselves turns by turning.
+    // A visitor who sees themselves turns the picture by turning.
     assert!(!play.screen().controls.iter().any(|c| matches!(c.action, Action::Turn(_))));
     let says = |play: &Play, key: TextKey| {
         let words = play.texts.of(play.model.language()).text(key);

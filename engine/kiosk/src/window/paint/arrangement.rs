@@ -1,5 +1,5 @@
-//! Arrangement: where the panel stands, so that whoever looks at the clothes sees them large. A mannequin is three fifths of the display
-//! high at least wherever clothes are shown, unless a person asked for large type or a code has to be read off the display.
+//! Places the panel so that the clothes are shown large. Wherever clothes are shown, the mannequin takes at least three fifths of the
+//! display's height, unless the visitor asked for large type or a code has to be read off the display.
 
 use egui::{Pos2, Rect, pos2};
 
