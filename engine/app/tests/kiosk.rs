@@ -162,7 +162,7 @@ impl Manager {
 }
 
 #[test]
-fn a_visit_is_told_to_the_manager_leaves_nothing_behind_and_ends_when_told_to() {
+fn a_visit_is_reported_and_leaves_no_files() {
     let _beside = beside_others();
     let scratch = Scratch::new("kiosk");
     fs::write(scratch.path().join("kiosk.toml"), long_visits()).unwrap();

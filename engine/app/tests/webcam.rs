@@ -74,7 +74,7 @@ fn a_session_is_not_recorded_by_a_webcam() {
 }
 
 #[test]
-fn somebody_in_the_pictures_of_a_folder_is_followed() {
+fn a_person_in_a_folder_of_pictures_is_followed() {
     if !is_fetched() {
         return;
     }

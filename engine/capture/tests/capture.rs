@@ -32,7 +32,7 @@ fn png(scratch: &Scratch, name: &str, [width, height]: [u32; 2], white: impl Fn(
 }
 
 #[test]
-fn silhouettes_of_nobody_are_one_sentence() {
+fn silhouettes_without_a_person_are_one_sentence() {
     let scratch = Scratch::new("capture-body");
     fs::write(scratch.path().join("cams.toml"), CAMERAS).unwrap();
     let small = |x: u32, y: u32| (27..33).contains(&x) && (36..43).contains(&y);
@@ -119,7 +119,7 @@ fn a_sequence_of_silhouettes_is_followed_and_written() {
 }
 
 #[test]
-fn faces_that_nobody_has_are_one_sentence() {
+fn impossible_faces_are_one_sentence() {
     let scratch = Scratch::new("capture-face");
     png(&scratch, "a.png", [300, 400], |x, y| x > y);
     let write = |name: &str, text: &str| fs::write(scratch.path().join(name), text).unwrap();

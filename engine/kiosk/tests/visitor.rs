@@ -202,7 +202,7 @@ fn written() -> i64 {
 }
 
 #[test]
-fn a_whole_visit_opens_no_file_to_write_and_no_socket_and_writes_not_a_byte() {
+fn a_visit_writes_no_file_and_opens_no_socket() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let before = (open_to_the_world(), written());
     let (over, opened) = (AtomicBool::new(false), Mutex::new(BTreeSet::new()));

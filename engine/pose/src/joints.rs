@@ -373,7 +373,7 @@ mod tests {
     }
 
     #[test]
-    fn somebody_upright_is_upright_under_a_camera_that_looks_down() {
+    fn an_upright_person_is_upright_under_tilted_cameras() {
         let down = 0.3;
         let mut placer = JointPlacer::new(Sex::Female, WebcamMount { down, ..WebcamMount::default() });
         let stature = placer.mean_stature;

@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn somebody_who_lies_is_turned_upright() {
+    fn a_lying_person_is_turned_upright() {
         let region = Region::of_points(Vec2::new(50.0, 40.0), Vec2::new(70.0, 40.0));
         assert!((region.turned - FRAC_PI_2).abs() < 1e-6 && (region.side - 50.0).abs() < 1e-4);
         // Straight above the middle of the square is to the right of the hips in the picture.
@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn squares_of_nobody_are_known() {
+    fn squares_without_a_person_are_known() {
         let good = Region { centre: Vec2::new(300.0, 200.0), side: 400.0, turned: 0.0 };
         assert!(good.is_within(640, 480));
         let bad = [

@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn whoever_turns_turns_and_whoever_was_seen_wrongly_first_is_seen_rightly_soon() {
+    fn turns_are_kept_and_wrong_starts_are_corrected() {
         let mut keeper = SideKeeper::default();
         // A turn in a second, with arms held out: they are beside each other in one picture, and that may be lost.
         let spin = |picture: u64| turned(picture as f32 / 30.0 * TAU);

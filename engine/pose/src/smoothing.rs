@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn somebody_new_begins_where_they_are() {
+    fn a_new_person_begins_where_they_are() {
         let mut filter = LandmarkFilter::default();
         filter.push(&mut landmarks(0.0), 400.0, 0);
         filter.reset();

@@ -103,7 +103,7 @@ fn points_and_boxes_are_those_of_the_reference_runtime() {
 }
 
 #[test]
-fn the_fast_networks_are_their_plain_twins_to_the_bit() {
+fn the_fast_networks_equal_their_scalar_references() {
     let Some(file) = bytes() else { return };
     for (name, range, wanted) in [("mesh", MESH, POINTS), ("detector", DETECTOR, BOXES)] {
         let mut network = Network::load(&file[range], wanted).unwrap();

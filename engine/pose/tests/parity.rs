@@ -125,7 +125,7 @@ fn landmarks_and_boxes_are_those_of_the_reference_runtime() {
 }
 
 #[test]
-fn the_fast_network_is_its_plain_twin_to_the_bit() {
+fn the_fast_network_equals_its_scalar_reference() {
     let Some(folder) = network_folder() else { return };
     let wanted: [(PoseFile, &[&[usize]]); 2] = [(PoseFile::Lite, &LANDMARKS), (PoseFile::Detector, &BOXES)];
     for (file, wanted) in wanted {

@@ -79,7 +79,7 @@ fn is_whole(landmarks: &Landmarks, size: [u32; 2]) {
 }
 
 #[test]
-fn somebody_is_found_once_and_then_followed() {
+fn a_person_is_found_once_and_then_followed() {
     let Some(mut tracker) = tracker() else { return };
     let shown = picture(with(wall(640, 480), &person(440), 200, 20));
     let all = seen(&mut tracker, &shown, 10);
@@ -95,7 +95,7 @@ fn somebody_is_found_once_and_then_followed() {
 }
 
 #[test]
-fn pictures_of_nobody_black_ones_and_noise_show_nobody() {
+fn empty_black_and_noisy_pictures_show_no_person() {
     let Some(mut tracker) = tracker() else { return };
     let mut random = SplitMix64::new(4);
     let noise = RgbImage::from_fn(640, 480, |_, _| Rgb([0; 3].map(|_: u8| random.next_u64() as u8)));
@@ -106,7 +106,7 @@ fn pictures_of_nobody_black_ones_and_noise_show_nobody() {
 }
 
 #[test]
-fn of_three_people_the_nearest_is_followed_and_nobody_else_takes_their_place() {
+fn of_three_people_only_the_nearest_is_followed() {
     let Some(mut tracker) = tracker() else { return };
     let (large, small) = (person(460), person(300));
     let three = with(with(with(wall(960, 480), &small, 40, 150), &large, 330, 10), &small, 720, 150);
@@ -133,7 +133,7 @@ fn a_photograph_on_a_shirt_is_not_who_wears_it() {
 }
 
 #[test]
-fn of_somebody_who_is_cut_only_what_is_seen_is_believed() {
+fn of_a_cut_person_only_seen_parts_count() {
     let Some(mut tracker) = tracker() else { return };
     let large = person(800);
     // The legs, the head, one half are outside of the picture.

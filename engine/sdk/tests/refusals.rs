@@ -48,7 +48,7 @@ fn garments_that_there_are_not() {
 }
 
 #[test]
-fn recordings_of_nobody() {
+fn recordings_without_a_person() {
     refused(Recording::open("there-is-no-such.mcap"), Input, &["there-is-no-such.mcap"]);
     refused(Recording::from_frames("mine", Vec::new(), Vec::new()), Input, &["mine", "no frame"]);
     let frame = Joints::seen(0, [Vec3::Y; 23]);

@@ -284,7 +284,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_girth_that_nobody_has_is_left_out_and_named() {
+    fn an_impossible_girth_is_left_out_and_named() {
         let of = |chest: f32| {
             let girth = |m: f32| Some(Estimate::new(m, 0.08));
             let measures = Measures {

@@ -121,7 +121,7 @@ fn room() -> [[Vec3; 3]; 4] {
 }
 
 #[test]
-fn somebody_is_tracked_through_a_room_that_is_seen_as_well() {
+fn a_person_is_tracked_before_a_visible_room() {
     let room = room();
     let step = |i: usize| turned(0.02 * i as f32, Vec3::new(-0.1 + 0.03 * i as f32, 0.0, 0.02 * i as f32));
     let frames: Vec<(DepthFrame, Truth)> =
@@ -148,7 +148,7 @@ fn somebody_is_tracked_through_a_room_that_is_seen_as_well() {
 }
 
 #[test]
-fn somebody_bare_who_is_taken_for_clothed_is_hardly_smaller() {
+fn a_bare_body_taken_for_clothed_hardly_shrinks() {
     let (frame, truth) = seen(Sex::Male, &Wanted::new().with(En::Stature, 1.82), turned(0.1, Vec3::ZERO));
     let found = measuring::measure(&[frame.clone(), frame], Population::Men, FitOptions::MEASURING).expect("a fit");
     let stature = found.named("stature").expect("taken");
@@ -205,7 +205,7 @@ fn who_turns_all_round_is_measured_from_all_sides_and_who_does_not_from_the_fron
 }
 
 #[test]
-fn hostile_pictures_are_nobody_and_no_panic() {
+fn hostile_pictures_show_no_person_and_no_panic() {
     let (frame, _) = seen(Sex::Male, &Wanted::new(), turned(0.0, Vec3::ZERO));
     let n = frame.depth_mm.len();
     let mut noise = toile_base::numeric::random::SplitMix64::new(3);

@@ -56,7 +56,7 @@ fn without_a_unit_the_stature_is_assumed_and_says_so() {
 }
 
 #[test]
-fn joints_that_nobody_believes_are_refused_in_one_sentence() {
+fn implausible_joints_are_refused_in_one_sentence() {
     let absent = Joints::absent(0);
     let mut nan = absent;
     nan.joints[Joint::Pelvis.index()] = TrackedJoint { position: Vec3::NAN, confidence: 1.0 };
@@ -85,7 +85,7 @@ fn frame(depth: impl Fn(f32, f32) -> f32) -> DepthFrame {
 }
 
 #[test]
-fn an_empty_room_and_a_cupboard_are_nobody() {
+fn an_empty_room_and_a_cupboard_are_rejected() {
     let nothing = frame(|_, _| 0.0);
     let room = frame(|_, y| if y > 0.0 { (1.2 / y).min(4.0) } else { 4.0 });
     let cupboard = frame(|x, y| if x.abs() < 0.2 && y > -0.3 { 2.5 } else { 4.0 });
@@ -158,7 +158,7 @@ fn people_seen_from_the_waist_up_have_a_chest_but_no_stature() {
 }
 
 #[test]
-fn a_mug_is_nobody() {
+fn a_mug_is_no_person() {
     let Some(root) = recordings::folder() else { return };
     let bytes = std::fs::read(root.join("depth/pyk4a-azure-mkv/recording.mkv")).unwrap();
     // The one frame of the depth track: a Matroska block of track 2 with 640 x 576 big-endian pixels.

@@ -137,7 +137,7 @@ fn cameras_that_stand_opposite_each_other_are_named_where_they_leave_few_ways_of
 }
 
 #[test]
-fn somebody_who_moves_is_followed_by_their_silhouettes() {
+fn a_moving_person_is_followed_by_silhouettes() {
     let wanted = Wanted::<En>::new().with(En::Stature, 1.68).with(En::WaistGirth, 0.81).with(En::HipGirth, 1.02);
     let truth = toile_assets::body::fitted(Sex::Female, &wanted).unwrap();
     let triangles = &truth.body.mesh.triangles;

@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_copied_while_nobody_looks() {
+    fn nothing_is_copied_while_no_picture_is_wanted() {
         let (mut sender, mut receiver, switch) = channel();
         sender.send(|_| panic!("nobody wants it"));
         assert!(receiver.news().is_none());
@@ -259,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn every_copy_is_wiped_when_nobody_looks_any_more() {
+    fn every_copy_is_wiped_when_unwanted() {
         let (mut sender, mut receiver, switch) = channel();
         switch.set(true);
         for _ in 0..4 {

@@ -312,7 +312,7 @@ mod tests {
     }
 
     #[test]
-    fn a_change_that_overtakes_the_first_still_brings_somebody_new() {
+    fn an_overtaking_change_still_brings_a_new_shopper() {
         let (mut changing, mut threads) = set();
         changing.show(scene(7), true);
         changing.show(scene(8), false);

@@ -168,7 +168,7 @@ mod tests {
     use toile_base::skeleton::Joint;
 
     #[test]
-    fn a_recording_comes_again_and_again_and_nobody_is_there_between() {
+    fn a_recording_repeats_with_empty_pauses() {
         let mut frames = [500, 500 + EMPTY_NS].map(Joints::absent);
         frames.iter_mut().for_each(|frame| frame.at_mut(Joint::Pelvis).confidence = 1.0);
         let mut feed = Feed::Played(Visits::new(frames.map(SourceFrame::from).into(), 1_000, 2 * EMPTY_NS + 7));

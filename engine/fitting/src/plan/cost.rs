@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn one_garment_is_shared_and_several_go_to_whoever_is_free() {
+    fn one_garment_is_shared_several_are_distributed() {
         assert_eq!(cloth_us(&[of(1000.0)], 1), 1000.0);
         assert_eq!(cloth_us(&[of(1000.0)], 2), 600.0);
         assert_eq!(cloth_us(&[of(1000.0), of(700.0)], 1), 1700.0);
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn twice_the_work_takes_twice_the_time_and_meetings_cost() {
+    fn twice_the_work_takes_twice_and_barriers_cost() {
         let costs = Costs { unit_us: [[0.01; KINDS]; STAGES.len()], meeting_us: 0.5, ..Costs::default() };
         let work = |n: f64| Work { counts: [[n; KINDS]; STAGES.len()], phases: 10.0, share: 0.5, substeps: 4 };
         let [once, twice] = [1000.0, 2000.0].map(|n| costs.garment(&work(n)));

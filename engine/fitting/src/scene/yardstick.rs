@@ -119,7 +119,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_yardstick_does_the_work_of_the_engine() {
+    fn the_reference_does_the_work_of_the_engine() {
         let surface = SkinnedSurface::new(VERTICES).unwrap();
         let palette: Vec<Matrix> = surface.palette.iter().map(rows).collect();
         let mut posed = vec![[[0.0; 3]; 2]; VERTICES];

@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn a_whole_visit_goes_through_all_states_and_ends_where_it_began() {
+    fn a_visit_goes_through_all_states() {
         let states = visited(&[(1_000, false, false), (1_000, true, false), (4_000, true, true), (8_000, false, true)]);
         let expected = [
             (1_510, SessionState::Measuring),
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_is_dressed_who_is_not_there() {
+    fn an_absent_shopper_is_not_dressed() {
         let gone = visited(&[(600, true, false), (1_500, false, true)]);
         assert_eq!(gone.iter().map(|s| s.1).collect::<Vec<_>>(), [SessionState::Measuring], "dressed, but not seen");
     }

@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn whoever_knows_the_name_gets_the_picture_and_nobody_else() {
+    fn only_the_name_gives_the_picture() {
         let server = PictureServer::start(ANY, png()).unwrap();
         let (address, path) = parts(&server);
         let answer = get(address, &path).unwrap();
@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_and_those_who_say_nothing_stop_nobody_for_long() {
+    fn noise_and_silent_clients_block_only_briefly() {
         let server = PictureServer::start(ANY, png()).unwrap();
         let (address, path) = parts(&server);
         let silent = TcpStream::connect(address).unwrap();

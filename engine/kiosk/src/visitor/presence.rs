@@ -219,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn after_forgetting_everybody_is_new() {
+    fn after_forgetting_every_person_is_new() {
         let mut watcher = PresenceTracker::new(None);
         let first = last(&mut watcher, &frames(1.0, 0.0, 0)).who;
         watcher.forget();

@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn every_control_of_every_sound_mount_is_within_the_standard_for_everybody() {
+    fn every_control_of_valid_mounts_meets_the_standard() {
         let mut sound = 0;
         for lower_edge_mm in (0..2000).step_by(50).map(|v| v as f32) {
             for height_mm in (200..2600).step_by(100).map(|v| v as f32) {

@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn what_nobody_could_use_is_refused() {
+    fn an_unusable_setup_is_refused() {
         for (text, word) in
             [("[display]\nlower_edge_mm = 1000.0", "within reach"), ("[wear]\ngarments = [\"tent\"]", "tent")]
         {

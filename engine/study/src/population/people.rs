@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn a_person_is_the_same_by_number_whoever_was_asked_for_before() {
+    fn a_person_is_the_same_by_number() {
         let population = opened("from = \"ansur\"\npeople = 50\nwomen = 0.5").unwrap();
         let all: Vec<Person> = (0..50).map(|n| population.person(n)).collect();
         for n in [49, 3, 17] {

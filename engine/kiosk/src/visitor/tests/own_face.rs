@@ -101,7 +101,7 @@ fn what_goes_wrong_is_said_and_leaves_everything_as_it_was() {
 }
 
 #[test]
-fn a_face_goes_with_who_leaves_and_where_somebody_else_looks() {
+fn a_face_is_wiped_on_leaving_and_for_strangers() {
     let on = || {
         let mut play = open(Ok(()));
         play.press(Action::TakeFace);

@@ -30,7 +30,7 @@ const ALL: [Page; 15] = [
 ];
 
 #[test]
-fn a_whole_visit_by_touch_ends_where_it_began() {
+fn a_visit_by_touch_ends_where_it_began() {
     let mut play = Play::dressed();
     let trousers = play.model.wardrobe.find("wide-leg-trousers").unwrap();
     let shirt = play.model.wardrobe.find("tee").unwrap();
@@ -139,7 +139,7 @@ fn who_is_left_alone_is_warned_and_then_forgotten_and_who_comes_back_in_time_goe
 }
 
 #[test]
-fn somebody_else_sees_nothing_of_the_first_and_says_who_they_are() {
+fn another_person_sees_nothing_of_the_first() {
     let mut play = Play::dressed();
     play.press(Action::TakePicture);
     play.wait(1_000);
@@ -351,7 +351,7 @@ fn swipes_move_the_focus_and_once_the_view_is_turned_they_turn_it_on() {
 }
 
 #[test]
-fn somebody_elses_gestures_and_presses_of_a_page_before_do_nothing() {
+fn strangers_gestures_and_late_presses_do_nothing() {
     let mut play = Play::dressed();
     play.see(Some(9));
     play.update(Input::Gesture(Gesture::Confirm));
@@ -458,7 +458,7 @@ fn a_camera_that_is_lost_or_covered_is_said_on_every_page_and_unsaid_when_it_is_
 /// A visitor may choose to see themselves, with a word where the clothes cannot be put on the picture, and is the mannequin's again when
 /// they say so, or have left.
 #[test]
-fn whoever_wants_to_sees_themselves_and_is_forgotten_with_it() {
+fn own_pictures_are_shown_on_request_and_forgotten() {
     let sees = |play: &Play| matches!(play.screen().body_view, BodyView::Shopper { own_picture: true, .. });
     let offers = |play: &Play| play.screen().controls.iter().any(|c| c.action == Action::OwnPicture);
     let mut play = Play::dressed();

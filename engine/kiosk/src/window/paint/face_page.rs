@@ -110,7 +110,7 @@ fn skin(image: &Image) -> f64 {
 }
 
 #[test]
-fn a_picture_of_somebody_becomes_the_face_on_the_page() {
+fn a_portrait_becomes_the_face_on_the_page() {
     if let Err(error) = NetworkPackage::Face.check(&files::folder()) {
         assert!(env::var_os(files::FOLDER_VARIABLE).is_none(), "{error}");
         eprintln!("skipped, did not run: {error}");
