@@ -1,4 +1,4 @@
-//! `toile fabric`: what is listed, what a fabric's law gives back, and that a sheet becomes a file or is refused by its line.
+//! `toile fabric`: the list, the loops of a fabric's curves, and that a sheet becomes a file or is refused by its line.
 
 use crate::common::{Scratch, object, refusal, stdout};
 

@@ -28,7 +28,7 @@ use toile_fitting::live::live_loop::LiveLoop;
 use toile_fitting::live::own_picture::{PictureReceiver, PictureSwitch};
 use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
 use toile_fitting::live::shopper_source::ShopperSource;
-use toile_fitting::live::source::{Feed, Visits};
+use toile_fitting::live::source::{Feed, RepeatedSession};
 use toile_fitting::live::webcam::WebcamOptions;
 use toile_kiosk::service::config::Config;
 use toile_kiosk::service::runner::{Service, ServiceEnvironment, ServiceOptions};
@@ -374,7 +374,7 @@ type VisitSource = (Feed, ShopperSource, Option<(PictureReceiver, PictureSwitch)
 fn source(session: &Arc<Session>, own: bool, clock: RealClock) -> VisitSource {
     if !own {
         // They stand there for as long as the visit takes.
-        let feed = Feed::Played(Visits::of(session, clock.now_ns(), 0));
+        let feed = Feed::Played(RepeatedSession::of(session, clock.now_ns(), 0));
         return (feed, ShopperSource::Recording(session.clone()), None);
     }
     let recording = concat!("recording:", env!("CARGO_MANIFEST_DIR"), "/../../assets/data/sessions/shopper.mcap");

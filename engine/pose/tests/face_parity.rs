@@ -1,5 +1,5 @@
-//! The face mesh and the detector of faces against what LiteRT computes of the same pictures (`data/reference.py` wrote it), and against their
-//! plain twins.
+//! The face mesh and the detector of faces against LiteRT's results for the same pictures (`data/reference.py` wrote them), and against their
+//! scalar references.
 //!
 //! The network's file is no part of the repository: where it is not fetched, these tests say so and do not run.
 

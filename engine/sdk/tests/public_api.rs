@@ -152,19 +152,19 @@ fn written(items: Vec<Item>) -> String {
 
 /// The whole of it, as Rust without bodies: what is re-exported, then what each file defines of it.
 fn list() -> String {
-    let door = parsed(&here("src/lib.rs"));
+    let root = parsed(&here("src/lib.rs"));
     let private = |item: &Item| match item {
         Item::Use(of) => matches!(of.vis, Visibility::Inherited),
         Item::Mod(of) => matches!(of.vis, Visibility::Inherited),
         _ => false,
     };
-    let opened: Vec<Item> = door.items.into_iter().filter(|item| !private(item)).collect();
+    let opened: Vec<Item> = root.items.into_iter().filter(|item| !private(item)).collect();
     let mut known = BTreeSet::new();
     for item in &opened {
         match item {
             Item::Use(of) => names(&of.tree, &mut known),
             other => {
-                panic!("the crate's door opens more than `pub use` of names; this list does not know it: {other:?}")
+                panic!("the crate's root exports more than `pub use` of names; this list does not know it: {other:?}")
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Recommending: laws that a size must obey.
+//! Recommending: rules that a size must obey.
 
 use toile_assets::sizes::{GarmentKind, SizeTable};
 use toile_base::numeric::random::SplitMix64;

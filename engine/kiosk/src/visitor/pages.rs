@@ -1,6 +1,4 @@
-//! Pages: the model's page as a screen, in words.
-//!
-//! Budget: 0.2 ms a screen.
+//! Pages: the model's page as a screen, in words, within 0.2 ms.
 
 mod clothes;
 mod face;

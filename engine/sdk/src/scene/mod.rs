@@ -1,7 +1,6 @@
 //! Scenes in motion: a dressed body, or cloth and colliders of a scene file.
 //!
-//! Budget: dressing a second and more, a step as the engine's (8.3 ms), pictures a second each.
-//! Thread: the caller's; a scene may be sent to another thread.
+//! Dressing takes a second and more, a step at most 8.3 ms, a picture a second. A scene may be sent to another thread.
 
 mod cloth;
 mod dressed;

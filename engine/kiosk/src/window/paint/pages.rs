@@ -1,4 +1,4 @@
-//! Every page of the visitor, in every language, on every display: a law of the layout, and pictures to look at.
+//! Tests every page of the visitor, in every language, on every display: the rules of the layout, and pictures to look at.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
