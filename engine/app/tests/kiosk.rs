@@ -242,7 +242,7 @@ fn joints_that_arrive_over_the_loopback_are_a_shopper() {
     let output = scratch.toile(&["kiosk", "--headless", "--json", "--seconds", "2", "--config", "kiosk.toml"]);
     let found: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(0));
-    assert_eq!(found["states"], serde_json::json!(["attract"]), "nobody sends, so nobody is there");
+    assert_eq!(found["states"], serde_json::json!(["attract"]), "without a sender no shopper is there");
     assert!(found["steps"].as_u64().unwrap() + found["steps_dropped"].as_u64().unwrap() > 200);
     assert!(output.stderr.is_empty(), "health lines are off");
 }

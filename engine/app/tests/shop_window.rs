@@ -164,7 +164,7 @@ fn a_shop_shows_its_own_screens_and_a_change_is_seen_when_the_visitor_has_left()
         kiosk.wait("a mannequin", |seen| share(seen, 0.0, BEHIND) < 0.05);
         kiosk.display.look().write(&folder.join("shop-attract.png"));
     }
-    kiosk.until("somebody dressed", &scratch, |lines| {
+    kiosk.until("a dressed shopper", &scratch, |lines| {
         lines.lines().last().is_some_and(|line| line.contains(", try-on, "))
     });
     let has_primary = |seen: &Picture| share(seen, 0.0, ACCENT) > 0.008;

@@ -139,7 +139,7 @@ fn impossible_faces_are_one_sentence() {
     let sequence = |all: &[String]| file(all).replacen('{', "{\"sequence\": true, ", 1);
     let corner = "\"outline\": [[2, 2], [290, 2], [290, 300]], \"points\"";
     write("corner.json", &file(&[mannequin(0.0).replacen("\"points\"", corner, 1)]));
-    write("nobody.json", &sequence(&[photograph("[]"), photograph("[]")]));
+    write("empty.json", &sequence(&[photograph("[]"), photograph("[]")]));
     write("cameras.json", &sequence(&[wild.clone(), with("\"camera\": \"cam2\"")]));
     write("outlined.json", &sequence(&[with("\"outline\": [[3, 4], [5, 6]]")]));
     write("frames.json", &sequence(&[wild.clone(), wild.clone()]));
@@ -153,7 +153,7 @@ fn impossible_faces_are_one_sentence() {
         ("wild.json", 4, "any head that stands before these cameras"),
         ("dot.json", 4, "a.png: an outline of 1 points is no curve"),
         ("corner.json", 4, "lie near the rim of the head; mark where the head itself ends"),
-        ("nobody.json", 4, "none of the first 2 has 8 points"),
+        ("empty.json", 4, "none of the first 2 has 8 points"),
         ("cameras.json", 4, "a sequence is of one camera"),
         ("outlined.json", 4, "an outline in a sequence"),
         ("frames.json", 4, "any head that stands before these cameras"),

@@ -167,8 +167,8 @@ fn a_portrait_becomes_a_head_or_a_word() {
     far.head = Some((Vec2::splat(80.0), 85.0));
     assert_eq!(trouble(&mut maker, &far), FaceTrouble::TooFar);
     let wall = ColourImage { width: 320, height: 240, rgb: vec![150; 320 * 240 * 3] };
-    let nobody = Portrait { picture: wall, camera: None, head: None };
-    assert_eq!(trouble(&mut maker, &nobody), FaceTrouble::Unseen);
+    let empty = Portrait { picture: wall, camera: None, head: None };
+    assert_eq!(trouble(&mut maker, &empty), FaceTrouble::Unseen);
 }
 
 #[test]

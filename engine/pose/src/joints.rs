@@ -297,7 +297,7 @@ mod tests {
     use crate::landmarks::PoseLandmark;
 
     /// A person of the network's own idea of size, upright before a level camera, seen from a distance.
-    fn somebody(scale: f32, distance: f32) -> Landmarks {
+    fn person(scale: f32, distance: f32) -> Landmarks {
         let shapes = Shapes::of(Sex::Female);
         let skeleton = shapes.skeleton(shapes.mean());
         let places = [
@@ -337,8 +337,8 @@ mod tests {
     fn the_same_body_comes_out_whatever_size_the_network_gives_it() {
         let mut placer = JointPlacer::new(Sex::Female, WebcamMount::default());
         let stature = placer.mean_stature;
-        let one = placer.joints(&somebody(1.0, 2.5), [1280, 720], stature, 7);
-        let other = placer.joints(&somebody(0.7, 2.5), [1280, 720], stature, 7);
+        let one = placer.joints(&person(1.0, 2.5), [1280, 720], stature, 7);
+        let other = placer.joints(&person(0.7, 2.5), [1280, 720], stature, 7);
         for joint in Joint::ALL {
             assert!(one.at(joint).position.distance(other.at(joint).position) < 1e-4, "{joint:?}");
         }
@@ -354,8 +354,8 @@ mod tests {
     fn a_step_to_the_side_and_towards_the_camera_is_seen() {
         let mut placer = JointPlacer::new(Sex::Female, WebcamMount::default());
         let stature = placer.mean_stature;
-        placer.joints(&somebody(1.0, 3.0), [1280, 720], stature, 0);
-        let mut near = somebody(1.0, 2.5);
+        placer.joints(&person(1.0, 3.0), [1280, 720], stature, 0);
+        let mut near = person(1.0, 2.5);
         near.points.iter_mut().for_each(|p| p.pixel.x += 0.4 * 0.87 * 1280.0 / 2.5);
         // Across at once as far as the distance is known, nearer within a second or so.
         let hips = |placer: &mut JointPlacer, seen: &Landmarks, picture: u64| {
@@ -368,7 +368,7 @@ mod tests {
         let own = placer.mean.at(Joint::LeftHip);
         assert!((hip.x - 0.4 - own.x).abs() < 0.01 && (hip.z - 0.5).abs() < 0.02, "{hip}");
         // One picture in which they seem to be elsewhere moves them little.
-        let jumped = hips(&mut placer, &somebody(1.0, 3.0), 40);
+        let jumped = hips(&mut placer, &person(1.0, 3.0), 40);
         assert!((jumped.z - hip.z).abs() < 0.16, "{hip}, then {jumped}");
     }
 
@@ -377,7 +377,7 @@ mod tests {
         let down = 0.3;
         let mut placer = JointPlacer::new(Sex::Female, WebcamMount { down, ..WebcamMount::default() });
         let stature = placer.mean_stature;
-        let mut tilted = somebody(1.0, 2.5);
+        let mut tilted = person(1.0, 2.5);
         // What is above the hips comes nearer.
         tilted.points.iter_mut().for_each(|p| p.world = Mat3::from_rotation_x(down) * p.world);
         assert!(tilted.points[11].world.z < -0.1);
@@ -397,7 +397,7 @@ mod tests {
     #[test]
     fn what_is_not_seen_is_absent_and_nothing_is_stretched() {
         let mut placer = JointPlacer::new(Sex::Male, WebcamMount::default());
-        let mut hidden = somebody(1.0, 3.0);
+        let mut hidden = person(1.0, 3.0);
         hidden.points[25].confidence = 0.1;
         hidden.points[14].world = hidden.points[12].world;
         hidden.points[28].world = Vec3::splat(50.0);

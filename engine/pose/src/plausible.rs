@@ -52,7 +52,7 @@ mod tests {
     use super::*;
     use crate::landmarks::{POINTS, PoseLandmark};
 
-    fn somebody() -> Landmarks {
+    fn person() -> Landmarks {
         let mut points = [PoseLandmark { confidence: 1.0, ..PoseLandmark::default() }; POINTS];
         for (side, sign) in [(0, 1.0), (1, -1.0)] {
             let places = [(11, [0.18, -0.5]), (13, [0.2, -0.22]), (15, [0.2, 0.04])];
@@ -66,8 +66,8 @@ mod tests {
 
     #[test]
     fn a_person_is_a_body_and_one_with_an_arm_of_a_metre_is_none() {
-        assert!(is_body(&somebody()));
-        let mut long = somebody();
+        assert!(is_body(&person()));
+        let mut long = person();
         long.points[15].world.y += 1.0;
         assert!(!is_body(&long));
         // What is not seen does not count.
@@ -77,10 +77,10 @@ mod tests {
 
     #[test]
     fn a_body_without_shoulders_and_hips_or_of_no_height_is_none() {
-        let mut hidden = somebody();
+        let mut hidden = person();
         [11, 23].iter().for_each(|k| hidden.points[*k].confidence = 0.2);
         assert!(!is_body(&hidden));
-        let mut flat = somebody();
+        let mut flat = person();
         flat.points.iter_mut().for_each(|p| p.world.y *= 0.1);
         assert!(!is_body(&flat));
     }

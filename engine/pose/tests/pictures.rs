@@ -100,8 +100,8 @@ fn empty_black_and_noisy_pictures_show_no_person() {
     let mut random = SplitMix64::new(4);
     let noise = RgbImage::from_fn(640, 480, |_, _| Rgb([0; 3].map(|_: u8| random.next_u64() as u8)));
     let stripes = RgbImage::from_fn(640, 480, |x, _| Rgb([if x / 20 % 2 == 0 { 230 } else { 30 }; 3]));
-    for nobody in [wall(640, 480), RgbImage::new(640, 480), noise, stripes, wall(1, 1), wall(4096, 2)] {
-        assert!(seen(&mut tracker, &picture(nobody), 3).iter().all(Option::is_none));
+    for empty in [wall(640, 480), RgbImage::new(640, 480), noise, stripes, wall(1, 1), wall(4096, 2)] {
+        assert!(seen(&mut tracker, &picture(empty), 3).iter().all(Option::is_none));
     }
 }
 
@@ -112,7 +112,7 @@ fn of_three_people_only_the_nearest_is_followed() {
     let three = with(with(with(wall(960, 480), &small, 40, 150), &large, 330, 10), &small, 720, 150);
     let shown = picture(three);
     for landmarks in seen(&mut tracker, &shown, 10).into_iter().skip(2) {
-        let landmarks = landmarks.expect("somebody is seen");
+        let landmarks = landmarks.expect("a person is seen");
         assert!((400.0..560.0).contains(&hips(&landmarks)[0]), "{:?}", hips(&landmarks));
         is_whole(&landmarks, [960, 480]);
     }
@@ -125,7 +125,7 @@ fn a_photograph_on_a_shirt_is_not_who_wears_it() {
     let worn = with(person(460), &person(80), 119, 130);
     let shown = picture(with(wall(640, 480), &worn, 190, 10));
     for landmarks in seen(&mut tracker, &shown, 10) {
-        let landmarks = landmarks.expect("somebody is seen");
+        let landmarks = landmarks.expect("a person is seen");
         let tall = landmarks.points[27].pixel.y - landmarks.points[0].pixel.y;
         assert!(tall > 280.0, "who is {tall} pixels tall is the photograph");
         is_whole(&landmarks, [640, 480]);

@@ -51,7 +51,7 @@ fn names(tree: &UseTree, to: &mut BTreeSet<String>) {
         UseTree::Group(group) => group.items.iter().for_each(|tree| names(tree, to)),
         UseTree::Name(name) => _ = to.insert(name.ident.to_string()),
         UseTree::Rename(name) => _ = to.insert(name.rename.to_string()),
-        UseTree::Glob(_) => panic!("a `pub use` of everything shows what nobody has listed; name the items"),
+        UseTree::Glob(_) => panic!("a `pub use` of everything shows unlisted items; name the items"),
     }
 }
 

@@ -61,8 +61,8 @@ fn recordings_without_a_person() {
     };
     refused(Recording::from_frames("mine", Vec::new(), vec![depth.clone()]), Input, &["4 depths"]);
     let empty = DepthFrame { depth_mm: vec![0; 640 * 480].into(), ..depth };
-    let nobody = Recording::from_frames("mine", Vec::new(), vec![empty]).unwrap();
-    refused(nobody.measure(&Shopper::default()), Input, &[]);
+    let empty = Recording::from_frames("mine", Vec::new(), vec![empty]).unwrap();
+    refused(empty.measure(&Shopper::default()), Input, &[]);
     let embedded = Recording::embedded().unwrap();
     let by = |name: &str, mm: f64| Shopper { by_tape_mm: vec![(name.to_owned(), mm)], ..Shopper::default() };
     refused(embedded.measure(&by("chest", 92.0)), Input, &["chest", "centimetres"]);

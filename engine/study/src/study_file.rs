@@ -232,7 +232,7 @@ impl StudyFile {
         seconds("settle_s", physics.settle_s)?;
         seconds("compare_s", physics.compare_s)?;
         if physics.poses.is_empty() {
-            return Err("[physics] poses is empty; leave it out to let everybody stand".to_owned());
+            return Err("[physics] poses is empty; leave it out to let all people stand".to_owned());
         }
         one_of("[physics] sizes", &physics.sizes, &["recommended", "near", "all"])
     }

@@ -63,10 +63,10 @@ pub enum MeasureError {
     Empty,
     /// Depth without a person.
     #[error(
-        "nobody is in view in any of the {frames} depth frames; stand upright before the camera, 1.2 to 3.5 m away, \
+        "no person is in view in any of the {frames} depth frames; stand upright before the camera, 1.2 to 3.5 m away, \
          head and shoulders in the picture."
     )]
-    Nobody {
+    NoPerson {
         /// Frames that were looked at.
         frames: usize,
     },
@@ -130,10 +130,10 @@ fn possible(mut measured: Measurements, left_out: &mut Vec<String>) -> Measureme
     ];
     for (name, girth) in girths {
         let of = MEASURES.iter().position(|m| m.0 == name).map(|i| people.at(i));
-        let beyond = |(e, of): &(Estimate, Estimate)| (e.value - of.value).abs() > tape_readings::ANYBODY * of.sigma;
+        let beyond = |(e, of): &(Estimate, Estimate)| (e.value - of.value).abs() > tape_readings::MOST_SIGMAS * of.sigma;
         if let Some((e, _)) = girth.zip(of).filter(beyond) {
             left_out.push(format!(
-                "A {} of {:.0} mm is nobody's, so it is left out: hold the arms away from the body, and put bags down.",
+                "A {} of {:.0} mm is no person's, so it is left out: hold the arms away from the body, and put bags down.",
                 tape_readings::plain(name),
                 e.value * 1e3
             ));
@@ -182,7 +182,7 @@ fn from_depth(depth: &[DepthFrame], hint: &Hint) -> Result<Measurements, Measure
         let frames = depth.len().min(FRAMES);
         return Err(match too_far {
             Some(distance) => MeasureError::TooFar { distance, limit: point_cloud::FARTHEST },
-            None => MeasureError::Nobody { frames },
+            None => MeasureError::NoPerson { frames },
         });
     }
     let measures = all.measures(hint);

@@ -17,7 +17,7 @@ pub type BodyEstimate = Correlated<{ MEASURES.len() }>;
 const TAPE: f32 = 0.005;
 
 /// A measure by tape farther from the value expected by the others than this many standard deviations is refused.
-const NOBODY: f32 = 5.0;
+const FARTHEST_SIGMAS: f32 = 5.0;
 
 /// A measure by tape farther from the camera's than this many standard deviations of both is said to be.
 const APART: f32 = 3.0;
@@ -40,7 +40,7 @@ const UNITS: [(&str, f32); 6] =
 
 /// Standard deviations that people of the survey stray by: within them a measure by tape is taken for its unit's, and beyond them
 /// it is refused.
-pub(crate) const ANYBODY: f32 = 6.0;
+pub(crate) const MOST_SIGMAS: f32 = 6.0;
 
 /// Why a measure by tape is refused; each message says what and the cure.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -57,7 +57,7 @@ pub enum TapeError {
         names: String,
     },
     /// A length outside of people's range.
-    #[error("nobody's {measure} is {given_mm:.0} mm: people's lie between {low_mm:.0} and {high_mm:.0} mm{cure}")]
+    #[error("no person's {measure} is {given_mm:.0} mm: people's lie between {low_mm:.0} and {high_mm:.0} mm{cure}")]
     Unit {
         /// The measure.
         measure: &'static str,
@@ -160,7 +160,7 @@ impl TapeReadings {
         let all = population(Population::Mixed);
         let ranges = |index: usize| {
             let Estimate { value, sigma } = all.at(index);
-            value - ANYBODY * sigma..value + ANYBODY * sigma
+            value - MOST_SIGMAS * sigma..value + MOST_SIGMAS * sigma
         };
         let range = ranges(index);
         if !range.contains(&value) {
@@ -225,7 +225,7 @@ impl TapeReadings {
             });
             let off = |e: &Estimate| (value - e.value).abs() / e.sigma;
             let nearest = if off(&expected[0]) < off(&expected[1]) { expected[0] } else { expected[1] };
-            if off(&nearest) > NOBODY && worst.as_ref().is_none_or(|w| off(&nearest) > w.0) {
+            if off(&nearest) > FARTHEST_SIGMAS && worst.as_ref().is_none_or(|w| off(&nearest) > w.0) {
                 let error = TapeError::Contradiction {
                     measure: MEASURES[index].0,
                     given_mm: value * 1e3,

@@ -230,7 +230,7 @@ fn a_whole_clothed_woman_is_fitted() {
     let options = OpenOptions { camera: Some(folder.join("chae_depth_camera.json")) };
     let session = open(&folder.join("chae_depth_mm_1024x512.u16le"), &options).unwrap();
     let frame = &session.depth[0];
-    let alone = PersonFinder::default().push(frame).alone.expect("somebody");
+    let alone = PersonFinder::default().push(frame).alone.expect("a person");
     let fitted = measuring::measure(&[alone], Population::Mixed, FitOptions::MEASURING).expect("a fit");
     assert!(fitted.explained > 0.9, "{}", fitted.explained);
     let stature = fitted.measures[0];

@@ -91,7 +91,7 @@ fn an_empty_room_and_a_cupboard_are_rejected() {
     let cupboard = frame(|x, y| if x.abs() < 0.2 && y > -0.3 { 2.5 } else { 4.0 });
     for seen in [nothing, room, cupboard] {
         let why = measure(&[], &[seen], &Hint::default()).unwrap_err();
-        assert_eq!(why, MeasureError::Nobody { frames: 1 });
+        assert_eq!(why, MeasureError::NoPerson { frames: 1 });
     }
 }
 
@@ -171,7 +171,7 @@ fn a_mug_is_no_person() {
     let seen = DepthFrame { intrinsics, depth_mm, ..frame(|_, _| 0.0) };
     let valid = seen.depth_mm.iter().filter(|&&mm| mm > 0).count();
     assert!(valid > 100_000, "{valid} valid pixels");
-    assert_eq!(measure(&[], &[seen], &Hint::default()).unwrap_err(), MeasureError::Nobody { frames: 1 });
+    assert_eq!(measure(&[], &[seen], &Hint::default()).unwrap_err(), MeasureError::NoPerson { frames: 1 });
 }
 
 /// The EBML number that ends before a byte, if one does in 3 to 8 bytes.

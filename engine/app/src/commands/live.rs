@@ -198,7 +198,7 @@ fn look(feed: &mut CameraFeed, handle: &CameraHandle, length: Duration, words: W
 fn line(last: &CameraFigures, now: &CameraFigures) -> String {
     let (a, b) = (&last.counts, &now.counts);
     let bad = (b.half + b.repeated + b.empty) - (a.half + a.repeated + a.empty);
-    let who = if now.tracked[1] > last.tracked[1] { "somebody is followed" } else { "nobody is followed" };
+    let who = if now.tracked[1] > last.tracked[1] { "a person is followed" } else { "no person is followed" };
     let state = if now.state == CameraState::Seeing { String::new() } else { format!(", {}", now.state) };
     format!(
         "{} frames, {} colour, {} missing, {bad} unusable{state}; {who}",

@@ -36,7 +36,7 @@ pub struct CameraRecordReport {
 }
 
 /// What a session of a camera holds.
-const HOLDS: &str = "depth images of the whole view, from which shape, stature and movement of everybody in it can be taken; no colour, \
+const HOLDS: &str = "depth images of the whole view, from which shape, stature and movement of all people in it can be taken; no colour, \
                      no sound, no name";
 
 /// What is recorded, and how.
@@ -117,14 +117,14 @@ fn ask(given: bool) -> Result<(), AppError> {
     }
     let refused = || {
         AppError::Usage(
-            "recording a person needs their consent; ask everybody in view, and add --consent once they agree"
+            "recording a person needs their consent; ask all people in view, and add --consent once they agree"
                 .to_owned(),
         )
     };
     if !io::stdin().is_terminal() || !io::stderr().is_terminal() {
         return Err(refused());
     }
-    let question = format!("The file will hold {HOLDS}.\nDoes everybody in view agree to be recorded? Type yes: ");
+    let question = format!("The file will hold {HOLDS}.\nDo all people in view agree to be recorded? Type yes: ");
     let mut stderr = io::stderr();
     stderr.write_all(question.as_bytes()).and_then(|()| stderr.flush()).map_err(AppError::internal)?;
     let mut reply = String::new();

@@ -33,7 +33,7 @@ use super::body_frames::{self, MotionReport};
 #[command(
     after_help = "Example: four masks, and the body as a mesh\n  toile capture body masks --calibration cameras.toml --out fitted\n\
                   Example: pictures before a known background, the sex known\n  toile capture body shots --background empty \
-                  --calibration cameras.toml --sex female\nExample: somebody who moves, a folder of masks for each camera\n  \
+                  --calibration cameras.toml --sex female\nExample: a person who moves, a folder of masks for each camera\n  \
                   toile capture body masks --calibration cameras.toml --rate 30 --out moved"
 )]
 pub struct BodyCaptureArgs {

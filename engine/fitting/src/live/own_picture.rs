@@ -229,7 +229,7 @@ mod tests {
     #[test]
     fn nothing_is_copied_while_no_picture_is_wanted() {
         let (mut sender, mut receiver, switch) = channel();
-        sender.send(|_| panic!("nobody wants it"));
+        sender.send(|_| panic!("no picture is wanted"));
         assert!(receiver.news().is_none());
         switch.set(true);
         sender.send(picture);

@@ -94,7 +94,7 @@ pub fn keep(first: &DressedWorld, path: PathBuf) -> Result<(Arc<FlightRecorder>,
 /// A recording that does not begin with a dressed person, or a scene that cannot be made.
 pub fn again(notes: &[SceneNote], entries: &[Entry], workers: usize) -> Result<(World, Replayed), FittingError> {
     let Some((Entry::Changed { number, .. }, entries)) = entries.split_first() else {
-        return Err(FittingError::Input("it does not begin where somebody was dressed; record it again".into()));
+        return Err(FittingError::Input("it does not begin with a dressed person; record it again".into()));
     };
     let made = |number: u64| {
         let unknown = || FittingError::Input(format!("it does not say how scene {number} was made; record it again"));

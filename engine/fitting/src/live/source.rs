@@ -171,7 +171,8 @@ mod tests {
     fn a_recording_repeats_with_empty_pauses() {
         let mut frames = [500, 500 + EMPTY_NS].map(Joints::absent);
         frames.iter_mut().for_each(|frame| frame.at_mut(Joint::Pelvis).confidence = 1.0);
-        let mut feed = Feed::Played(RepeatedSession::new(frames.map(SourceFrame::from).into(), 1_000, 2 * EMPTY_NS + 7));
+        let mut feed =
+            Feed::Played(RepeatedSession::new(frames.map(SourceFrame::from).into(), 1_000, 2 * EMPTY_NS + 7));
         let mut frames_read = Vec::new();
         for _ in 0..9 {
             let due = feed.next_ns().unwrap();
@@ -183,7 +184,7 @@ mod tests {
         assert_eq!(
             frames_read,
             (0..9).map(|i| (i, there(i))).collect::<Vec<_>>(),
-            "every 33 ms, two of four with somebody"
+            "every 33 ms, two of four with a person"
         );
     }
 

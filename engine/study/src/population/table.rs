@@ -90,7 +90,7 @@ pub(super) fn read(path: &Path, wanted: &WantedPopulation) -> Result<Vec<TableRo
     }
     if rows.iter().map(|r| r.weight).sum::<f64>() <= 0.0 {
         return Err(StudyError::Input(format!(
-            "{shown}: every weight is 0, so that it stands for nobody; correct the column weight"
+            "{shown}: every weight is 0, so that it stands for no person; correct the column weight"
         )));
     }
     Ok(rows)
@@ -128,7 +128,7 @@ fn row(
                 if found.weight < 0.0 {
                     let weight = found.weight;
                     return Err(StudyError::Input(format!(
-                        "{shown}: line {line}: the weight is {weight}, and nobody stands for fewer than no people; give 0 or more"
+                        "{shown}: line {line}: the weight is {weight}, and a weight cannot be negative; give 0 or more"
                     )));
                 }
             }
