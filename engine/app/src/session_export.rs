@@ -1,4 +1,4 @@
-//! Where every garment and the body are in each frame of a run, written for other tools into the run's output folder.
+//! Positions of every garment and the body in each frame of a run, written for other tools into the run's output folder.
 
 use std::collections::HashMap;
 use std::fs::File;

@@ -1,4 +1,4 @@
-//! The reports as people read them: what `--json` says, in words and tables.
+//! The reports as people read them: the contents of `--json`, in words and tables.
 
 use crate::report::{
     BodyReport, MeasureReport, PhysicsReport, RecommendationReport, RunReport, SessionReport, ShopperMeasures, TryOn,

@@ -1,4 +1,4 @@
-//! `toile convert`: what is kept of a recording, and that nothing that shows a person is kept unasked.
+//! `toile convert`: the parts kept of a recording; no picture of a person is kept unasked.
 
 use crate::common::Scratch;
 use crate::recordings;

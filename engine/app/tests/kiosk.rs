@@ -1,4 +1,4 @@
-//! `toile kiosk --headless` as a service manager and a script meet it: readiness, the watchdog, signals, what it leaves behind.
+//! `toile kiosk --headless` as a service manager and a script meet it: readiness, the watchdog, signals, files left behind.
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read};

@@ -1,4 +1,4 @@
-//! What a shopper says of themselves: measures by tape count in every command, a child moves nothing, and what cannot be is named.
+//! Facts that a shopper gives: measures by tape count in every command, a child changes no measure, and impossible measures are named.
 
 use crate::common::{Scratch, object, refusal};
 use serde_json::Value;

@@ -1,6 +1,6 @@
 //! A webcam as a user meets it: refused with the command that fetches its network, or seen through files that play in its place.
 //!
-//! The network's files are no part of the repository: where they are not fetched, what needs them says so and does not run.
+//! The network's files are no part of the repository: where they are not fetched, the tests that need them say so and do not run.
 
 use std::fs;
 use std::path::Path;

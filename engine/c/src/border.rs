@@ -1,8 +1,8 @@
-//! What C hands over, checked before it is used: pointers, arrays, texts.
+//! Checks the pointers, arrays and texts that C hands over before they are used.
 //!
 //! The types here are pointers to C. Rust can make none of them, only a call from C does; and the caller promises what the header
 //! says: a pointer which is not null leads to as many elements as the call is told of, which no other thread changes meanwhile.
-//! What can be seen in a pointer is checked: null, alignment, a size that no memory has.
+//! The checks are: null, alignment, a size that no memory has.
 
 use std::ffi::{CStr, c_char};
 

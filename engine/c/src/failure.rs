@@ -1,4 +1,4 @@
-//! Why a call failed: a code for programs, a sentence for people, kept for the thread that called.
+//! Cause of a failed call: a code for programs, a sentence for people, kept for the thread that called.
 
 use std::cell::{Cell, RefCell};
 use std::ffi::{CString, c_char};

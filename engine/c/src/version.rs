@@ -1,4 +1,4 @@
-//! Versions, and the names of what is built in.
+//! Versions, and the names of the built-in garments and fabrics.
 
 use std::ffi::{CStr, CString, c_char};
 use std::sync::OnceLock;

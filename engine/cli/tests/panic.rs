@@ -1,4 +1,4 @@
-//! What a fault of Toile's own does: alone in its process, because the panic hook and its flag belong to all of it.
+//! A fault of Toile's own, alone in its process, because the panic hook and its flag belong to the whole process.
 
 use std::fs;
 

@@ -1,4 +1,4 @@
-//! Why a fitting, or a kiosk, cannot go on.
+//! Errors of a fitting or a kiosk.
 
 use std::fmt::Display;
 

@@ -1,5 +1,5 @@
-//! A shopper's own face from the points that the network finds, on drawn heads whose truth is known: how far the points lie from their true
-//! places, how far the adapted head does, how long it takes, what is refused.
+//! A shopper's own face from the points that the network finds, on drawn heads whose truth is known: the distance of the points from their true
+//! places, that of the adapted head, the time, and refusals.
 //!
 //! The network's file is no part of the repository: where it is not fetched, these tests say so and do not run.
 

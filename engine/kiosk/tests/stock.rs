@@ -1,4 +1,4 @@
-//! A stock that changes on the disk while it is watched: what is read again, what is left out, and that the last good one stays.
+//! A stock that changes on the disk while it is watched: changed files are read again, bad ones are left out, and the last good stock stays.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! Where a person is in a whole picture.
+//! Finds a person in a whole picture.
 //!
 //! The network gives 2,254 boxes, each with the middle of the hips and a point of the circle around the whole body.
 

@@ -1,14 +1,14 @@
-//! The body in the camera's own space: where the camera has to be for the joints to be seen where their landmarks are, and joints that are
+//! The body in the camera's own space: the place of the camera from which the joints are seen at their landmarks, and joints that are
 //! seen there exactly.
 //!
-//! Joints have the network's directions and a body's own lengths, so that they are not seen quite where their landmarks are. With the
+//! Joints have the network's directions and a body's own lengths, so that they are not seen exactly at their landmarks. With the
 //! camera's rotation R known (its tilt), its place t is the least squares solution of
 //!
 //! ```text
 //! fx (q.x + t.x) = (u - cx) (q.z + t.z),   fy (q.y + t.y) = (v - cy) (q.z + t.z),   q = R^T joint
 //! ```
 //!
-//! which are linear in t. What is left of each limb's end is taken out in the plane of the picture, a little way at most.
+//! which are linear in t. The rest at each limb's end is removed in the plane of the picture, within a small limit.
 
 use glam::{Affine3A, Mat3, Vec2, Vec3};
 use toile_base::frame::{Intrinsics, Joints};

@@ -1,4 +1,4 @@
-//! Whether landmarks are those of a person: a network that has lost its way gives impossible bodies.
+//! Checks that landmarks are those of a person: a network that has lost its way gives impossible bodies.
 
 use glam::Vec3;
 

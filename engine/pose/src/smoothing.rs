@@ -1,6 +1,6 @@
 //! Landmarks made steady from frame to frame: One Euro filters, of the settings that MediaPipe has for its own.
 //!
-//! The joints are filtered once more by the sensor thread as those of any sensor are; what is smoothed here is what the network itself
+//! The joints are filtered once more by the sensor thread as those of any sensor are; this filter serves the network's own
 //! needs: the region of the next frame, and directions that do not tremble while a person stands.
 
 use glam::{Vec2, Vec3};

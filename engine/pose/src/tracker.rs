@@ -1,4 +1,4 @@
-//! A person followed from picture to picture: found once in the whole of it, then in the region where the last one had them.
+//! A person followed from picture to picture: found once in the whole of it, then in the region of the last picture.
 
 use toile_base::limits::MAX_SIDE;
 use toile_sensors::limits::MAX_COLOUR_PIXELS;

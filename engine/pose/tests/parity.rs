@@ -1,4 +1,4 @@
-//! The network against what LiteRT computes of the same pictures (`data/reference.py` wrote it), and how long it takes.
+//! The network against LiteRT's results for the same pictures (`data/reference.py` wrote them), and its time.
 //!
 //! The network's files are no part of the repository: where they are not fetched, these tests say so and do not run.
 

@@ -1,4 +1,4 @@
-//! Pictures that are none of one person who stands before a webcam: what comes of each is defined, and never a stretched body.
+//! Pictures other than one person who stands before a webcam: the result of each is defined, and never a stretched body.
 //!
 //! The network's files are no part of the repository: where they are not fetched, these tests say so and do not run.
 

@@ -1,4 +1,4 @@
-//! What numpy shows of memory that stands in Rust: arrays that cannot be written, without a copy.
+//! Read-only numpy arrays over memory of Rust, without a copy.
 //!
 //! The memory belongs to a Python object that never changes it. Every array that shows it holds that object, so that an array may
 //! outlive the scene that it came from. numpy gives no way to make such an array writable, since it does not own its memory.

@@ -1,4 +1,4 @@
-//! Why a call cannot be done, in one sentence with its cure.
+//! Cause of a failed call, in one sentence with its cure.
 
 use std::fmt::Display;
 

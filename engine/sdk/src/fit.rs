@@ -1,4 +1,4 @@
-//! Which size fits, and how each zone of it does.
+//! The size that fits, and the fit of each of its zones.
 
 use serde::Serialize;
 use toile_track::recommend::Recommendation as Judged;

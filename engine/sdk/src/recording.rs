@@ -1,4 +1,4 @@
-//! Recordings: what a sensor saw of a person, and their measures.
+//! Recordings: a sensor's data of a person, and their measures.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! A try-on by physics: a garment in a size put on a body, settled, and what is seen of it there.
+//! A try-on by physics: a garment in a size put on a body, settled, and observed there.
 
 use std::f32::consts::TAU;
 

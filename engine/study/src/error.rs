@@ -1,4 +1,4 @@
-//! Why a study cannot be made: one sentence with its cure.
+//! Cause of a failed study: one sentence with its cure.
 
 use std::fmt::Display;
 use std::io;

@@ -1,4 +1,4 @@
-//! Pictures of typical people in their sizes, as data that stands in a page.
+//! Pictures of typical people in their sizes, as data within a page.
 
 use std::fmt::Write;
 

@@ -1,4 +1,4 @@
-//! What a sensor makes of true measures: normal errors of known deviations, by seed and number.
+//! A sensor's readings of true measures: normal errors of known deviations, by seed and number.
 
 use toile_base::body::Measures;
 use toile_track::estimate::Estimate;

@@ -1,4 +1,4 @@
-//! The study file: which garments, which people, which sensor, how much physics. Every key is known or refused.
+//! The study file: garments, people, sensor, amount of physics. Unknown keys are refused.
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! Whether a shopper is a child: an estimate from the stature, which moves no measure.
+//! Estimates from the stature whether a shopper is a child; it changes no measure.
 
 use toile_assets::sizes::Population;
 

@@ -130,7 +130,8 @@ fn possible(mut measured: Measurements, left_out: &mut Vec<String>) -> Measureme
     ];
     for (name, girth) in girths {
         let of = MEASURES.iter().position(|m| m.0 == name).map(|i| people.at(i));
-        let beyond = |(e, of): &(Estimate, Estimate)| (e.value - of.value).abs() > tape_readings::MOST_SIGMAS * of.sigma;
+        let beyond =
+            |(e, of): &(Estimate, Estimate)| (e.value - of.value).abs() > tape_readings::MOST_SIGMAS * of.sigma;
         if let Some((e, _)) = girth.zip(of).filter(beyond) {
             left_out.push(format!(
                 "A {} of {:.0} mm is no person's, so it is left out: hold the arms away from the body, and put bags down.",

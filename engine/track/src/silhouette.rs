@@ -1,5 +1,5 @@
-//! One frame's reading of a person: where the floor and the top of the head are, and how broad and how deep the torso
-//! is at the levels of chest, waist and hip, the arms left out.
+//! One frame's reading of a person: heights of the floor and the top of the head, and breadth and depth of the torso
+//! at the levels of chest, waist and hip, the arms left out.
 //!
 //! Definitions are those of EN 13402-1 and ISO 8559-1: levels are fixed fractions of stature (see
 //! [`crate::anthropometry::LevelFractions`]), not the widest or narrowest place, which lies 12 to 27 mm of girth away.

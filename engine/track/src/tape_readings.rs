@@ -1,4 +1,4 @@
-//! Measures that were taken by tape: read from words, checked, and laid over what was measured.
+//! Measures that were taken by tape: read from words, checked, and merged with the measured ones.
 
 use std::sync::LazyLock;
 

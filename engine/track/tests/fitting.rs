@@ -1,4 +1,4 @@
-//! The body fit held against truth: known bodies before a synthetic camera, and what a real one saw.
+//! The body fit compared with truth: known bodies before a synthetic camera, and recordings of a real one.
 
 use glam::{Affine3A, Quat, Vec3};
 use toile_assets::body::shape::Shapes;

@@ -1,4 +1,4 @@
-//! Measuring by joints and depth: what is refused, and what real sensors recorded.
+//! Measuring by joints and depth: refusals, and recordings of real sensors.
 
 use glam::{Affine3A, Mat3, Vec3};
 use toile_assets::sizes::Population;

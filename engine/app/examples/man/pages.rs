@@ -1,4 +1,4 @@
-//! Pages: what the grammar knows, and what it does not: exit codes, files, where to read on.
+//! Pages: the grammar's contents, and beside it exit codes, files and further reading.
 
 use std::io;
 

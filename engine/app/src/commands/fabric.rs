@@ -1,4 +1,4 @@
-//! `toile fabric`: what fabrics there are, what one is, and a laboratory's sheet made into one.
+//! `toile fabric`: lists fabrics, shows one, and makes one from a laboratory's sheet.
 
 mod loops;
 

@@ -1,4 +1,4 @@
-//! `toile kiosk`: a shop's fitting room, unattended.
+//! `toile kiosk`: runs a shop's fitting room, unattended.
 
 use std::ops::RangeInclusive;
 use std::path::PathBuf;

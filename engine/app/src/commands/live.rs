@@ -1,4 +1,4 @@
-//! `toile live`: what a camera gives, on the terminal and as pictures.
+//! `toile live`: shows a camera's data, on the terminal and as pictures.
 
 use std::path::PathBuf;
 use std::thread;

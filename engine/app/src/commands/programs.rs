@@ -1,4 +1,4 @@
-//! Commands that programs of their own run: which one, where it is, and how to get it.
+//! Commands that other programs run: the program, its place, and the way to get it.
 
 use std::convert::Infallible;
 use std::env;

@@ -1,4 +1,4 @@
-//! `toile record`: a synthetic session, such as the embedded one: what a depth camera would see of a moving shopper.
+//! `toile record`: makes a synthetic session, such as the embedded one: a moving shopper, rendered as a depth camera would see them.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! What a scene's handle stands for.
+//! State behind a scene's handle.
 
 use std::ffi::CString;
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};

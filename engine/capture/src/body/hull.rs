@@ -1,4 +1,4 @@
-//! The visual hull: all places that every silhouette covers (Laurentini 1994), carved as an octree, and what it says of who stands there.
+//! The visual hull: all places that every silhouette covers (Laurentini 1994), carved as an octree, and the person's shape by it.
 
 use glam::{DMat3, DVec3};
 

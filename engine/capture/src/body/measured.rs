@@ -1,4 +1,4 @@
-//! What silhouettes say of a person: the eleven measures, each with its error, a body of both sexes' fits, and its pose.
+//! Results from silhouettes: the eleven measures, each with its error, a body of both sexes' fits, and its pose.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! `toile capture face`: photographs with marked points, or one whose points are found, become a mannequin's head that is like them.
+//! `toile capture face`: turns photographs with marked points, or one photograph with found points, into a mannequin's head that is like them.
 
 use std::path::PathBuf;
 use std::slice::from_ref;

@@ -1,4 +1,4 @@
-//! The fit of the skeleton: keypoints pull their rays, bones keep their lengths, and what is not seen moves on as it moved.
+//! The fit of the skeleton: keypoints pull their rays, bones keep their lengths, and unseen parts move on as they moved.
 //!
 //! Unknowns are the keypoints X of a frame. With the pixel `p` of a keypoint in a camera, its score s and the distance in pixels
 //! `r = project(X) - p`, the energy `sum s^2 rho(r) + sum (|X_a - X_b| - L)^2 / l^2 + sum |X - X0|^2 / m^2` is made least by Gauss

@@ -1,6 +1,6 @@
 //! The one assembly of the loop: sensor, physics and renderer, joined by the latest value, bounded queues and a handover of scenes.
-//! The kiosk, the latency benchmark and the soak test run this one; what they differ in are the source, the renderer, the clock, and
-//! what a test wraps around the three loops.
+//! The kiosk, the latency benchmark and the soak test run this one. They differ in the source, the renderer, the clock, and
+//! the wrappers that a test puts around the three loops.
 
 use std::sync::Arc;
 

@@ -1,5 +1,5 @@
-//! The loop that keeps a dressed body in motion: its threads, how they are joined, and what happens when one of them does not
-//! get on.
+//! The loop that keeps a dressed body in motion: its threads, their queues, and the recovery from a thread that
+//! stalls.
 //!
 //! It is ready within 5 s of its start. It has sensor, physics and render threads of its own. The caller's thread looks at the queues some
 //! fifty times a second.

@@ -1,8 +1,8 @@
 //! Channel of the camera's pictures to the mirror and to the face camera, each with what was seen in it: the latest only, in
 //! memory alone, and only while a shopper looks at themselves or has their face taken.
 //!
-//! A picture is handed on once its joints are there, so that garment and picture are of one moment. What the renderer shows of it comes
-//! back as a number that means something to the two of them.
+//! A picture is handed on once its joints are there, so that garment and picture are of one moment. The renderer's result comes
+//! back as a number that only the two of them interpret.
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;

@@ -1,5 +1,5 @@
 //! Hands dressed scenes over to the running loop: shoppers come, change clothes and leave, and the mannequin returns. One change is
-//! under way at a time, and what was replaced is freed here, never by the loop's own threads.
+//! under way at a time, and the replaced scene is freed here, never by the loop's own threads.
 
 use std::sync::Arc;
 

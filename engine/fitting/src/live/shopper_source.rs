@@ -1,4 +1,4 @@
-//! Where a shopper is measured from: a recording, joints that were received, or a live camera.
+//! Source of a shopper's measures: a recording, received joints, or a live camera.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! Stretch by zone in each pose, and how far hems ride up.
+//! Stretch by zone in each pose, and the rise of hems.
 
 use glam::Vec3;
 use serde::Serialize;

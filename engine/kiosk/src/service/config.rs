@@ -1,4 +1,4 @@
-//! The configuration, in TOML: the only state that a kiosk has. Unknown keys are refused.
+//! The configuration file (TOML), the only thing that a kiosk keeps. Unknown keys are refused.
 
 use std::net::SocketAddr;
 use std::ops::RangeInclusive;

@@ -1,4 +1,4 @@
-//! The service's side of the controller of a session: what the service asks of it, and the parts of the kiosk that it uses.
+//! The service's side of the controller of a session: the interface to the service, and the parts of the kiosk that it uses.
 
 use std::sync::Arc;
 

@@ -1,5 +1,5 @@
-//! Health: what a kiosk counts while it runs, and the health line. Counted and written by the service's thread, never
-//! by the loop's.
+//! Health: the counters of a running kiosk, and the health line. The service's thread counts and writes, never a thread
+//! of the loop.
 
 use std::fmt::{self, Display, Formatter};
 

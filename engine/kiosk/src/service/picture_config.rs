@@ -1,4 +1,4 @@
-//! Where pictures to take away are served, if they are.
+//! The address at which pictures to take away are served, if they are.
 
 use std::net::{IpAddr, SocketAddr};
 

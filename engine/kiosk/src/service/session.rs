@@ -1,4 +1,4 @@
-//! The session of one shopper as a state machine of four states. It knows the time and what is seen, and nothing else: a
+//! The session of one shopper as a state machine of four states. It knows only the time and the presence of a person: a
 //! window, a service without one and a test drive the same machine.
 
 use serde::Serialize;

@@ -1,5 +1,5 @@
-//! The stock's watch: looks whether the files of the stock have changed, reads them again on a thread of its own, and offers what
-//! came of it to the controller, which takes it when no person is in view.
+//! The stock's watch: checks whether the files of the stock have changed, reads them again on a thread of its own, and offers the
+//! result to the controller, which takes it when no person is in view.
 
 use std::collections::BTreeSet;
 use std::fmt::{self, Display, Formatter};

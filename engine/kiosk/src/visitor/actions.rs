@@ -1,4 +1,4 @@
-//! Actions: what can be pressed on a page, in the order of the Tab key; first what most will want next.
+//! Actions: the controls of a page, in the order of the Tab key, the most wanted one first.
 
 use std::ops::Range;
 

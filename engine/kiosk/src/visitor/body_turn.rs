@@ -1,5 +1,5 @@
-//! A shopper's turn: which sides of them were seen, whether that is enough to be measured from all sides, and whether they turn at all.
-//! It is offered and never asked for: who stands still loses nothing.
+//! A shopper's turn: the sides that were seen, whether they suffice to measure from all sides, and whether the shopper turns at all.
+//! It is offered and never asked for: a shopper who stands still loses nothing.
 
 use std::f32::consts::{PI, TAU};
 

@@ -1,4 +1,4 @@
-//! The controller of a visit: feeds the visitor's model with what the sensor and the window report, and carries out its effects.
+//! The controller of a visit: feeds the visitor's model with the reports of the sensor and the window, and carries out its effects.
 
 use std::sync::Arc;
 

@@ -1,5 +1,5 @@
-//! The dressing worker: measures a shopper, dresses them, drapes two sizes, takes a picture and makes a head of their face, one after the other, on a thread of its own that
-//! nothing waits for.
+//! The dressing worker: measures a shopper, dresses them, drapes two sizes, takes a picture and makes a head of their face, one after the other, on a thread of its own for
+//! which no other thread waits.
 
 use std::net::SocketAddr;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! A shopper's own face on the mannequin: asked for, put on, taken away. The pages know whether it is there and never what it looks like.
+//! A shopper's own face on the mannequin: asked for, put on, taken away. The pages know whether it is there, and never see it.
 
 use super::model::{Effect, Effects, VisitModel};
 use super::own_face::FaceTrouble;

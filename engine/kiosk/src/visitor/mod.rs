@@ -3,7 +3,7 @@
 //! A poll takes at most 0.5 ms, or 10 ms if it judges a size.
 //!
 //! [`model`] is a state machine that knows the time and its inputs, and nothing else; `pages` makes a [`screen::Screen`] of it. docs/screens.md
-//! shows what leads where.
+//! shows the transitions.
 
 mod actions;
 pub mod body_turn;

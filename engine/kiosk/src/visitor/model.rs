@@ -1,4 +1,4 @@
-//! The model: the pages as a state machine. It knows the time, what is seen, what is pressed and what the dressing worker replies: a
+//! The model: the pages as a state machine. It knows the time, the sensor's view, the input and the dressing worker's replies: a
 //! window, a service without one and a test drive the same model.
 //!
 //! It builds on the state machine of [`crate::service::session`], which decides who has stepped in and who has left, and adds the pages.

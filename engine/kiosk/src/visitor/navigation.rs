@@ -1,4 +1,4 @@
-//! Navigation: what a finger, a key and a gesture do. All of them press the same controls, so that nothing needs a gesture.
+//! Navigation: the effects of finger, key and gesture. All of them press the same controls, so that nothing needs a gesture.
 
 use toile_track::gesture::Gesture;
 

@@ -1,4 +1,4 @@
-//! Picture store: the one picture of a visit, in memory alone and only for minutes, and which of its codes is shown.
+//! Picture store: the one picture of a visit, in memory alone and only for minutes, and the choice of its code.
 
 use std::sync::Arc;
 

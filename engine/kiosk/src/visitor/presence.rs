@@ -1,5 +1,5 @@
-//! Presence: what the sensor's joints say of who is there: the same person or another, seated or standing, how tall, how far
-//! from the mark.
+//! Presence: finds from the sensor's joints whether the person in view is the same or another, seated or standing, and their height
+//! and distance from the mark.
 //!
 //! One skeleton a frame arrives, that of the person whom the sensor follows. Two people are told apart by the lengths of their bones. These
 //! are measured anew whenever no person was in view or the skeleton leapt. People of nearly the same size are not told apart: only the

@@ -1,9 +1,9 @@
 //! Reach: the heights between which the controls stand, so that the visitor reaches them.
 //!
 //! The bounds are those of the 2010 ADA Standards for Accessible Design, 308.2.1 (unobstructed forward reach) and 308.3.1
-//! (unobstructed side reach): at most 48 in (1,220 mm) and at least 15 in (380 mm) over the floor. What is kept here is the
-//! heights, for a display that hangs where [`DisplayMount`] says. That nothing stands before the display (308.2.2, 308.3.2 allow less then), that
-//! there is clear floor to come near, and that the display hangs where it is said to, is up to who puts it up.
+//! (unobstructed side reach): at most 48 in (1,220 mm) and at least 15 in (380 mm) over the floor. This module keeps to
+//! the heights, for a display that hangs as [`DisplayMount`] says. Nothing may stand before the display (308.2.2, 308.3.2 allow less then), and
+//! there must be clear floor to come near. The installer sees to both, and to the stated height of the display.
 
 /// Most over the floor that a control may be (mm): ADA 308.2.1 and 308.3.1.
 pub const HIGHEST_MM: f32 = 1220.0;

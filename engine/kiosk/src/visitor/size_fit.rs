@@ -1,4 +1,4 @@
-//! Fit of a size: how a size sits at each zone, as a shopper reads it, and why.
+//! Fit of a size at each zone, as a shopper reads it, with its reason.
 
 use toile_assets::sizes::{Girth, Population};
 use toile_fitting::dress::measured;

@@ -1,6 +1,6 @@
-//! Wardrobe: the garments to choose from, in the order of dressing, which of them exclude each other, their sizes and colours.
+//! Wardrobe: the garments to choose from, in the order of dressing, their exclusions, sizes and colours.
 //!
-//! The eight layers, and where a garment is held on the body, are those of Ugur 2008, sections 6.1 and 6.2.
+//! The eight layers, and the places that hold a garment on the body, are those of Ugur 2008, sections 6.1 and 6.2.
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! Frame pacing: when the next picture may be drawn. A graphics card draws each time that one is due; a driver that draws on the processor is
+//! Frame pacing: the time of the next picture. A graphics card draws each time that one is due; a driver that draws on the processor is
 //! held to a share of its core, so that the physics' worker and the sensor, which live there too, find it free.
 
 use std::time::{Duration, Instant};

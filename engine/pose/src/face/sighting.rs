@@ -1,4 +1,4 @@
-//! What the photographs show of a head: places of its surface, where each was seen, and the equations that this gives.
+//! Sightings of a head in the photographs: places of its surface, the pixels where each was seen, and the equations that follow.
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
 

@@ -1,4 +1,4 @@
-//! From a file's operators to steps: only what the wanted outputs need, every shape checked, memory shared by what is not there at
+//! From a file's operators to steps: only what the wanted outputs need, every shape checked, memory shared by values that do not live at
 //! the same time.
 
 use super::op::{Op, Sliding};

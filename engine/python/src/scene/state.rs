@@ -1,4 +1,4 @@
-//! A scene that one call at a time works on, and what becomes of it: open, closed, broken by a fault.
+//! A scene on which one call at a time works, and its state: open, closed, broken by a fault.
 
 use std::mem;
 use std::panic::{self, AssertUnwindSafe};

@@ -1,4 +1,4 @@
-//! How a body is dressed and moves.
+//! Options of dressing and motion.
 
 use toile_assets::scene_file::Wind;
 use toile_base::frame::Joints;

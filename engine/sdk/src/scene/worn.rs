@@ -1,4 +1,4 @@
-//! The garments of a scene, and how they do.
+//! The garments of a scene, and their state.
 
 use serde::Serialize;
 use toile_engine::cloth::Cloth;

@@ -1,4 +1,4 @@
-//! The population of a study: person number i, whatever the way they come by.
+//! People of a study by number, drawn or read from a table.
 
 use std::path::Path;
 

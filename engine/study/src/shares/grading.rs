@@ -1,4 +1,4 @@
-//! Which size suits true girths, and what becomes of it where a step between two sizes is made larger or smaller.
+//! The size that suits true girths, and its change where a step between two sizes is made larger or smaller.
 
 use serde::Serialize;
 use toile_track::recommend::{OFF_MIDDLE, TIGHT_TO_LOOSE};

@@ -1,4 +1,4 @@
-//! Rows gathered: what is known of each person in each garment.
+//! Rows gathered: the facts of each person in each garment.
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -1,8 +1,8 @@
 //! A closer look at a person who was followed: shape and poses once more from all sides, then the surface that was seen.
 //!
-//! Following finds the shape little by little, so that its first frames were held against another body than its last. Here
-//! some views from every side are fitted again from where they were found, with the pose that the shopper kept; then the
-//! surface itself is moved to what was seen ([`SeenSurface`]), and each view is posed again with it, in turn.
+//! Following finds the shape little by little, so that its first frames were compared with another body than its last. Here
+//! some views from every side are fitted again from their found poses, with the pose that the shopper kept. Then the
+//! surface itself is moved to the seen points ([`SeenSurface`]), and each view is posed again with it, in turn.
 
 use std::f32::consts::TAU;
 

@@ -1,4 +1,4 @@
-//! What a caller chooses about the body fit.
+//! Options of the body fit.
 
 use toile_base::skeleton::Joint;
 

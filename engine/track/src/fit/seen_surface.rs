@@ -1,4 +1,4 @@
-//! The surface that was seen: how far it lies outside the fitted body, vertex by vertex.
+//! The surface that was seen: its distance outside the fitted body, vertex by vertex.
 //!
 //! A parametric body has some twenty numbers, and no two people are the same in all others. What the camera saw beside the
 //! fitted surface, over all views, is a field of displacements along the body's normals: smooth, near what was seen,

@@ -1,4 +1,4 @@
-//! A size, judged: how each zone fits, how probable each size is, and what to do where none is sure.
+//! A judged size: the fit of each zone, the probability of each size, and the advice where none is sure.
 
 use super::feel::Feel;
 use super::offer::Zone;

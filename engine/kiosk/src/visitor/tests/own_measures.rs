@@ -1,4 +1,4 @@
-//! Measures that shoppers took by tape: typed, refused with a reason, laid over what was seen, removed, forgotten.
+//! Measures that shoppers took by tape: typed, refused with a reason, merged with the seen measures, removed, forgotten.
 
 use super::*;
 use crate::visitor::measure_entry::OwnMeasure;

@@ -1,4 +1,4 @@
-//! A turn before the display: offered where there is depth, taken up only by who turns, and never waited for by who does not.
+//! A turn before the display: offered where there is depth, taken up only by turning, and never waited for.
 
 use std::f32::consts::TAU;
 

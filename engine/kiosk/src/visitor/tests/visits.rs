@@ -1,4 +1,4 @@
-//! What happens to whom.
+//! Visits: one shopper, another person, an empty view, and the pages in between.
 
 use std::net::{Ipv4Addr, SocketAddr};
 

@@ -40,7 +40,7 @@ const PAGE: &str = "TOILE_FACE_PAGE";
 /// A kiosk's usual display.
 const DISPLAY: DisplayMetrics = DisplayMetrics { size: [1080, 1920], pixel_mm: 0.63 };
 
-/// A person 2.3 m before a camera on its side that sees all of them.
+/// A person 2.3 m before a camera in portrait format that sees all of them.
 const STANDING: Shot =
     Shot { below: 0.7, distance: 2.3, yaw: 0.0, height: 0.35, size: Size::new(720, 1280), fov_y: 0.84 };
 
