@@ -1,4 +1,4 @@
-//! Versions, and the names of the built-in garments and fabrics.
+//! Versions, and the names of garments, fabrics and measures.
 
 use std::ffi::{CStr, CString, c_char};
 use std::sync::OnceLock;

@@ -54,7 +54,7 @@ pub struct RecordArgs {
     /// Camera to record from, as `toile live` names them (default: the synthetic shopper)
     #[arg(long, value_name = "C", value_parser = camera::name, conflicts_with = "seed")]
     pub camera: Option<CameraName>,
-    /// Every person in view has agreed to be recorded; without it, it is asked
+    /// All people in view have agreed to be recorded; without it, it is asked
     #[arg(long, requires = "camera")]
     pub consent: bool,
     /// How the camera is mounted

@@ -118,7 +118,7 @@ impl CameraHandle {
         self.follow(sex);
     }
 
-    /// What was gathered, as a session: depth, or of a camera without depth joints of unknown scale.
+    /// The gathered frames as a session: depth, or, of a camera without depth, joints of unknown scale.
     pub fn session(&self) -> Session {
         let joints = self.lock().joints.clone();
         if joints.is_empty() { session::of_depth(self.gathered()) } else { session::of_directions(joints) }

@@ -32,7 +32,7 @@ pub struct DressedScene<S, O> {
 }
 
 impl<S, O> DressedScene<S, O> {
-    /// A person dressed, as `stage` makes a scene of their frame.
+    /// A dressed person, as `stage` makes a scene of their frame.
     pub fn new(dressed: DressedWorld, stage: impl FnOnce(World) -> (S, O)) -> Self {
         let (still, note) = (dressed.stands(), Some(dressed.note(0)));
         let (scene, outfit) = stage(dressed.world);

@@ -43,7 +43,7 @@ const BLOCK: f64 = 16.0;
 pub struct Work {
     /// Units, in the order of [`UNITS`].
     pub counts: Counts,
-    /// Phases: each ends with a barrier of two workers.
+    /// Number of phases, which is the number of barriers of two workers.
     pub phases: f64,
     /// Share of the particles that the busier of two workers has.
     pub share: f64,

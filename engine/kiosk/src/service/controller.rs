@@ -32,7 +32,7 @@ pub struct ControllerContext<S, O> {
 }
 
 impl<S: LoopScene, O> ControllerContext<S, O> {
-    /// A person dressed, as the loop takes them.
+    /// A dressed person, as the loop takes them.
     pub fn scene(&self, dressed: DressedWorld) -> DressedScene<S, O> {
         DressedScene::new(dressed, &self.to_scene)
     }

@@ -230,11 +230,11 @@ pub struct SizeFit {
     pub zones: Vec<ZoneFit>,
     /// Set where the primary girth lies outside of what is made.
     pub outside: Option<OutOfRange>,
-    /// The sizes to choose from.
+    /// Whether there are several sizes to choose from.
     pub choice: SizeChoice,
 }
 
-/// The sizes to choose from.
+/// Number of sizes to choose from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SizeChoice {
     /// Several sizes.
