@@ -55,9 +55,9 @@ use crate::ALONE;
 const LONGEST: Duration = Duration::from_secs(180);
 
 /// A manager that ignores what it is notified of.
-struct SilentManager;
+struct SilentSupervisor;
 
-impl ServiceManager for SilentManager {
+impl ServiceManager for SilentSupervisor {
     fn watchdog_timeout(&self) -> Option<Duration> {
         None
     }
@@ -432,7 +432,7 @@ fn serve_with(config: &str, own: bool, visit: impl FnOnce(&mut Finger) + Send) -
         });
         let print_line = |_: &str| {};
         let environment = ServiceEnvironment {
-            manager: &SilentManager,
+            manager: &SilentSupervisor,
             stop: &stop,
             print_line: &print_line,
             figures: None,
