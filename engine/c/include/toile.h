@@ -51,7 +51,7 @@ typedef enum {
      */
     TOILE_CODE_OK = 0,
     /**
-     * The call itself is wrong: a null pointer, a handle that was closed, an index that there is not, a busy scene.
+     * The call itself is wrong: a null pointer, a handle that was closed, an index out of range, a busy scene.
      */
     TOILE_CODE_USAGE = 2,
     /**
@@ -993,7 +993,7 @@ const char *toile_version(void);
 uint32_t toile_abi_version(void);
 
 /**
- * A name of a list (a toile_name_list) by its number from 0; null behind the last one, and of a list that there is not, which
+ * A name of a list (a toile_name_list) by its number from 0; null behind the last one, and of an unknown list, which
  * toile_last_error() then says. It lives for ever.
  */
 const char *toile_name(int32_t list, size_t index);

@@ -32,7 +32,7 @@ impl Body {
     /// Raises
     /// ------
     /// InputError
-    ///     A measure that there is not, one that no body has, or measures that none has together.
+    ///     An unknown measure, one that no body has, or measures that none has together.
     #[classmethod]
     #[pyo3(signature = (sex, /, **mm))]
     fn from_measures(_: &Bound<'_, PyType>, sex: &str, mm: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {

@@ -33,7 +33,7 @@ impl Body {
     /// What was given counts as taken by tape (sigma 5 mm) where a size is chosen.
     ///
     /// # Errors
-    /// A measure that there is not, one that no body has, or measures that none has together; the sentence names the one to
+    /// An unknown measure, one that no body has, or measures that none has together; the sentence names the one to
     /// correct, and the unit that was probably meant.
     pub fn from_measures_mm(sex: Sex, measures: &[(&str, f64)]) -> Result<Self> {
         let mut wanted: Wanted<En> = Wanted::new();
@@ -112,7 +112,7 @@ impl Body {
     /// One of them by its name (mm).
     ///
     /// # Errors
-    /// A measure that there is not, or that is not read off such a body.
+    /// An unknown measure, or one that is not read off such a body.
     pub fn measure_mm(&self, name: &str) -> Result<f64> {
         let (name, _) = named(name)?;
         let found = self.measures_mm.iter().find(|(of, _)| *of == name);

@@ -8,7 +8,7 @@ use toile_fitting::FittingError;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ErrorKind {
-    /// The call itself: a garment's number that there is not, a step of a kind that this scene does not take.
+    /// The call itself: a garment's number out of range, a step of a kind that this scene does not take.
     Usage,
     /// What was given: a file, a name, a measure, a mesh.
     Input,

@@ -90,7 +90,7 @@ impl TriedGarment {
     /// Opens a garment; paths are from `folder`.
     ///
     /// # Errors
-    /// A garment, fabric or size that there is not; one that has no sizes.
+    /// An unknown garment, fabric or size; one that has no sizes.
     pub fn open(wanted: &WantedGarment, folder: &Path) -> Result<Self> {
         let beside = folder.join(&wanted.name);
         let found = if beside.is_file() { beside.display().to_string() } else { wanted.name.clone() };

@@ -174,7 +174,7 @@ impl Study {
     /// One row, whatever others were asked for.
     ///
     /// # Errors
-    /// A number that there is not; measures that no body has.
+    /// A number out of range; measures that no body has.
     pub fn row(&self, number: u64) -> Result<StudyRow> {
         if number >= self.rows() {
             let rows = self.rows();

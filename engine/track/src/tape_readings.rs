@@ -48,7 +48,7 @@ pub enum TapeError {
     /// No `name=value`.
     #[error("`{0}` is no measure; write it as chest=912 (millimetres), chest=91.2cm or chest=36in")]
     Form(String),
-    /// A name that there is not.
+    /// An unknown name.
     #[error("there is no measure `{name}`; there are {names}")]
     Name {
         /// What was given.

@@ -137,7 +137,7 @@ impl SensorConfig {
     /// The camera that is configured, if one is.
     ///
     /// # Errors
-    /// A kind that there is not.
+    /// An unknown kind.
     pub fn camera(&self) -> Result<Option<CameraName>, CameraError> {
         let Some(kind) = &self.camera else { return Ok(None) };
         let name = self.device.as_ref().map_or_else(|| kind.clone(), |device| format!("{kind}:{device}"));

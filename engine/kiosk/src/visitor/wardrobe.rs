@@ -172,7 +172,7 @@ impl WardrobeItem {
     /// A garment that is built in, or the file of one.
     ///
     /// # Errors
-    /// A garment that there is not, a file, sizes or a fabric that cannot be used.
+    /// An unknown garment; a file, sizes or a fabric that cannot be used.
     pub fn new(name: &str) -> Result<Self, KioskError> {
         Self::of(&GarmentSource::find(name)?, &average()?)
     }

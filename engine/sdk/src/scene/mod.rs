@@ -99,7 +99,7 @@ impl Scene {
     /// these positions. For wind, colliders and moving pins write a scene file.
     ///
     /// # Errors
-    /// A mesh that cannot be cloth, a pin that is no vertex, a fabric that there is not.
+    /// A mesh that cannot be cloth, a pin that is no vertex, an unknown fabric.
     pub fn of_mesh(positions: &[Vec3], triangles: &[[u32; 3]], pins: &[u32], fabric: &str) -> Result<Self> {
         let mut obj = String::new();
         for p in positions {
@@ -196,7 +196,7 @@ impl Scene {
     /// a face stand. Always finite.
     ///
     /// # Errors
-    /// A garment's number that there is not.
+    /// A garment's number out of range.
     pub fn positions(&self, garment: usize) -> Result<Vec<Vec3>> {
         let mut positions = vec![Vec3::ZERO; self.known(garment)?.vertices];
         self.read_positions(garment, &mut positions)?;
