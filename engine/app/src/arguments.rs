@@ -1,4 +1,4 @@
-//! Options that several commands share: how the mannequin looks, and what is exported.
+//! Options that several commands share: the look of the mannequin, and exports.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! The command line: its commands, its help, and what one line asks for.
+//! The command line: its commands, its help, and the parsed request.
 //!
 //! Each command's own arguments stand beside its work in [`crate::commands`].
 

@@ -1,4 +1,4 @@
-//! How a garment fits, as reports show it.
+//! Fit of a garment, as reports show it.
 
 use toile_track::recommend;
 

@@ -1,4 +1,4 @@
-//! What draws the pictures of a try-on: the processor by rays, or a GPU by triangles.
+//! Renderer of a try-on's pictures: the processor by rays, or a GPU by triangles.
 
 use toile_base::garment::Garment;
 use toile_cli::exit::AppError;

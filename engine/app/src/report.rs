@@ -57,7 +57,7 @@ pub struct ZoneFitReport {
     pub sigma_mm: f64,
     /// `tight`, `good` or `loose`.
     pub verdict: String,
-    /// How it feels, from `too tight` to `too loose`; none where nobody saw the body there.
+    /// How it feels, from `too tight` to `too loose`; none where the body was not seen there.
     pub feel: Option<String>,
     /// The same for a person to read.
     pub sentence: String,

@@ -1,4 +1,4 @@
-//! Where every garment and the body are in each frame of a run, written for other tools into the run's output folder.
+//! Positions of every garment and the body in each frame of a run, written for other tools into the run's output folder.
 
 use std::collections::HashMap;
 use std::fs::File;
@@ -20,7 +20,7 @@ use toile_engine::world::{Snapshot, World};
 pub fn begin(out: &mut OutputFolder, plan: ExportPlan) -> Result<SessionExport, AppError> {
     let staged = plan.files().into_iter().map(|name| out.stage(&name).map(|path| (name, path)));
     let places: HashMap<String, PathBuf> = staged.collect::<Result<_, _>>()?;
-    // A name that the plan has not said would lie in nobody's folder.
+    // A name that the plan has not said has no folder.
     let open = move |name: &str| File::create(places.get(name).ok_or(std::io::ErrorKind::NotFound)?);
     plan.begin(Box::new(open)).map_err(|e| failed(out, e))
 }

@@ -1,4 +1,4 @@
-//! The reports as people read them: what `--json` says, in words and tables.
+//! The reports as people read them: the contents of `--json`, in words and tables.
 
 use crate::report::{
     BodyReport, MeasureReport, PhysicsReport, RecommendationReport, RunReport, SessionReport, ShopperMeasures, TryOn,
@@ -188,7 +188,7 @@ fn recommendation(text: &mut String, worn: &RecommendationReport, paint: Paint) 
     heading(text, &format!("{}, size {}", worn.garment, worn.size), paint);
     for zone in &worn.zones {
         let tone = if zone.verdict == "good" { Tone::Good } else { Tone::Warn };
-        // The word of the pictures, from the same numbers; where nobody saw the body there is none.
+        // The word of the pictures, from the same numbers; where the body was not seen there is none.
         let verdict = format!("{:7}", zone.feel.as_ref().unwrap_or(&zone.verdict));
         let verdict = paint.tone(&verdict, tone);
         put_line!(text, "  {:17} {verdict} {:+5.0} mm of ease +- {:.0}", zone.zone, zone.ease_mm, zone.sigma_mm);

@@ -1,4 +1,4 @@
-//! What is not a regular file is refused at once by every command that reads one: a FIFO is not waited for, a device is
+//! Every command that reads a file refuses anything but a regular file at once: a FIFO is not waited for, a device is
 //! not read until memory is gone.
 
 use std::fs;

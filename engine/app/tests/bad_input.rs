@@ -1,4 +1,4 @@
-//! Bad input: one sentence that says what, where and the cure, the exit code of the contract, and nothing left behind.
+//! Bad input gives one sentence with the fault, its place and the cure, and the exit code of the contract. No file is left behind.
 
 use std::fs::{self, File};
 

@@ -35,7 +35,7 @@ fn a_body_is_imported_written_and_imported_again() {
 
 #[test]
 fn what_is_no_body_is_refused_with_its_cure() {
-    let scratch = Scratch::new("nobody");
+    let scratch = Scratch::new("no-body");
     fs::write(scratch.path().join("cut.glb"), b"glTF\x02\0\0\0").expect("the test's own folder");
     let lines: [(&[&str], i32, &str); 4] = [
         (&["body", "absent.vrm"], 4, "absent.vrm: it cannot be read"),

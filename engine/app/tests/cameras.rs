@@ -33,7 +33,7 @@ fn a_live_camera_gives_the_measures_of_its_recording_to_the_bit() {
     write_recording(&recording, IMAGES);
     let args = ["record", "--camera", "kinect", "--seconds", "3", "--out", "live.mcap", "--json", "--quiet"];
     let refused = with_kinect(&scratch, &library, &recording, &args);
-    assert_eq!(refused.status.code(), Some(2), "nobody was asked");
+    assert_eq!(refused.status.code(), Some(2), "no consent was asked for");
     let words = String::from_utf8_lossy(&refused.stderr);
     assert!(words.contains("consent"), "{words}");
     let recorded = report(&with_kinect(&scratch, &library, &recording, &[&args[..], &["--consent"]].concat()));

@@ -110,7 +110,7 @@ fn completions_know_the_commands() {
 
 #[test]
 fn a_reader_that_leaves_is_no_error() {
-    // Nobody reads from the start, so that the very first write fails.
+    // There is no reader from the start, so that the very first write fails.
     let (reader, writer) = std::io::pipe().expect("a pipe can be made");
     drop(reader);
     let mut command = program();
@@ -123,7 +123,7 @@ fn a_reader_that_leaves_is_no_error() {
 fn an_output_folder_that_cannot_be_written_exits_4_and_leaves_nothing() {
     let scratch = Scratch::new("cli-unwritable");
     let folder = scratch.path();
-    // Below a regular file nobody can write, root included.
+    // Below a regular file no user can write, root included.
     fs::write(folder.join("file"), b"kept").unwrap();
     for line in [&["try-on", "--out", "file/out"][..], &["--json", "--out", "file"][..]] {
         let output = program().current_dir(folder).args(line).output().unwrap();

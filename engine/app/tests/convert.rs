@@ -1,4 +1,4 @@
-//! `toile convert`: what is kept of a recording, and that nothing that shows a person is kept unasked.
+//! `toile convert`: the parts kept of a recording; no picture of a person is kept unasked.
 
 use crate::common::Scratch;
 use crate::recordings;
@@ -47,7 +47,7 @@ fn a_recording_of_depth_alone_is_not_converted_unasked() {
     assert!(!scratch.path().join("out.mcap").exists());
     let (json, session) = converted(&scratch, "wall.u16le", "out.mcap", &["--depth", "all"]);
     assert_eq!((json["depth_frames"].as_u64(), session.depth.len()), (Some(1), 1));
-    // A wall is nobody: nothing of it is the shopper's.
+    // A wall is no person: nothing of it is the shopper's.
     let (_, session) = converted(&scratch, "wall.u16le", "shopper.mcap", &["--depth", "shopper"]);
     assert_eq!(session.depth[0].valid_pixels(), 0);
 }

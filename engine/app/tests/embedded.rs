@@ -1,4 +1,4 @@
-//! The embedded session is what `toile record` makes, and says of its shopper what the scene knows of her.
+//! The embedded session is the one that `toile record` makes, and its facts about the shopper are those of the scene.
 
 use toile::commands::record;
 use toile_assets::scene;

@@ -1,4 +1,4 @@
-//! What is exported, and a body that moves by itself, as a script meets them.
+//! Exports, and a body that moves by itself, as a script meets them.
 
 use std::fs;
 

@@ -1,4 +1,4 @@
-//! `toile fabric`: what is listed, what a fabric's law gives back, and that a sheet becomes a file or is refused by its line.
+//! `toile fabric`: the list, the loops of a fabric's curves, and that a sheet becomes a file or is refused by its line.
 
 use crate::common::{Scratch, object, refusal, stdout};
 
@@ -14,7 +14,7 @@ fn every_fabric_is_listed_and_those_of_published_figures_say_where() {
 }
 
 #[test]
-fn the_law_of_a_fabric_gives_back_its_loop_and_draws_it() {
+fn the_curves_of_a_fabric_reproduce_its_loop() {
     let scratch = Scratch::new("fabric-show");
     let shown = object(&scratch.toile(&["fabric", "show", "cotton-broad", "--picture", "loop.png", "--json"]));
     let bending = &shown["loops"][0];

@@ -1,4 +1,4 @@
-//! `toile kiosk --headless` as a service manager and a script meet it: readiness, the watchdog, signals, what it leaves behind.
+//! `toile kiosk --headless` as a service manager and a script meet it: readiness, the watchdog, signals, files left behind.
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
@@ -131,7 +131,7 @@ fn open_to_the_world(pid: u32) -> Vec<String> {
     found
 }
 
-/// A manager that reads what it is told as it comes: a datagram that nobody reads holds its sender up.
+/// A manager that reads what it is told as it comes: an unread datagram holds its sender up.
 struct Manager {
     reading: JoinHandle<Vec<String>>,
     over: Arc<AtomicBool>,
@@ -162,7 +162,7 @@ impl Manager {
 }
 
 #[test]
-fn a_visit_is_told_to_the_manager_leaves_nothing_behind_and_ends_when_told_to() {
+fn a_visit_is_reported_and_leaves_no_files() {
     let _beside = beside_others();
     let scratch = Scratch::new("kiosk");
     fs::write(scratch.path().join("kiosk.toml"), long_visits()).unwrap();
@@ -242,7 +242,7 @@ fn joints_that_arrive_over_the_loopback_are_a_shopper() {
     let output = scratch.toile(&["kiosk", "--headless", "--json", "--seconds", "2", "--config", "kiosk.toml"]);
     let found: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(0));
-    assert_eq!(found["states"], serde_json::json!(["attract"]), "nobody sends, so nobody is there");
+    assert_eq!(found["states"], serde_json::json!(["attract"]), "without a sender no shopper is there");
     assert!(found["steps"].as_u64().unwrap() + found["steps_dropped"].as_u64().unwrap() > 200);
     assert!(output.stderr.is_empty(), "health lines are off");
 }

@@ -1,4 +1,4 @@
-//! Who draws: `--renderer`, `--lines` and `--video` of the built program, with a GPU built in or without.
+//! Choice of the renderer: `--renderer`, `--lines` and `--video` of the built program, with a GPU built in or without.
 
 use std::process::Output;
 

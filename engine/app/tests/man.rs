@@ -1,4 +1,4 @@
-//! The manual: one page a command, which a strict reader of manual pages has nothing to say about.
+//! The manual: one page for each command, without a warning by a strict reader of manual pages.
 //!
 //! `cargo test` builds the example that writes it; with `--test main` alone, add `--examples`.
 

@@ -1,4 +1,4 @@
-//! One answer: the same recording gives the same measures, the same size and the same verdicts by whichever door it comes in.
+//! One answer: the same recording gives the same measures, the same size and the same verdicts through every API.
 
 use std::path::{Path, PathBuf};
 
@@ -35,12 +35,12 @@ fn zones(recommendation: &Value) -> Vec<(String, f64, String)> {
 fn dressed_in_one_call(path: &Path, garment: &str) -> (String, [f32; 5]) {
     let request = TryOn::of_shopper(&[garment.to_owned()], None, ShopperFacts::default());
     let dressed = request.on_shopper(&session::open(Some(path), None).unwrap()).unwrap();
-    let Wearer::Body { measures: m, .. } = dressed.request.wearer else { panic!("nobody was measured") };
+    let Wearer::Body { measures: m, .. } = dressed.request.wearer else { panic!("no person was measured") };
     let measures = [m.stature, m.shoulder_breadth, m.chest_girth, m.waist_girth, m.hip_girth];
     (dressed.request.garments[0].size.clone().unwrap(), measures)
 }
 
-/// The door of programs of others: what is measured, the size, and every bit of the cloth are those of the command.
+/// The SDK gives the command's measures and size, and every bit of its cloth.
 fn by_the_sdk(path: &Path, garment: &str, tried: &Value) {
     let garments = [Garment::open(garment).unwrap()];
     let options = TryOnOptions { quality: Quality::Draft, ..TryOnOptions::default() };

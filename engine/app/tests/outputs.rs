@@ -1,4 +1,4 @@
-//! What a command must not write over: its own inputs, and what is not a regular file.
+//! A command overwrites neither its own inputs nor anything but regular files.
 
 use std::fs;
 use std::path::Path;

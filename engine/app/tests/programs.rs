@@ -1,4 +1,4 @@
-//! Commands of other programs: run where the program is there in this version, explained where it is not.
+//! Commands of other programs: run if the program is installed in this version, else explained.
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt;

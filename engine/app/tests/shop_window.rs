@@ -145,7 +145,7 @@ fn share(picture: &Picture, from: f64, colour: [u8; 3]) -> f64 {
     part.chunks_exact(3).filter(close).count() as f64 / (part.len() / 3) as f64
 }
 
-/// Where the page begins on which nobody is there; other pages stand anywhere.
+/// Where the page begins on which no person is in view; other pages stand anywhere.
 const LOW: f64 = 0.6;
 
 #[test]
@@ -164,7 +164,7 @@ fn a_shop_shows_its_own_screens_and_a_change_is_seen_when_the_visitor_has_left()
         kiosk.wait("a mannequin", |seen| share(seen, 0.0, BEHIND) < 0.05);
         kiosk.display.look().write(&folder.join("shop-attract.png"));
     }
-    kiosk.until("somebody dressed", &scratch, |lines| {
+    kiosk.until("a dressed shopper", &scratch, |lines| {
         lines.lines().last().is_some_and(|line| line.contains(", try-on, "))
     });
     let has_primary = |seen: &Picture| share(seen, 0.0, ACCENT) > 0.008;
@@ -173,7 +173,7 @@ fn a_shop_shows_its_own_screens_and_a_change_is_seen_when_the_visitor_has_left()
     kiosk.enter(0);
     kiosk.wait("the page of clothes", |seen| !has_primary(seen) && share(seen, 0.0, PAPER) > 0.1);
     kiosk.keep("garments");
-    // The shop changes while somebody looks: they keep what they see.
+    // The shop changes while a person looks: they keep what they see.
     let text = fs::read_to_string(folder.join("catalogue.toml")).unwrap();
     let night = text
         .replace("garments = [", "garments = [\"half.toile\", ")

@@ -1,4 +1,4 @@
-//! What a shopper says of themselves: measures by tape count in every command, a child moves nothing, and what cannot be is named.
+//! Facts that a shopper gives: measures by tape count in every command, a child changes no measure, and impossible measures are named.
 
 use crate::common::{Scratch, object, refusal};
 use serde_json::Value;
@@ -47,7 +47,7 @@ fn wrong_units_and_contradictions_are_named() {
 }
 
 #[test]
-fn whether_somebody_is_a_child_is_estimated_and_moves_no_measure() {
+fn the_child_estimate_moves_no_measure() {
     let scratch = recorded("age");
     let of = |words: &[&str]| object(&scratch.toile(&[&["measure", "in.mcap", "--json"], words].concat()));
     let (guessed, child) = (of(&[]), of(&["--age", "child"]));

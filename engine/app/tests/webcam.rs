@@ -1,6 +1,6 @@
 //! A webcam as a user meets it: refused with the command that fetches its network, or seen through files that play in its place.
 //!
-//! The network's files are no part of the repository: where they are not fetched, what needs them says so and does not run.
+//! The network's files are no part of the repository: where they are not fetched, the tests that need them say so and do not run.
 
 use std::fs;
 use std::path::Path;
@@ -29,7 +29,7 @@ fn is_fetched() -> bool {
     false
 }
 
-/// A folder of pictures of somebody who stands, each with noise of its own; every tenth is cut short.
+/// A folder of pictures of a person who stands, each with noise of its own; every tenth is cut short.
 fn write_pictures(folder: &Path, count: usize) {
     fs::create_dir_all(folder).unwrap();
     let person = image::load_from_memory(include_bytes!("../../../engine/pose/tests/data/standing.png")).unwrap();
@@ -74,7 +74,7 @@ fn a_session_is_not_recorded_by_a_webcam() {
 }
 
 #[test]
-fn somebody_in_the_pictures_of_a_folder_is_followed() {
+fn a_person_in_a_folder_of_pictures_is_followed() {
     if !is_fetched() {
         return;
     }

@@ -32,7 +32,7 @@ const MOST: [f64; 2] = [2.5, 16.5];
 /// The colour of the focus ring, which nothing else has.
 const FOCUS: [u8; 3] = [255, 205, 96];
 
-/// The recording comes and goes; nobody has left while it pauses, which is long enough for a slow machine to show the welcome.
+/// The recording comes and goes; the shopper has not left while it pauses, which is long enough for a slow machine to show the welcome.
 const CONFIG: &str = "[sensor]\npause_s = 12.0\n[session]\nstep_out_s = 16.0\n[display]\nmotion = false\n";
 
 /// The program at a window of its own.
@@ -67,7 +67,7 @@ impl Kiosk {
         let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/screens").join(format!("{name}.png"));
         let shot = self.shots.join(format!("{name}.png"));
         if std::env::var_os("TOILE_KEEP_SCREENS").is_some() {
-            // Somebody steps in soon after the start, and is measured and dressed.
+            // A person steps in soon after the start, and is measured and dressed.
             std::thread::sleep(Duration::from_secs(match name {
                 "1-attract" => 4,
                 "2-fitting" => 16,
@@ -149,7 +149,7 @@ fn a_visit_by_mouse_and_keys_from_arriving_to_leaving() {
     let kiosk = Kiosk::start(&scratch);
     kiosk.expect("1-attract", LOW);
     kiosk.display.give_keys("Toile");
-    // Somebody steps in and is measured; nothing is pressed for it.
+    // A person steps in and is measured; nothing is pressed for it.
     kiosk.expect("2-fitting", COLUMN);
     kiosk.click(3);
     kiosk.expect("3-zones", COLUMN);

@@ -51,7 +51,7 @@ typedef enum {
      */
     TOILE_CODE_OK = 0,
     /**
-     * The call itself is wrong: a null pointer, a handle that was closed, an index that there is not, a busy scene.
+     * The call itself is wrong: a null pointer, a handle that was closed, an index out of range, a busy scene.
      */
     TOILE_CODE_USAGE = 2,
     /**
@@ -397,15 +397,15 @@ typedef struct {
      */
     double sigma_mm;
     /**
-     * "tight", "good", "loose", or "unknown" where nobody saw the body there.
+     * "tight", "good", "loose", or "unknown" where the body was not seen there.
      */
     const char *verdict;
     /**
-     * How it feels, from "too tight" over "right" to "too loose"; null where nobody saw the body there.
+     * How it feels, from "too tight" over "right" to "too loose"; null where the body was not seen there.
      */
     const char *feel;
     /**
-     * -1 (loose) .. 1 (tight); NaN where nobody saw the body there.
+     * -1 (loose) .. 1 (tight); NaN where the body was not seen there.
      */
     float tightness;
     /**
@@ -775,7 +775,7 @@ typedef struct {
 } toile_shopper;
 
 /**
- * Somebody who was measured.
+ * A measured person.
  */
 typedef struct {
     /**
@@ -795,7 +795,7 @@ typedef struct {
 } toile_track;
 
 /**
- * What is known of somebody who was measured.
+ * What is known of a measured person.
  */
 typedef struct {
     /**
@@ -809,7 +809,7 @@ typedef struct {
 } toile_measured_facts;
 
 /**
- * A measure of somebody who was measured. Texts are lent by the handle that was asked.
+ * A measure of a measured person. Texts are lent by the handle that was asked.
  */
 typedef struct {
     /**
@@ -942,7 +942,7 @@ toile_code toile_body_measure(toile_body body, size_t index, const char **name, 
 toile_code toile_body_mesh_of(toile_body body, toile_body_mesh *mesh);
 
 /**
- * What there is to say about how a body was made, a line each, as a text into `bytes`; its length with the closing zero into
+ * Notes on how a body was made, a line each, as a text into `bytes`; its length with the closing zero into
  * `needed`.
  */
 toile_code toile_body_notes(toile_body body, char *bytes, size_t room, size_t *needed);
@@ -993,7 +993,7 @@ const char *toile_version(void);
 uint32_t toile_abi_version(void);
 
 /**
- * A name of a list (a toile_name_list) by its number from 0; null behind the last one, and of a list that there is not, which
+ * A name of a list (a toile_name_list) by its number from 0; null behind the last one, and of an unknown list, which
  * toile_last_error() then says. It lives for ever.
  */
 const char *toile_name(int32_t list, size_t index);
@@ -1259,7 +1259,7 @@ toile_code toile_recording_from_frames(const char *name,
 toile_code toile_recording_read(toile_recording recording, toile_recording_facts *facts);
 
 /**
- * Measures whoever stands in a recording: by a body fitted to depth where there is any, by the joints otherwise. `shopper` may be
+ * Measures the person in a recording: by a body fitted to depth where there is any, by the joints otherwise. `shopper` may be
  * null: nothing is known before.
  */
 toile_code toile_recording_measure(toile_recording recording,
@@ -1277,22 +1277,22 @@ toile_code toile_recording_track(toile_recording recording, toile_measured measu
 toile_code toile_track_frames(toile_track track, const toile_joints **frames, size_t *count);
 
 /**
- * What is known of somebody who was measured.
+ * What is known of a measured person.
  */
 toile_code toile_measured_read(toile_measured measured, toile_measured_facts *facts);
 
 /**
- * A measure of somebody by its number from 0.
+ * A measure of a person by its number from 0.
  */
 toile_code toile_measured_measure(toile_measured measured, size_t index, toile_measure *measure);
 
 /**
- * What there is to say about the measures, a line each, as a text into `bytes`; its length with the closing zero into `needed`.
+ * Notes on the measures, a line each, as a text into `bytes`; its length with the closing zero into `needed`.
  */
 toile_code toile_measured_notes(toile_measured measured, char *bytes, size_t room, size_t *needed);
 
 /**
- * The body of somebody's measures. Where the sex is neither known nor seen it is that of whom the garments are made for, of none a
+ * The body of a person's measures. Where the sex is neither known nor seen it is that of whom the garments are made for, of none a
  * woman's.
  */
 toile_code toile_measured_body(toile_measured measured,
@@ -1316,7 +1316,7 @@ toile_code toile_measured_close(toile_measured measured);
 toile_code toile_track_close(toile_track track);
 
 /**
- * Measures whoever stands in a recording, puts the garments on a body of those measures, inner first, lets them move as the recording
+ * Measures the person in a recording, puts the garments on a body of those measures, inner first, lets them move as the recording
  * does and draws its end: the same measures, sizes and bits as `toile try-on`. `options` may be null.
  */
 toile_code toile_try_on(toile_recording recording,
@@ -1336,7 +1336,7 @@ toile_code toile_try_on_result_read(toile_try_on_result result, toile_try_on_fac
 toile_code toile_try_on_result_measure(toile_try_on_result result, size_t index, toile_measure *measure);
 
 /**
- * What there is to say about the measures and the body, a line each, as a text into `bytes`; its length with the closing zero into
+ * Notes on the measures and the body, a line each, as a text into `bytes`; its length with the closing zero into
  * `needed`.
  */
 toile_code toile_try_on_result_notes(toile_try_on_result result,

@@ -168,7 +168,7 @@ pub extern "C" fn toile_body_mesh_of(body: BodyHandle, mesh: Out<BodyMesh>) -> C
     })
 }
 
-/// What there is to say about how a body was made, a line each, as a text into `bytes`; its length with the closing zero into
+/// Notes on how a body was made, a line each, as a text into `bytes`; its length with the closing zero into
 /// `needed`.
 #[unsafe(no_mangle)]
 pub extern "C" fn toile_body_notes(body: BodyHandle, bytes: Buffer<c_char>, room: usize, needed: Out<usize>) -> Code {

@@ -1,8 +1,8 @@
-//! What C hands over, checked before it is used: pointers, arrays, texts.
+//! Checks the pointers, arrays and texts that C hands over before they are used.
 //!
-//! The types here are pointers to C. Rust can make none of them, only a call from C does; and whoever calls promises what the header
-//! says: that a pointer which is not null leads to as many elements as the call is told of, which nobody else changes meanwhile.
-//! What can be seen in a pointer is checked: null, alignment, a size that no memory has.
+//! The types here are pointers to C. Rust can make none of them, only a call from C does; and the caller promises what the header
+//! says: a pointer which is not null leads to as many elements as the call is told of, which no other thread changes meanwhile.
+//! The checks are: null, alignment, a size that no memory has.
 
 use std::ffi::{CStr, c_char};
 
@@ -32,12 +32,12 @@ unsafe impl Plain for f32 {}
 #[derive(Debug)]
 pub struct In<T>(*const T);
 
-/// Where C has room for one value.
+/// C's place for one value.
 #[repr(transparent)]
 #[derive(Debug)]
 pub struct Out<T>(*mut T);
 
-/// Where C has room for an array.
+/// C's place for an array.
 #[repr(transparent)]
 #[derive(Debug)]
 pub struct Buffer<T>(*mut T);
@@ -95,7 +95,7 @@ impl<T> In<T> {
 }
 
 impl<T> Out<T> {
-    /// No place: nobody wants to know.
+    /// No place: the value is not wanted.
     pub const fn nowhere() -> Self {
         Self(std::ptr::null_mut())
     }
@@ -128,7 +128,7 @@ impl<T> Out<T> {
     }
 }
 
-/// Where C has room for a value, checked.
+/// C's place for a value, checked.
 #[derive(Debug)]
 pub struct Place<T>(*mut T);
 
@@ -144,9 +144,9 @@ impl<T> Place<T> {
 /// How many elements of what an array has to take.
 #[derive(Debug, Clone, Copy)]
 pub struct Wanted<'a> {
-    /// For how many the caller has room.
+    /// Number of elements for which the caller has room.
     pub room: usize,
-    /// How many there are.
+    /// Number of elements to write.
     pub needed: usize,
     /// Numbers of each element: 3 of a vertex.
     pub each: usize,

@@ -1,4 +1,4 @@
-//! Why a call failed: a code for programs, a sentence for people, kept for the thread that called.
+//! Cause of a failed call: a code for programs, a sentence for people, kept for the thread that called.
 
 use std::cell::{Cell, RefCell};
 use std::ffi::{CString, c_char};
@@ -14,7 +14,7 @@ use toile_sdk::{Error, ErrorKind};
 pub enum Code {
     /// It is done.
     Ok = 0,
-    /// The call itself is wrong: a null pointer, a handle that was closed, an index that there is not, a busy scene.
+    /// The call itself is wrong: a null pointer, a handle that was closed, an index out of range, a busy scene.
     Usage = 2,
     /// What was given cannot be used: a file, a name, a measure, a mesh, a number that is not finite.
     Input = 4,

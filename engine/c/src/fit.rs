@@ -59,11 +59,11 @@ pub struct Zone {
     pub ease_mm: f64,
     /// Standard deviation of the ease (mm): that of the body's measure.
     pub sigma_mm: f64,
-    /// "tight", "good", "loose", or "unknown" where nobody saw the body there.
+    /// "tight", "good", "loose", or "unknown" where the body was not seen there.
     pub verdict: *const c_char,
-    /// How it feels, from "too tight" over "right" to "too loose"; null where nobody saw the body there.
+    /// How it feels, from "too tight" over "right" to "too loose"; null where the body was not seen there.
     pub feel: *const c_char,
-    /// -1 (loose) .. 1 (tight); NaN where nobody saw the body there.
+    /// -1 (loose) .. 1 (tight); NaN where the body was not seen there.
     pub tightness: f32,
     /// The same for a person to read.
     pub sentence: *const c_char,

@@ -1,7 +1,7 @@
-//! Handles: numbers that stand for what was opened, in place of pointers.
+//! Handles: numbers that stand for opened objects, in place of pointers.
 //!
-//! A handle is the number of a slot and the slot's generation, which rises when what is in it is closed. A handle that was closed is
-//! therefore known as such for ever, whatever has taken its slot; a slot whose generations are used up takes nothing more. A call
+//! A handle is the number of a slot and the slot's generation, which rises when its object is closed. A handle that was closed is
+//! therefore known as closed for ever, also after its slot was taken again; a slot whose generations are used up takes nothing more. A call
 //! looks its handle up behind a lock that many may read at once, and holds what it finds, so that closing it meanwhile frees
 //! nothing under it.
 
@@ -56,7 +56,7 @@ pub trait Handle: Copy + Default {
         };
         object.may_close()?;
         let taken = slots.take(self.id());
-        // What was in it is freed where nobody waits for the lock.
+        // The content is freed after the lock is released, so that no thread waits for it.
         drop(slots);
         drop(taken);
         Ok(())

@@ -1,4 +1,4 @@
-//! Recordings: what a sensor saw of somebody, and their measures.
+//! Recordings: a sensor's data of a person, and their measures.
 
 use std::ffi::{CString, c_char};
 
@@ -21,7 +21,7 @@ pub struct RecordingHandle {
     id: u64,
 }
 
-/// Somebody who was measured.
+/// A measured person.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct MeasuredHandle {
@@ -93,7 +93,7 @@ pub struct RecordingFacts {
     pub depth_frames: usize,
 }
 
-/// A measure of somebody who was measured. Texts are lent by the handle that was asked.
+/// A measure of a measured person. Texts are lent by the handle that was asked.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct TakenMeasure {
@@ -109,7 +109,7 @@ pub struct TakenMeasure {
     pub definition: *const c_char,
 }
 
-/// What is known of somebody who was measured.
+/// What is known of a measured person.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct MeasuredFacts {
@@ -264,7 +264,7 @@ pub extern "C" fn toile_recording_read(recording: RecordingHandle, facts: Out<Re
     })
 }
 
-/// Measures whoever stands in a recording: by a body fitted to depth where there is any, by the joints otherwise. `shopper` may be
+/// Measures the person in a recording: by a body fitted to depth where there is any, by the joints otherwise. `shopper` may be
 /// null: nothing is known before.
 #[unsafe(no_mangle)]
 pub extern "C" fn toile_recording_measure(
@@ -307,7 +307,7 @@ pub extern "C" fn toile_track_frames(track: TrackHandle, frames: Out<*const Join
     })
 }
 
-/// What is known of somebody who was measured.
+/// What is known of a measured person.
 #[unsafe(no_mangle)]
 pub extern "C" fn toile_measured_read(measured: MeasuredHandle, facts: Out<MeasuredFacts>) -> Code {
     call("toile_measured_read", || {
@@ -317,7 +317,7 @@ pub extern "C" fn toile_measured_read(measured: MeasuredHandle, facts: Out<Measu
     })
 }
 
-/// A measure of somebody by its number from 0.
+/// A measure of a person by its number from 0.
 #[unsafe(no_mangle)]
 pub extern "C" fn toile_measured_measure(measured: MeasuredHandle, index: usize, measure: Out<TakenMeasure>) -> Code {
     call("toile_measured_measure", || {
@@ -327,7 +327,7 @@ pub extern "C" fn toile_measured_measure(measured: MeasuredHandle, index: usize,
     })
 }
 
-/// What there is to say about the measures, a line each, as a text into `bytes`; its length with the closing zero into `needed`.
+/// Notes on the measures, a line each, as a text into `bytes`; its length with the closing zero into `needed`.
 #[unsafe(no_mangle)]
 pub extern "C" fn toile_measured_notes(
     measured: MeasuredHandle,
@@ -338,7 +338,7 @@ pub extern "C" fn toile_measured_notes(
     call("toile_measured_notes", || bytes.text(&measured.get()?.measured.notes().join("\n"), room, &needed))
 }
 
-/// The body of somebody's measures. Where the sex is neither known nor seen it is that of whom the garments are made for, of none a
+/// The body of a person's measures. Where the sex is neither known nor seen it is that of whom the garments are made for, of none a
 /// woman's.
 #[unsafe(no_mangle)]
 pub extern "C" fn toile_measured_body(

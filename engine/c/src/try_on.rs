@@ -88,7 +88,7 @@ impl TryOnWishes {
     }
 }
 
-/// Measures whoever stands in a recording, puts the garments on a body of those measures, inner first, lets them move as the recording
+/// Measures the person in a recording, puts the garments on a body of those measures, inner first, lets them move as the recording
 /// does and draws its end: the same measures, sizes and bits as `toile try-on`. `options` may be null.
 #[unsafe(no_mangle)]
 pub extern "C" fn toile_try_on(
@@ -128,7 +128,7 @@ pub extern "C" fn toile_try_on_result_measure(result: TryOnHandle, index: usize,
     })
 }
 
-/// What there is to say about the measures and the body, a line each, as a text into `bytes`; its length with the closing zero into
+/// Notes on the measures and the body, a line each, as a text into `bytes`; its length with the closing zero into
 /// `needed`.
 #[unsafe(no_mangle)]
 pub extern "C" fn toile_try_on_result_notes(

@@ -1,4 +1,4 @@
-//! Versions, and the names of what is built in.
+//! Versions, and the names of garments, fabrics and measures.
 
 use std::ffi::{CStr, CString, c_char};
 use std::sync::OnceLock;
@@ -43,7 +43,7 @@ pub extern "C" fn toile_abi_version() -> u32 {
     TOILE_ABI_VERSION
 }
 
-/// A name of a list (a toile_name_list) by its number from 0; null behind the last one, and of a list that there is not, which
+/// A name of a list (a toile_name_list) by its number from 0; null behind the last one, and of an unknown list, which
 /// toile_last_error() then says. It lives for ever.
 #[unsafe(no_mangle)]
 pub extern "C" fn toile_name(list: i32, index: usize) -> *const c_char {

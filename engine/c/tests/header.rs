@@ -1,4 +1,4 @@
-//! The header is that of the sources, and says all that can be called.
+//! The header is that of the sources, and declares every function.
 
 use std::fs;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! What can go wrong in a capture: one sentence that says what, where, and the cure.
+//! Errors of a capture: one sentence with the fault, its place, and the cure.
 
 use thiserror::Error;
 use toile_sensors::error::SourceError;

@@ -1,4 +1,4 @@
-//! Capture: what several calibrated cameras saw becomes a surface that moves, a pose or a body.
+//! Capture: turns the pictures of several calibrated cameras into a surface that moves, a pose or a body.
 
 // Modules in the order of the data: each imports only from the groups above its own (tests/tests/layers.rs).
 pub mod error;

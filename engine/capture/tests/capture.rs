@@ -32,7 +32,7 @@ fn png(scratch: &Scratch, name: &str, [width, height]: [u32; 2], white: impl Fn(
 }
 
 #[test]
-fn silhouettes_of_nobody_are_one_sentence() {
+fn silhouettes_without_a_person_are_one_sentence() {
     let scratch = Scratch::new("capture-body");
     fs::write(scratch.path().join("cams.toml"), CAMERAS).unwrap();
     let small = |x: u32, y: u32| (27..33).contains(&x) && (36..43).contains(&y);
@@ -82,7 +82,7 @@ fn a_sequence_of_silhouettes_is_followed_and_written() {
         let positions: Vec<DVec3> = body.positions.iter().map(|p| p.as_dvec3() + along).collect();
         let mut buffer = DepthBuffer::new([240, 320], 1.0);
         buffer.draw(&rig.cameras[camera], &positions, &body.triangles);
-        // Nobody is there in the third frame.
+        // No person is in view in the third frame.
         let white = |x: u32, y: u32| frame != 2 && buffer.triangle[(y * 240 + x) as usize] != u32::MAX;
         png(&scratch, &format!("masks/cam{}/{frame:03}.png", camera + 1), [240, 320], white);
     }
@@ -119,7 +119,7 @@ fn a_sequence_of_silhouettes_is_followed_and_written() {
 }
 
 #[test]
-fn faces_that_nobody_has_are_one_sentence() {
+fn impossible_faces_are_one_sentence() {
     let scratch = Scratch::new("capture-face");
     png(&scratch, "a.png", [300, 400], |x, y| x > y);
     let write = |name: &str, text: &str| fs::write(scratch.path().join(name), text).unwrap();
@@ -139,7 +139,7 @@ fn faces_that_nobody_has_are_one_sentence() {
     let sequence = |all: &[String]| file(all).replacen('{', "{\"sequence\": true, ", 1);
     let corner = "\"outline\": [[2, 2], [290, 2], [290, 300]], \"points\"";
     write("corner.json", &file(&[mannequin(0.0).replacen("\"points\"", corner, 1)]));
-    write("nobody.json", &sequence(&[photograph("[]"), photograph("[]")]));
+    write("empty.json", &sequence(&[photograph("[]"), photograph("[]")]));
     write("cameras.json", &sequence(&[wild.clone(), with("\"camera\": \"cam2\"")]));
     write("outlined.json", &sequence(&[with("\"outline\": [[3, 4], [5, 6]]")]));
     write("frames.json", &sequence(&[wild.clone(), wild.clone()]));
@@ -153,7 +153,7 @@ fn faces_that_nobody_has_are_one_sentence() {
         ("wild.json", 4, "any head that stands before these cameras"),
         ("dot.json", 4, "a.png: an outline of 1 points is no curve"),
         ("corner.json", 4, "lie near the rim of the head; mark where the head itself ends"),
-        ("nobody.json", 4, "none of the first 2 has 8 points"),
+        ("empty.json", 4, "none of the first 2 has 8 points"),
         ("cameras.json", 4, "a sequence is of one camera"),
         ("outlined.json", 4, "an outline in a sequence"),
         ("frames.json", 4, "any head that stands before these cameras"),

@@ -57,7 +57,7 @@ impl TapeArgs {
     /// The same as measures.
     ///
     /// # Errors
-    /// Words that are no measure, a length that nobody has, or measures that nobody has together.
+    /// Words that are no measure, a length outside of people's range, or measures that no person has together.
     pub fn readings(&self) -> Result<TapeReadings, AppError> {
         TapeReadings::of(&self.measures).map_err(|why| AppError::Usage(format!("--measure: {why}")))
     }

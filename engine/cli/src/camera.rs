@@ -23,7 +23,7 @@ pub struct MountArgs {
     /// Turn its images clockwise by so many degrees, for a camera that lies on its side: 0, 90, 180 or 270
     #[arg(long, value_name = "DEG", value_parser = PossibleValuesParser::new(TURNS), default_value = "0")]
     pub turned: String,
-    /// Height of a webcam above the floor (mm), if it is to say how tall somebody is
+    /// Height of a webcam above the floor (mm), if it is to say how tall a person is
     #[arg(long, value_name = "MM", value_parser = RangedU64ValueParser::<u32>::new().range(200..=4_000))]
     pub camera_height: Option<u32>,
     /// By how much a webcam looks down (degrees)
@@ -32,7 +32,7 @@ pub struct MountArgs {
     /// What a webcam sees along the longer side of its picture (degrees)
     #[arg(long, value_name = "DEG", value_parser = value_parser!(u8).range(30..=140), default_value = "60")]
     pub camera_view: u8,
-    /// Stature of whoever stands before a webcam, which cannot see it (mm)
+    /// Stature of the person before a webcam, which cannot see it (mm)
     #[arg(long, value_name = "MM", value_parser = RangedU64ValueParser::<u32>::new().range(900..=2_300))]
     pub stature: Option<u32>,
     /// Network that finds joints in a webcam's pictures
@@ -63,7 +63,7 @@ impl MountArgs {
 pub struct CameraUse {
     /// Its colour images, where they are looked at.
     pub colour: bool,
-    /// Its pictures with all that was seen in them, for somebody to see themselves.
+    /// Its pictures with all that was seen in them, for the shopper's own picture.
     pub own_picture: bool,
 }
 

@@ -1,4 +1,4 @@
-//! How a run ends: the exit codes, the one error type, and what a panic says.
+//! End of a run: the exit codes, the one error type, and the message of a panic.
 
 use std::fmt::Display;
 use std::io;

@@ -1,5 +1,5 @@
-//! Heap: the program's allocator, which also counts what each thread asks it for, so that a loop can be held to allocating nothing
-//! while other threads do as they like.
+//! Heap: the program's allocator, which also counts the allocations of each thread. So a loop can be tested to allocate nothing
+//! while other threads allocate freely.
 
 #![expect(unsafe_code, reason = "a counting allocator has to implement an unsafe trait")]
 

@@ -265,7 +265,7 @@ impl OutputFolder {
             let name = entry.file_name();
             let owner = name.to_str().and_then(|n| n.strip_prefix(PART)).and_then(|n| n.split('-').next());
             if owner.is_some_and(|pid| pid.parse::<u32>().is_ok() && !Path::new("/proc").join(pid).exists()) {
-                // One that cannot be removed is in nobody's way.
+                // One that cannot be removed does no harm.
                 let _ = fs::remove_file(entry.path());
             }
         }

@@ -1,4 +1,4 @@
-//! A recorded run taken again, bit for bit: what is common to all kinds of recordings.
+//! Replays a recorded run, bit for bit: the part common to all kinds of recordings.
 
 use std::fmt::Display;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! Where words go: data to stdout, words and progress to stderr, colour only where a person looks.
+//! Output streams: data to stdout, words and progress to stderr, colour only on a terminal.
 
 use std::borrow::Cow;
 use std::io::{self, IsTerminal, Write};

@@ -1,4 +1,4 @@
-//! What a fault of Toile's own does: alone in its process, because the panic hook and its flag belong to all of it.
+//! A fault of Toile's own, alone in its process, because the panic hook and its flag belong to the whole process.
 
 use std::fs;
 
@@ -11,7 +11,7 @@ fn a_panic_on_any_thread_exits_70_and_takes_unfinished_files_back() {
     install_panic_hook();
     assert_eq!(guarded(|| Ok(())), Code::Ok);
 
-    // A worker's panic fails the run even where nobody asks how the worker ended.
+    // A worker's panic fails the run even where no caller asks how the worker ended.
     let worker = guarded(|| {
         let ended = std::thread::spawn(|| panic!("a worker's fault")).join();
         assert!(ended.is_err());

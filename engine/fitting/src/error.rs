@@ -1,4 +1,4 @@
-//! Why a fitting, or a kiosk, cannot go on.
+//! Errors of a fitting or a kiosk.
 
 use std::fmt::Display;
 
@@ -20,7 +20,7 @@ pub enum FittingError {
 }
 
 impl FittingError {
-    /// Bad input, in the words of whoever found it: `.map_err(FittingError::input)?`.
+    /// Bad input, with the message of the error that found it: `.map_err(FittingError::input)?`.
     pub fn input(error: impl Display) -> Self {
         Self::Input(error.to_string())
     }

@@ -1,4 +1,4 @@
-//! How much of the heap is used, as reported by the program's allocator, which this library cannot see by itself.
+//! Use of the heap, as reported by the program's allocator, which this library cannot see by itself.
 
 use std::hint::black_box;
 

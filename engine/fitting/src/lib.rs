@@ -1,7 +1,7 @@
-//! The one assembly: from what a sensor saw to a dressed body in motion, for the program, the kiosk and an embedder alike.
+//! The one assembly: from a sensor's data to a dressed body in motion, for the program, the kiosk and an embedder alike.
 //!
-//! Budget: measuring 0.5 s and dressing 1 s, outside of the frame; the loop's own budget inside of it.
-//! Thread: the caller's for `dress`, `scene` and `plan`; sensor, physics and render threads of their own for `live`.
+//! Measuring takes 0.5 s and dressing 1 s, both outside of the frame. `dress`, `scene` and `plan` run on the caller's thread. `live` has
+//! sensor, physics and render threads of its own.
 //!
 //! A recording becomes a dressed body in motion, with the measures, size and verdicts that every command of the program reports:
 //!

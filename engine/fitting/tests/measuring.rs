@@ -33,7 +33,7 @@ fn empty_rooms_and_cupboards_are_refused() {
     let room = frame(|_, y| if y > 0.0 { (1.2 / y).min(4.0) } else { 4.0 });
     let cupboard = frame(|x, y| if x.abs() < 0.2 && y > -0.3 { 2.5 } else { 4.0 });
     for seen in [nothing, room, cupboard] {
-        assert_eq!(refusal(seen), MeasureError::Nobody { frames: 1 }.to_string());
+        assert_eq!(refusal(seen), MeasureError::NoPerson { frames: 1 }.to_string());
     }
 }
 
@@ -117,7 +117,7 @@ fn a_mug_is_refused() {
     let seen = DepthFrame { intrinsics, depth_mm, ..frame(|_, _| 0.0) };
     let valid = seen.depth_mm.iter().filter(|&&mm| mm > 0).count();
     assert!(valid > 100_000, "{valid} valid pixels");
-    assert_eq!(refusal(seen), MeasureError::Nobody { frames: 1 }.to_string());
+    assert_eq!(refusal(seen), MeasureError::NoPerson { frames: 1 }.to_string());
 }
 
 /// The EBML number that ends before a byte, if one does in 3 to 8 bytes.

@@ -1,4 +1,4 @@
-//! Sizes of sewn patterns: what is recommended to bodies whose size is known, by drafts that were made for them.
+//! Sizes of sewn patterns: the recommendation for bodies of known size, by drafts that were made for them.
 
 use std::path::Path;
 

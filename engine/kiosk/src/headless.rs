@@ -14,7 +14,7 @@ use crate::visitor::setup::VisitorSetup;
 /// Runs `toile kiosk --headless`.
 ///
 /// # Errors
-/// A garment that cannot be used, a display whose controls nobody reaches; as [`serve`].
+/// A garment that cannot be used, a display whose controls are out of reach; as [`serve`].
 pub fn run(kiosk: KioskRun<'_>) -> Result<KioskReport, KioskError> {
     let setup = VisitorSetup::new(kiosk.config, kiosk.stock, kiosk.clock.now_ns())?;
     setup.left_out.iter().for_each(|left| (kiosk.print_line)(&stock_watch::line(left)));

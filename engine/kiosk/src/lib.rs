@@ -1,7 +1,7 @@
 //! The kiosk: a fitting room that runs unattended, with a window or without, from visitor to visitor.
 //!
-//! Budget: ready within 5 s of its start; a round of the service each 20 ms, under 100 us of the first core.
-//! Thread: the loop's own; one for the service, one for jobs of the visitor, one for metrics; main waits for the window system.
+//! It is ready within 5 s of its start. The service has a round each 20 ms, which takes under 100 µs of the first core. Besides the threads
+//! of the loop there is one for the service, one for jobs of the visitor and one for metrics. The main thread waits for the window system.
 
 // Modules in the order of the data: each imports only from the groups above its own (tests/tests/layers.rs).
 pub mod error;
@@ -23,7 +23,7 @@ pub use service::KioskOptions;
 pub use service::config::EXAMPLE as EXAMPLE_CONFIG;
 pub use service::report::KioskReport;
 
-/// Runs a kiosk of a program that was started at `begun` until it is asked to end; `say` prints a line for whoever looks after it.
+/// Runs a kiosk of a program that was started at `begun` until it is asked to end; `say` prints a line for the operator.
 ///
 /// # Errors
 /// A kiosk that already runs, a configuration, a session or a garment that cannot be used, no window where one is wanted, a

@@ -1,5 +1,5 @@
-//! A shopper's own face from the points that the network finds, on drawn heads whose truth is known: how far the points lie from their true
-//! places, how far the adapted head does, how long it takes, what is refused.
+//! A shopper's own face from the points that the network finds, on drawn heads whose truth is known: the distance of the points from their true
+//! places, that of the adapted head, the time, and refusals.
 //!
 //! The network's file is no part of the repository: where it is not fetched, these tests say so and do not run.
 
@@ -150,7 +150,7 @@ fn a_portrait_becomes_a_head_or_a_word() {
     let made = maker.make(&near, &[Sex::Female]).unwrap();
     println!("a head of a picture in {:.0} ms", begun.elapsed().as_secs_f64() * 1e3);
     assert!(made.len() == 1 && made[0].sex() == Sex::Female);
-    // Somebody who stands before a webcam that sees all of them.
+    // A person who stands before a webcam that sees all of them.
     let whole = Shot { below: 0.7, distance: 2.3, height: 0.35, size: Size::new(720, 1280), fov_y: 0.84, ..SHOT };
     let mut standing = portrait(&whole);
     keep("standing", &standing.picture);
@@ -167,8 +167,8 @@ fn a_portrait_becomes_a_head_or_a_word() {
     far.head = Some((Vec2::splat(80.0), 85.0));
     assert_eq!(trouble(&mut maker, &far), FaceTrouble::TooFar);
     let wall = ColourImage { width: 320, height: 240, rgb: vec![150; 320 * 240 * 3] };
-    let nobody = Portrait { picture: wall, camera: None, head: None };
-    assert_eq!(trouble(&mut maker, &nobody), FaceTrouble::Unseen);
+    let empty = Portrait { picture: wall, camera: None, head: None };
+    assert_eq!(trouble(&mut maker, &empty), FaceTrouble::Unseen);
 }
 
 #[test]

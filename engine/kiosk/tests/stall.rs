@@ -19,14 +19,14 @@ use toile_fitting::live::assembly::{HeadlessRenderer, LoopOptions, LoopParts};
 use toile_fitting::live::lateness::ThreadAccount;
 use toile_fitting::live::live_loop::LiveLoop;
 use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
-use toile_fitting::live::source::{Feed, Visits};
+use toile_fitting::live::source::{Feed, RepeatedSession};
 use toile_kiosk::service::config::Config;
 use toile_kiosk::service::runner::{Service, ServiceEnvironment, ServiceOptions};
 use toile_kiosk::service::service_manager::{ServiceManager, ServiceStatus, StopSignal};
 use toile_kiosk::service::stock::Stock;
 use toile_kiosk::visitor::setup::VisitorSetup;
 
-/// Hangs whoever passes it while it is shut.
+/// Blocks the threads that pass it while it is shut.
 type Gate = Arc<AtomicBool>;
 
 fn pass(gate: &Gate) {
@@ -122,8 +122,8 @@ fn serve(diary: &Diary, display: Gate, meanwhile: impl FnOnce() + Send) {
     let stock = Stock::read(&config).unwrap();
     let setup = VisitorSetup::new(&config, &stock, clock.now_ns()).unwrap();
     let dressed = stock.first.on_mannequin(&pose).unwrap();
-    // Nobody ever comes: the stall is the only thing that happens.
-    let source = Feed::Played(Visits::of(&session, clock.now_ns(), 3_600_000_000_000));
+    // No shopper ever comes: the stall is the only thing that happens.
+    let source = Feed::Played(RepeatedSession::of(&session, clock.now_ns(), 3_600_000_000_000));
     let first = DressedScene::new(dressed, |world| (Gated::new(world), ()));
     let renderer = Display(HeadlessRenderer::default(), display);
     let parts = LoopParts { first, renderer, source, account: ThreadAccount::new(), recording: None };

@@ -1,4 +1,4 @@
-//! A stock that changes on the disk while it is watched: what is read again, what is left out, and that the last good one stays.
+//! A stock that changes on the disk while it is watched: changed files are read again, bad ones are left out, and the last good stock stays.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -186,12 +186,12 @@ fn a_catalogue_that_cannot_be_read_leaves_everything_as_it_was() {
     shop.write("catalogue.toml", "shop = \"Corner shop\"\ngarments = [\"c.toile\", \"a.toile\"]\n");
     assert_eq!(articles(&watched.change("another order")), ["C-1", "A-1"]);
     assert!(!watched.watch.figures().kept);
-    // What cannot be put on the mannequin is worn by nobody.
+    // A garment that cannot be put on the mannequin is never worn.
     let manifest = "article = \"C-1\"\ngarment = \"torn.obj\"\nname = { en = \"Torn\" }\n";
     fs::write(shop.0.join("source/garment.toml"), manifest).unwrap();
     fs::write(shop.0.join("source/torn.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
     shop.write("c.toile", package::pack(&shop.0.join("source")).unwrap().0);
-    watched.until("a garment that nobody can wear", |watch, lines| {
+    watched.until("an unwearable garment", |watch, lines| {
         let kept = lines.iter().any(|line| line.contains("stays as it was"));
         kept || watch.take().is_some_and(|change| change.stock.first.garments[0].name.ends_with("a.toile"))
     });

@@ -28,7 +28,7 @@ use toile_fitting::live::live_loop::LiveLoop;
 use toile_fitting::live::own_picture::{PictureReceiver, PictureSwitch};
 use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
 use toile_fitting::live::shopper_source::ShopperSource;
-use toile_fitting::live::source::{Feed, Visits};
+use toile_fitting::live::source::{Feed, RepeatedSession};
 use toile_fitting::live::webcam::WebcamOptions;
 use toile_kiosk::service::config::Config;
 use toile_kiosk::service::runner::{Service, ServiceEnvironment, ServiceOptions};
@@ -55,9 +55,9 @@ use crate::ALONE;
 const LONGEST: Duration = Duration::from_secs(180);
 
 /// A manager that ignores what it is notified of.
-struct Nobody;
+struct SilentSupervisor;
 
-impl ServiceManager for Nobody {
+impl ServiceManager for SilentSupervisor {
     fn watchdog_timeout(&self) -> Option<Duration> {
         None
     }
@@ -202,7 +202,7 @@ fn written() -> i64 {
 }
 
 #[test]
-fn a_whole_visit_opens_no_file_to_write_and_no_socket_and_writes_not_a_byte() {
+fn a_visit_writes_no_file_and_opens_no_socket() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let before = (open_to_the_world(), written());
     let (over, opened) = (AtomicBool::new(false), Mutex::new(BTreeSet::new()));
@@ -311,7 +311,7 @@ fn who_sees_themselves_is_neither_stored_nor_sent() {
 /// The face that the visitor's figure wears.
 static WORN: LazyLock<WornFace> = LazyLock::new(WornFace::default);
 
-/// Puts a face on, which nobody else holds but whoever is given it.
+/// Puts a face on; the returned handle is the only one.
 fn wear_a_face() -> Arc<OwnHead> {
     let rest = &Shapes::of(Sex::Female).base().positions;
     let picture = OwnHeadPicture { side: 64, rgb: &[120; 3 * 64 * 64], skin: [120; 3], hair: [120; 3] };
@@ -374,7 +374,7 @@ type VisitSource = (Feed, ShopperSource, Option<(PictureReceiver, PictureSwitch)
 fn source(session: &Arc<Session>, own: bool, clock: RealClock) -> VisitSource {
     if !own {
         // They stand there for as long as the visit takes.
-        let feed = Feed::Played(Visits::of(session, clock.now_ns(), 0));
+        let feed = Feed::Played(RepeatedSession::of(session, clock.now_ns(), 0));
         return (feed, ShopperSource::Recording(session.clone()), None);
     }
     let recording = concat!("recording:", env!("CARGO_MANIFEST_DIR"), "/../../assets/data/sessions/shopper.mcap");
@@ -432,7 +432,7 @@ fn serve_with(config: &str, own: bool, visit: impl FnOnce(&mut Finger) + Send) -
         });
         let print_line = |_: &str| {};
         let environment = ServiceEnvironment {
-            manager: &Nobody,
+            manager: &SilentSupervisor,
             stop: &stop,
             print_line: &print_line,
             figures: None,

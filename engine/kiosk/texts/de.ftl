@@ -2,14 +2,14 @@
 
 language = Deutsch
 
-# Nobody is there
+# No person is in view
 attract-heading = Sehen Sie, wie es sitzt, bevor Sie es anprobieren
 attract-measure = Treten Sie auf die Markierung. Der Spiegel nimmt in einer Sekunde Maß.
 attract-fit = Sehen Sie sich in Ihrer Größe, und wo es eng wird.
 attract-compare = Stellen Sie zwei Größen nebeneinander.
 attract-private = Nichts wird gespeichert, nichts wird gesendet. Wenn Sie gehen, werden Sie vergessen.
 
-# Somebody has stepped in
+# A person has stepped in
 guide-heading = Stellen Sie sich auf die Markierung
 guide-heading-seated = Schauen Sie zum Spiegel
 guide-pose = Füße auseinander, die Arme etwas vom Körper weg.
@@ -205,7 +205,7 @@ settings-known =
        *[other] Er kennt gerade { $count } Maße von Ihnen.
     }
 
-# Somebody else
+# Another person
 second-heading = Sind das noch Sie?
 second-why = Hier scheint jemand anders zu stehen. Was zu sehen war, ist verdeckt.
 second-seconds =
@@ -214,7 +214,7 @@ second-seconds =
        *[other] In { $seconds } Sekunden wird alles vergessen.
     }
 
-# Nobody is seen
+# No person is in view
 leaving-heading = Sind Sie noch da?
 leaving-seconds =
     { $seconds ->

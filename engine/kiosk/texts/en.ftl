@@ -3,14 +3,14 @@
 
 language = English
 
-# Nobody is there
+# No person is in view
 attract-heading = See how it fits, before you try it on
 attract-measure = Step onto the mark. The mirror measures you in a second.
 attract-fit = See yourself in your size, and where it is snug.
 attract-compare = Put two sizes side by side.
 attract-private = Nothing is kept and nothing is sent. When you leave, you are forgotten.
 
-# Somebody has stepped in
+# A person has stepped in
 guide-heading = Stand on the mark
 guide-heading-seated = Face the mirror
 guide-pose = Feet apart, arms a little away from your body.
@@ -206,7 +206,7 @@ settings-known =
        *[other] It knows { $count } measures of you now.
     }
 
-# Somebody else
+# Another person
 second-heading = Is it still you?
 second-why = Somebody else seems to stand here. What was shown is hidden.
 second-seconds =
@@ -215,7 +215,7 @@ second-seconds =
        *[other] In { $seconds } seconds everything is forgotten.
     }
 
-# Nobody is seen
+# No person is in view
 leaving-heading = Are you still there?
 leaving-seconds =
     { $seconds ->

@@ -2,14 +2,14 @@
 
 language = Español
 
-# Nobody is there
+# No person is in view
 attract-heading = Vea cómo le queda antes de probárselo
 attract-measure = Colóquese sobre la marca. El espejo toma sus medidas en un segundo.
 attract-fit = Véase en su talla y descubra dónde queda ceñido.
 attract-compare = Ponga dos tallas una al lado de la otra.
 attract-private = No se guarda ni se envía nada. Cuando se va, todo se olvida.
 
-# Somebody has stepped in
+# A person has stepped in
 guide-heading = Colóquese sobre la marca
 guide-heading-seated = Mire hacia el espejo
 guide-pose = Pies separados y brazos un poco apartados del cuerpo.
@@ -205,7 +205,7 @@ settings-known =
        *[other] Ahora conoce { $count } medidas suyas.
     }
 
-# Somebody else
+# Another person
 second-heading = ¿Sigue siendo usted?
 second-why = Parece que hay otra persona. Lo que se mostraba está oculto.
 second-seconds =
@@ -214,7 +214,7 @@ second-seconds =
        *[other] En { $seconds } segundos se olvidará todo.
     }
 
-# Nobody is seen
+# No person is in view
 leaving-heading = ¿Sigue ahí?
 leaving-seconds =
     { $seconds ->

@@ -2,14 +2,14 @@
 
 language = Français
 
-# Nobody is there
+# No person is in view
 attract-heading = Voyez comment ça tombe avant d’essayer
 attract-measure = Placez-vous sur le repère. Le miroir prend vos mesures en une seconde.
 attract-fit = Voyez-vous dans votre taille, et là où ça serre.
 attract-compare = Mettez deux tailles côte à côte.
 attract-private = Rien n’est conservé, rien n’est envoyé. Quand vous partez, tout est oublié.
 
-# Somebody has stepped in
+# A person has stepped in
 guide-heading = Placez-vous sur le repère
 guide-heading-seated = Tournez-vous vers le miroir
 guide-pose = Pieds écartés, bras un peu éloignés du corps.
@@ -205,7 +205,7 @@ settings-known =
        *[other] Il connaît actuellement { $count } de vos mesures.
     }
 
-# Somebody else
+# Another person
 second-heading = Est-ce toujours vous ?
 second-why = Quelqu’un d’autre semble être là. Ce qui était affiché est masqué.
 second-seconds =
@@ -214,7 +214,7 @@ second-seconds =
        *[other] Dans { $seconds } secondes, tout sera oublié.
     }
 
-# Nobody is seen
+# No person is in view
 leaving-heading = Êtes-vous encore là ?
 leaving-seconds =
     { $seconds ->

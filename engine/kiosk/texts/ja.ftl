@@ -2,14 +2,14 @@
 
 language = 日本語
 
-# Nobody is there
+# No person is in view
 attract-heading = 試着の前に、着た感じをご覧ください
 attract-measure = マークの上にお立ちください。鏡が1秒で採寸します。
 attract-fit = ご自分のサイズで着た姿と、きついところが分かります。
 attract-compare = 2つのサイズを並べて比べられます。
 attract-private = 何も保存せず、何も送信しません。離れると、すべて消えます。
 
-# Somebody has stepped in
+# A person has stepped in
 guide-heading = マークの上にお立ちください
 guide-heading-seated = 鏡のほうを向いてください
 guide-pose = 足を開き、腕を体から少し離してください。
@@ -203,7 +203,7 @@ settings-known =
        *[other] 今、お客様の寸法が{ $count }つあります。
     }
 
-# Somebody else
+# Another person
 second-heading = 同じお客様ですか？
 second-why = 別の方がいらっしゃるようです。表示していた内容は隠しました。
 second-seconds =
@@ -211,7 +211,7 @@ second-seconds =
        *[other] { $seconds }秒後にすべて消えます。
     }
 
-# Nobody is seen
+# No person is in view
 leaving-heading = まだいらっしゃいますか？
 leaving-seconds =
     { $seconds ->

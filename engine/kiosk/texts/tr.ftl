@@ -2,14 +2,14 @@
 
 language = Türkçe
 
-# Nobody is there
+# No person is in view
 attract-heading = Denemeden önce nasıl duracağını görün
 attract-measure = İşaretin üzerine geçin. Ayna bir saniyede ölçünüzü alır.
 attract-fit = Kendinizi kendi bedeninizde görün, nerede dar olduğunu anlayın.
 attract-compare = İki bedeni yan yana koyun.
 attract-private = Hiçbir şey saklanmaz, hiçbir şey gönderilmez. Ayrıldığınızda unutulursunuz.
 
-# Somebody has stepped in
+# A person has stepped in
 guide-heading = İşaretin üzerinde durun
 guide-heading-seated = Aynaya dönün
 guide-pose = Ayaklar ayrık, kollar gövdeden biraz uzakta.
@@ -205,7 +205,7 @@ settings-known =
        *[other] Şu anda { $count } ölçünüzü biliyor.
     }
 
-# Somebody else
+# Another person
 second-heading = Hâlâ siz misiniz?
 second-why = Burada başka biri duruyor gibi. Gösterilenler gizlendi.
 second-seconds =
@@ -214,7 +214,7 @@ second-seconds =
        *[other] { $seconds } saniye sonra her şey unutulacak.
     }
 
-# Nobody is seen
+# No person is in view
 leaving-heading = Hâlâ burada mısınız?
 leaving-seconds =
     { $seconds ->

@@ -1,4 +1,4 @@
-//! What a camera sees of a surface: for each pixel the depth of the nearest triangle, and which one it is.
+//! Depth buffer of a surface in a camera: for each pixel the nearest triangle and its depth.
 
 use glam::{DVec2, DVec3};
 use toile_sensors::calibration::CalibratedCamera;

@@ -1,4 +1,4 @@
-//! Where somebody is in a whole picture.
+//! Finds a person in a whole picture.
 //!
 //! The network gives 2,254 boxes, each with the middle of the hips and a point of the circle around the whole body.
 
@@ -21,7 +21,7 @@ const LAYOUT: BoxLayout = BoxLayout { side: SIDE, grids: &[(8, 2), (16, 2), (32,
 /// Most people who are detected in a picture.
 const MOST_PEOPLE: usize = 8;
 
-/// Somebody in a picture.
+/// A person in a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Detection {
     /// How sure it is, 0.5 to 1.
@@ -50,7 +50,7 @@ impl Detector {
         Ok(Self { network, boxes, people: Vec::with_capacity(MOST_PEOPLE) })
     }
 
-    /// Everybody in an upright square of a picture, the largest first.
+    /// Every person in an upright square of a picture, the largest first.
     pub fn find(&mut self, picture: &ColourImage, square: &Region) -> &[Detection] {
         square.sample(picture, Border::Black, [2.0, -1.0], self.network.input(), SIDE);
         self.network.run();

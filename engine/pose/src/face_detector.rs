@@ -1,4 +1,4 @@
-//! Where a face is in a square of a picture: MediaPipe's short-range detector.
+//! Finds a face in a square of a picture: MediaPipe's short-range detector.
 //!
 //! The network gives 896 boxes, each with six points, of which the first two are the eyes.
 

@@ -1,4 +1,4 @@
-//! The networks' files: which they are, where they are sought, and the commands that fetch them.
+//! The networks' files: their names, their search path, and the commands that fetch them.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -73,7 +73,7 @@ toile_base::named! {
         Lite = "lite",
         /// Landmarks, the larger one.
         Full = "full",
-        /// Where somebody is.
+        /// Where a person is.
         Detector = "detector",
         /// A face's detector and points, two networks in one file.
         Face = "face",

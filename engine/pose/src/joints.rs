@@ -1,7 +1,7 @@
 //! From landmarks to joints in our world: directions from the network, lengths from a body of the stature that is known.
 //!
 //! A network that saw a picture knows no size: people report legs 60 mm apart, and shoulders that are not theirs. So only the directions
-//! of limbs are taken; every limb has the length that it has in the mean body of that stature, whoever stands there. A limb can be turned
+//! of limbs are taken; every limb has the length that it has in the mean body of that stature, for every person. A limb can be turned
 //! the wrong way, and never be stretched.
 
 use glam::{Mat3, Quat, Vec2, Vec3};
@@ -25,22 +25,22 @@ const KNEES: [usize; 2] = [25, 26];
 const ANKLES: [usize; 2] = [27, 28];
 const HEELS: [usize; 2] = [29, 30];
 
-/// How sure landmarks have to be to say where somebody stands.
+/// How sure landmarks have to be to say where a person stands.
 const SURE: f32 = 0.5;
 
 /// Fewest landmarks that say it.
 const FEWEST: usize = 4;
 
-/// Distances of somebody from the camera (m).
+/// Distances of a person from the camera (m).
 const DISTANCES: std::ops::RangeInclusive<f32> = 0.3..=12.0;
 
-/// Frames of whoever steps in, in which they stand upright to be measured (1): a second.
+/// Frames of a person who steps in, in which they stand upright to be measured (1): a second.
 const STANDING: u32 = 30;
 
-/// Largest lean that is the camera's or the network's, and not somebody's own (rad): 40 degrees.
+/// Largest lean that is the camera's or the network's, and not a person's own (rad): 40 degrees.
 const LARGEST_LEAN: f32 = 0.7;
 
-/// Smoothing of somebody's distance (m): whoever comes nearer at 1 m/s is some 150 mm behind.
+/// Smoothing of a person's distance (m): a person who comes nearer at 1 m/s is some 150 mm behind.
 const DISTANCE: OneEuroSettings = OneEuroSettings { min_cutoff: 0.6, beta: 0.5 };
 
 /// Longest time between two frames across which a distance is smoothed (s).
@@ -93,7 +93,7 @@ impl LimbLengths {
     }
 }
 
-/// By how much somebody leans away from the camera (rad); camera axes.
+/// By how much a person leans away from the camera (rad); camera axes.
 fn lean(up: Vec3) -> f32 {
     up.z.atan2(-up.y)
 }
@@ -107,9 +107,9 @@ pub struct JointPlacer {
     mount: WebcamMount,
     /// Their distance from frame to frame.
     distance: FollowedDistance,
-    /// Distance at which whoever is followed was first seen (m): they begin at the middle of our world.
+    /// Distance at which the followed person was first seen (m): they begin at the middle of our world.
     first: Option<f32>,
-    /// Leans of trunk, thighs and shins of whoever is followed in their first frames (rad), and how many of them.
+    /// Leans of trunk, thighs and shins of the followed person in their first frames (rad), and the number of these frames.
     leans: ([f32; 3], u32),
 }
 
@@ -130,13 +130,13 @@ impl JointPlacer {
         }
     }
 
-    /// Somebody else may stand there.
+    /// Another person may stand there.
     pub fn reset(&mut self) {
         self.distance = FollowedDistance::default();
         (self.first, self.leans) = (None, ([0.0; 3], 0));
     }
 
-    /// Joints of landmarks in a picture of this size (px), for somebody of this stature (m).
+    /// Joints of landmarks in a picture of this size (px), for a person of this stature (m).
     pub fn joints(&mut self, landmarks: &Landmarks, size: [u32; 2], stature: f32, time_ns: u64) -> Joints {
         let lengths = LimbLengths::of(&self.mean, stature / self.mean_stature);
         let level = self.level(landmarks, size);
@@ -154,7 +154,7 @@ impl JointPlacer {
         self.map.joints(time_ns, &points)
     }
 
-    /// From the network's axes to level ones. It gives a body as seen along the ray to its hips: a camera that looks down, or has somebody
+    /// From the network's axes to level ones. It gives a body as seen along the ray to its hips: a camera that looks down, or has a person
     /// beside the middle of its picture, sees them turned by as much.
     fn level(&self, landmarks: &Landmarks, [w, h]: [u32; 2]) -> Mat3 {
         let focal = self.mount.focal * w.max(h) as f32;
@@ -163,7 +163,7 @@ impl JointPlacer {
         Mat3::from_rotation_x(-self.mount.down) * Mat3::from_quat(Quat::from_rotation_arc(Vec3::Z, ray))
     }
 
-    /// Whoever steps in stands upright for a second. The network bends them: the trunk towards the camera, the shins away from it, by ten
+    /// A person who steps in stands upright for a second. The network bends them: the trunk towards the camera, the shins away from it, by ten
     /// degrees and more. What each is off then, it is off by later too.
     fn learn_leans(&mut self, world: &[Vec3; POINTS], confidence: &[f32; POINTS], rest: &[f32; 3]) {
         let (means, count) = &mut self.leans;
@@ -212,7 +212,7 @@ impl JointPlacer {
     }
 }
 
-/// How far away somebody is from frame to frame: nobody comes nearer by jumps, and what a limb is turned wrongly by looks like it.
+/// How far away a person is from frame to frame: people do not come nearer by jumps, and an error in a limb's direction looks like one.
 #[derive(Debug, Clone, Copy, Default)]
 struct FollowedDistance {
     filter: OneEuro,
@@ -296,8 +296,8 @@ mod tests {
     use super::*;
     use crate::landmarks::PoseLandmark;
 
-    /// Somebody of the network's own idea of size, upright before a level camera, seen from a distance.
-    fn somebody(scale: f32, distance: f32) -> Landmarks {
+    /// A person of the network's own idea of size, upright before a level camera, seen from a distance.
+    fn person(scale: f32, distance: f32) -> Landmarks {
         let shapes = Shapes::of(Sex::Female);
         let skeleton = shapes.skeleton(shapes.mean());
         let places = [
@@ -337,8 +337,8 @@ mod tests {
     fn the_same_body_comes_out_whatever_size_the_network_gives_it() {
         let mut placer = JointPlacer::new(Sex::Female, WebcamMount::default());
         let stature = placer.mean_stature;
-        let one = placer.joints(&somebody(1.0, 2.5), [1280, 720], stature, 7);
-        let other = placer.joints(&somebody(0.7, 2.5), [1280, 720], stature, 7);
+        let one = placer.joints(&person(1.0, 2.5), [1280, 720], stature, 7);
+        let other = placer.joints(&person(0.7, 2.5), [1280, 720], stature, 7);
         for joint in Joint::ALL {
             assert!(one.at(joint).position.distance(other.at(joint).position) < 1e-4, "{joint:?}");
         }
@@ -354,8 +354,8 @@ mod tests {
     fn a_step_to_the_side_and_towards_the_camera_is_seen() {
         let mut placer = JointPlacer::new(Sex::Female, WebcamMount::default());
         let stature = placer.mean_stature;
-        placer.joints(&somebody(1.0, 3.0), [1280, 720], stature, 0);
-        let mut near = somebody(1.0, 2.5);
+        placer.joints(&person(1.0, 3.0), [1280, 720], stature, 0);
+        let mut near = person(1.0, 2.5);
         near.points.iter_mut().for_each(|p| p.pixel.x += 0.4 * 0.87 * 1280.0 / 2.5);
         // Across at once as far as the distance is known, nearer within a second or so.
         let hips = |placer: &mut JointPlacer, seen: &Landmarks, picture: u64| {
@@ -368,16 +368,16 @@ mod tests {
         let own = placer.mean.at(Joint::LeftHip);
         assert!((hip.x - 0.4 - own.x).abs() < 0.01 && (hip.z - 0.5).abs() < 0.02, "{hip}");
         // One picture in which they seem to be elsewhere moves them little.
-        let jumped = hips(&mut placer, &somebody(1.0, 3.0), 40);
+        let jumped = hips(&mut placer, &person(1.0, 3.0), 40);
         assert!((jumped.z - hip.z).abs() < 0.16, "{hip}, then {jumped}");
     }
 
     #[test]
-    fn somebody_upright_is_upright_under_a_camera_that_looks_down() {
+    fn an_upright_person_is_upright_under_tilted_cameras() {
         let down = 0.3;
         let mut placer = JointPlacer::new(Sex::Female, WebcamMount { down, ..WebcamMount::default() });
         let stature = placer.mean_stature;
-        let mut tilted = somebody(1.0, 2.5);
+        let mut tilted = person(1.0, 2.5);
         // What is above the hips comes nearer.
         tilted.points.iter_mut().for_each(|p| p.world = Mat3::from_rotation_x(down) * p.world);
         assert!(tilted.points[11].world.z < -0.1);
@@ -385,7 +385,7 @@ mod tests {
         let trunk = |joints: &Joints| joints.at(Joint::LeftShoulder).position - joints.at(Joint::LeftHip).position;
         let own = placer.mean.at(Joint::LeftShoulder) - placer.mean.at(Joint::LeftHip);
         assert!(trunk(&joints).angle_between(own) < 0.02, "{} instead of {own}", trunk(&joints));
-        // A tilt that nobody said is learnt from whoever steps in upright; who bends afterwards is bent.
+        // An unknown tilt is learnt from a person who steps in upright; a person who bends afterwards is bent.
         let mut placer = JointPlacer::new(Sex::Female, WebcamMount::default());
         let upright = (0..STANDING).map(|_| placer.joints(&tilted, [1280, 720], stature, 0)).last().unwrap();
         assert!(trunk(&upright).angle_between(own) < 0.02, "{} instead of {own}", trunk(&upright));
@@ -397,7 +397,7 @@ mod tests {
     #[test]
     fn what_is_not_seen_is_absent_and_nothing_is_stretched() {
         let mut placer = JointPlacer::new(Sex::Male, WebcamMount::default());
-        let mut hidden = somebody(1.0, 3.0);
+        let mut hidden = person(1.0, 3.0);
         hidden.points[25].confidence = 0.1;
         hidden.points[14].world = hidden.points[12].world;
         hidden.points[28].world = Vec3::splat(50.0);

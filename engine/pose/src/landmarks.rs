@@ -34,7 +34,7 @@ pub struct PoseLandmark {
 /// What the network says of a region.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Landmarks {
-    /// How likely somebody is there, 0 to 1.
+    /// How likely a person is there, 0 to 1.
     pub presence: f32,
     /// The landmarks, in the network's order.
     pub points: [PoseLandmark; POINTS],

@@ -1,14 +1,14 @@
-//! The body in the camera's own space: where the camera has to be for the joints to be seen where their landmarks are, and joints that are
+//! The body in the camera's own space: the place of the camera from which the joints are seen at their landmarks, and joints that are
 //! seen there exactly.
 //!
-//! Joints have the network's directions and a body's own lengths, so that they are not seen quite where their landmarks are. With the
+//! Joints have the network's directions and a body's own lengths, so that they are not seen exactly at their landmarks. With the
 //! camera's rotation R known (its tilt), its place t is the least squares solution of
 //!
 //! ```text
 //! fx (q.x + t.x) = (u - cx) (q.z + t.z),   fy (q.y + t.y) = (v - cy) (q.z + t.z),   q = R^T joint
 //! ```
 //!
-//! which are linear in t. What is left of each limb's end is taken out in the plane of the picture, a little way at most.
+//! which are linear in t. The rest at each limb's end is removed in the plane of the picture, within a small limit.
 
 use glam::{Affine3A, Mat3, Vec2, Vec3};
 use toile_base::frame::{Intrinsics, Joints};
@@ -24,16 +24,16 @@ const SURE: f32 = 0.5;
 /// Fewest joints that say where the camera is.
 const FEWEST: usize = 6;
 
-/// Farthest that a joint is moved in the plane of the picture (m): more is another limb, or nobody's.
+/// Farthest that a joint is moved in the plane of the picture (m): more is another limb, or an error.
 const FARTHEST_M: f32 = 0.14;
 
-/// Share of a new distance: size in the picture is noisy, and nobody comes nearer by jumps.
+/// Share of a new distance: size in the picture is noisy, and people do not come nearer by jumps.
 const DISTANCE_SHARE: f32 = 0.3;
 
-/// Distances of somebody from the camera (m).
+/// Distances of a person from the camera (m).
 const DISTANCES: std::ops::RangeInclusive<f32> = 0.4..=12.0;
 
-/// Landmarks farther than this from a body's joints, in the root of their mean square, are nobody's (part of the picture's longer
+/// Landmarks farther than this from a body's joints, in the root of their mean square, are rejected (part of the picture's longer
 /// side).
 const FARTHEST_OFF: f32 = 0.25;
 
@@ -80,7 +80,7 @@ pub struct PictureFitter {
 }
 
 impl PictureFitter {
-    /// Somebody else may stand there.
+    /// Another person may stand there.
     pub fn reset(&mut self) {
         self.distance = None;
     }

@@ -1,4 +1,4 @@
-//! Whether landmarks are those of a person: a network that has lost its way gives bodies that nobody has.
+//! Checks that landmarks are those of a person: a network that has lost its way gives impossible bodies.
 
 use glam::Vec3;
 
@@ -10,7 +10,7 @@ pub const HIPS: [usize; 2] = [23, 24];
 pub const SHOULDERS: [usize; 2] = [11, 12];
 
 /// Limbs, left and right: from, to; and the shortest and the longest that a landmark's own metres have for people (m), from a child of
-/// 1.0 m to somebody of 2.2 m, and a third of error.
+/// 1.0 m to a person of 2.2 m, and a third of error.
 const LIMBS: [([usize; 2], [f32; 2]); 8] = [
     ([11, 13], [0.10, 0.55]),
     ([12, 14], [0.10, 0.55]),
@@ -25,7 +25,7 @@ const LIMBS: [([usize; 2], [f32; 2]); 8] = [
 /// Length of a trunk (m).
 const TRUNK: [f32; 2] = [0.18, 0.90];
 
-/// Breadth of shoulders (m): of somebody seen from the side the network may have it short.
+/// Breadth of shoulders (m): of a person seen from the side the network may have it short.
 const BREADTH: [f32; 2] = [0.05, 0.65];
 
 /// How sure a landmark has to be to count.
@@ -52,7 +52,7 @@ mod tests {
     use super::*;
     use crate::landmarks::{POINTS, PoseLandmark};
 
-    fn somebody() -> Landmarks {
+    fn person() -> Landmarks {
         let mut points = [PoseLandmark { confidence: 1.0, ..PoseLandmark::default() }; POINTS];
         for (side, sign) in [(0, 1.0), (1, -1.0)] {
             let places = [(11, [0.18, -0.5]), (13, [0.2, -0.22]), (15, [0.2, 0.04])];
@@ -66,8 +66,8 @@ mod tests {
 
     #[test]
     fn a_person_is_a_body_and_one_with_an_arm_of_a_metre_is_none() {
-        assert!(is_body(&somebody()));
-        let mut long = somebody();
+        assert!(is_body(&person()));
+        let mut long = person();
         long.points[15].world.y += 1.0;
         assert!(!is_body(&long));
         // What is not seen does not count.
@@ -77,10 +77,10 @@ mod tests {
 
     #[test]
     fn a_body_without_shoulders_and_hips_or_of_no_height_is_none() {
-        let mut hidden = somebody();
+        let mut hidden = person();
         [11, 23].iter().for_each(|k| hidden.points[*k].confidence = 0.2);
         assert!(!is_body(&hidden));
-        let mut flat = somebody();
+        let mut flat = person();
         flat.points.iter_mut().for_each(|p| p.world.y *= 0.1);
         assert!(!is_body(&flat));
     }

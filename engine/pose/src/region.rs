@@ -34,7 +34,7 @@ impl Region {
         Self { centre: size * 0.5, side: size.max_element(), turned: 0.0 }
     }
 
-    /// The square of somebody with this middle of the hips, and a point of the circle around all of them; it is turned so that the
+    /// The square of a person with this middle of the hips, and a point of the circle around all of them; it is turned so that the
     /// point lies above the hips.
     pub fn of_points(hips: Vec2, above: Vec2) -> Self {
         let up = above - hips;
@@ -49,7 +49,7 @@ impl Region {
         Self { centre: middle, side: times * size.max_element(), turned: along.y.atan2(along.x) }
     }
 
-    /// Whether another square differs by so little that this one shows the same: with a new one in each picture of somebody who stands still, the
+    /// Whether another square differs by so little that this one shows the same: with a new one in each picture of a standing person, the
     /// landmarks and the square that comes of them move each other to and fro.
     pub fn is_like(&self, other: &Self) -> bool {
         let side = LIKE * self.side;
@@ -74,7 +74,7 @@ impl Region {
         Mat2::from_angle(self.turned)
     }
 
-    /// Whether it is a square of somebody who can be seen in a picture of this size: finite, not tiny, its middle not far outside.
+    /// Whether it is a square of a person who can be seen in a picture of this size: finite, not tiny, its middle not far outside.
     pub fn is_within(&self, width: u32, height: u32) -> bool {
         let size = Vec2::new(width as f32, height as f32);
         let finite = self.centre.is_finite() && self.side.is_finite() && self.turned.is_finite();
@@ -122,10 +122,10 @@ impl Region {
 /// Most places a side that are averaged for a pixel: enough for a picture of 4096 columns.
 const MOST_PLACES: usize = 8;
 
-/// Smallest square of somebody (px): a head in it has 3 pixels.
+/// Smallest square of a person (px): a head in it has 3 pixels.
 const SMALLEST_SIDE: f32 = 32.0;
 
-/// Largest square, in longer sides of the picture: of somebody whose head alone is in it.
+/// Largest square, in longer sides of the picture: of a person whose head alone is in it.
 const LARGEST: f32 = 6.0;
 
 struct PictureReader<'a> {
@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn somebody_who_lies_is_turned_upright() {
+    fn a_lying_person_is_turned_upright() {
         let region = Region::of_points(Vec2::new(50.0, 40.0), Vec2::new(70.0, 40.0));
         assert!((region.turned - FRAC_PI_2).abs() < 1e-6 && (region.side - 50.0).abs() < 1e-4);
         // Straight above the middle of the square is to the right of the hips in the picture.
@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn squares_of_nobody_are_known() {
+    fn squares_without_a_person_are_known() {
         let good = Region { centre: Vec2::new(300.0, 200.0), side: 400.0, turned: 0.0 };
         assert!(good.is_within(640, 480));
         let bad = [

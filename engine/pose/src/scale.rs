@@ -1,4 +1,4 @@
-//! How large somebody is: what they say, or what the floor and the camera's height say; never what the network guesses.
+//! Stature of a person: as they say, or by the floor and the camera's height; never as the network guesses.
 //!
 //! The heels stand on the floor, the eyes are above them. A camera of known height that is level, or whose tilt is known, sees both
 //! under angles that say how far away the heels are, and how high the eyes:
@@ -65,12 +65,12 @@ toile_base::named! {
         Given = "as given",
         /// From the floor and the camera's height.
         Floor = "floor and camera height",
-        /// It is nobody's: the middle of all people.
+        /// Assumed: the middle of all people.
         Assumed = "assumed",
     }
 }
 
-/// Somebody's stature, from frame to frame.
+/// A person's stature, from frame to frame.
 #[derive(Debug)]
 pub struct StatureEstimate {
     given: Option<f32>,
@@ -84,7 +84,7 @@ impl StatureEstimate {
         Self { given: given.filter(|m| STATURES.contains(m)), estimates: [0.0; ESTIMATES], count: 0 }
     }
 
-    /// Somebody else may stand there.
+    /// Another person may stand there.
     pub fn reset(&mut self) {
         self.count = 0;
     }
@@ -132,7 +132,7 @@ mod tests {
     use super::*;
     use crate::landmarks::{POINTS, PoseLandmark};
 
-    /// Somebody of a stature as a camera sees them.
+    /// A person of a stature as a camera sees them.
     fn seen(stature: f32, distance: f32, mount: &WebcamMount) -> Landmarks {
         let size = [1280.0_f32, 720.0];
         let mut points = [PoseLandmark { confidence: 1.0, ..PoseLandmark::default() }; POINTS];

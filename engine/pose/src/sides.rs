@@ -1,7 +1,7 @@
-//! Left and right kept from picture to picture: in single pictures the network takes somebody's front for their back, and limbs change their
+//! Keeps left and right from picture to picture: in single pictures the network takes a person's front for their back, and limbs change their
 //! sides, all of them or some, in the picture, in its body in metres, or in both, with depth to match.
 //!
-//! With d the way from the right to the left one of a pair, whoever turns round shows a profile first, in which d is short. A d that is long in two
+//! With d the way from the right to the left one of a pair, a person who turns round shows a profile first, in which d is short. A d that is long in two
 //! pictures, one after the other, and points the other way in the second is no turn; nor is a body in metres whose d points the other way
 //! than that of the picture. Such a picture counts for nothing: the landmarks of the last one stay.
 
@@ -19,13 +19,13 @@ const PAIRS: [[usize; 2]; 6] = [SHOULDERS, HIPS, [13, 14], [15, 16], [25, 26], [
 /// A pair lies apart from this on (lengths of the trunk): hips that are seen from the front do.
 const APART: f32 = 0.3;
 
-/// A way is the opposite of the last one but for so much of it (1): whoever turned since then has another length of it.
+/// A way is the opposite of the last one but for so much of it (1): a person who turned since then has another length of it.
 const OPPOSITE: f32 = 0.5;
 
 /// The body in metres points another way than the picture from this cosine on (1): 120 degrees.
 const TORN: f32 = -0.5;
 
-/// Longest time between two pictures that are compared (ns): whoever turns could have turned by then.
+/// Longest time between two pictures that are compared (ns): a person could have turned round by then.
 const LONGEST_NS: u64 = 100_000_000;
 
 /// Pictures after which the network is believed, for it may have been wrong before: a third of a second.
@@ -41,7 +41,7 @@ pub struct SideKeeper {
 }
 
 impl SideKeeper {
-    /// Forgets whoever was seen.
+    /// Forgets the person who was seen.
     pub fn reset(&mut self) {
         *self = Self::default();
     }
@@ -112,7 +112,7 @@ mod tests {
 
     const PICTURE_NS: u64 = 33_000_000;
 
-    /// Landmarks that somebody is made of here: left and right, half of the way between them, and the row (px).
+    /// Landmarks that a person is made of here: left and right, half of the way between them, and the row (px).
     const BODY: [([usize; 2], f32, f32); 5] = [
         (SHOULDERS, 34.0, 140.0),
         ([15, 16], 150.0, 150.0),
@@ -121,7 +121,7 @@ mod tests {
         ([27, 28], 18.0, 380.0),
     ];
 
-    /// Somebody turned by an angle from facing the camera (rad).
+    /// A person turned by an angle from facing the camera (rad).
     fn turned(angle: f32) -> Landmarks {
         let mut points = [PoseLandmark { confidence: 1.0, ..PoseLandmark::default() }; POINTS];
         let (sin, cos) = angle.sin_cos();
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn whoever_turns_turns_and_whoever_was_seen_wrongly_first_is_seen_rightly_soon() {
+    fn turns_are_kept_and_wrong_starts_are_corrected() {
         let mut keeper = SideKeeper::default();
         // A turn in a second, with arms held out: they are beside each other in one picture, and that may be lost.
         let spin = |picture: u64| turned(picture as f32 / 30.0 * TAU);

@@ -1,7 +1,7 @@
 //! Landmarks made steady from frame to frame: One Euro filters, of the settings that MediaPipe has for its own.
 //!
-//! The joints are filtered once more by the sensor thread as those of any sensor are; what is smoothed here is what the network itself
-//! needs: the region of the next frame, and directions that do not tremble while somebody stands.
+//! The joints are filtered once more by the sensor thread as those of any sensor are; this filter serves the network's own
+//! needs: the region of the next frame, and directions that do not tremble while a person stands.
 
 use glam::{Vec2, Vec3};
 use toile_sensors::filter::one_euro::{OneEuro, OneEuroSettings};
@@ -42,7 +42,7 @@ impl Default for LandmarkFilter {
 }
 
 impl LandmarkFilter {
-    /// Forgets whoever was seen.
+    /// Forgets the person who was seen.
     pub fn reset(&mut self) {
         self.last_ns = None;
     }
@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn somebody_new_begins_where_they_are() {
+    fn a_new_person_begins_where_they_are() {
         let mut filter = LandmarkFilter::default();
         filter.push(&mut landmarks(0.0), 400.0, 0);
         filter.reset();

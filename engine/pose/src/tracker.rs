@@ -1,4 +1,4 @@
-//! Somebody followed from picture to picture: found once in the whole of it, then in the region where the last one had them.
+//! A person followed from picture to picture: found once in the whole of it, then in the region of the last picture.
 
 use toile_base::limits::MAX_SIDE;
 use toile_sensors::limits::MAX_COLOUR_PIXELS;
@@ -15,10 +15,10 @@ use crate::region::Region;
 use crate::sides::SideKeeper;
 use crate::smoothing::LandmarkFilter;
 
-/// Least presence of somebody in a region.
+/// Least presence of a person in a region.
 const LEAST_PRESENCE: f32 = 0.5;
 
-/// Pictures in which somebody was implausible, one after the other, after which they are sought anew.
+/// Pictures in which a person was implausible, one after the other, after which they are sought anew.
 const IMPLAUSIBLE: u32 = 5;
 
 toile_base::named! {
@@ -42,7 +42,7 @@ pub struct PictureFault {
 /// What was counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct TrackerCounts {
-    /// Pictures in which somebody was sought.
+    /// Pictures in which a person was sought.
     pub searched: u64,
     /// Regions in which landmarks were found.
     pub followed: u64,
@@ -65,7 +65,7 @@ pub struct PoseTracker {
     sides: SideKeeper,
     filter: LandmarkFilter,
     implausible: u32,
-    /// Searches since somebody was last seen.
+    /// Searches since a person was last seen.
     tries: u32,
     /// What was counted.
     pub counts: TrackerCounts,
@@ -92,7 +92,7 @@ impl PoseTracker {
         })
     }
 
-    /// Forgets whoever was seen.
+    /// Forgets the person who was seen.
     pub fn reset(&mut self) {
         self.region = None;
         (self.implausible, self.tries) = (0, 0);
@@ -111,7 +111,7 @@ impl PoseTracker {
         self.region
     }
 
-    /// Looks at a picture that was taken at a time (ns): smoothed landmarks; none of nobody, or of what could be no person. Of several
+    /// Looks at a picture that was taken at a time (ns): smoothed landmarks; none where no person is seen, or the landmarks could be no person's. Of several
     /// people the largest is followed, until they are gone.
     ///
     /// # Errors

@@ -1,5 +1,5 @@
-//! The face mesh and the detector of faces against what LiteRT computes of the same pictures (`data/reference.py` wrote it), and against their
-//! plain twins.
+//! The face mesh and the detector of faces against LiteRT's results for the same pictures (`data/reference.py` wrote them), and against their
+//! scalar references.
 //!
 //! The network's file is no part of the repository: where it is not fetched, these tests say so and do not run.
 
@@ -103,7 +103,7 @@ fn points_and_boxes_are_those_of_the_reference_runtime() {
 }
 
 #[test]
-fn the_fast_networks_are_their_plain_twins_to_the_bit() {
+fn the_fast_networks_equal_their_scalar_references() {
     let Some(file) = bytes() else { return };
     for (name, range, wanted) in [("mesh", MESH, POINTS), ("detector", DETECTOR, BOXES)] {
         let mut network = Network::load(&file[range], wanted).unwrap();

@@ -1,4 +1,4 @@
-//! The network against what LiteRT computes of the same pictures (`data/reference.py` wrote it), and how long it takes.
+//! The network against LiteRT's results for the same pictures (`data/reference.py` wrote them), and its time.
 //!
 //! The network's files are no part of the repository: where they are not fetched, these tests say so and do not run.
 
@@ -125,7 +125,7 @@ fn landmarks_and_boxes_are_those_of_the_reference_runtime() {
 }
 
 #[test]
-fn the_fast_network_is_its_plain_twin_to_the_bit() {
+fn the_fast_network_equals_its_scalar_reference() {
     let Some(folder) = network_folder() else { return };
     let wanted: [(PoseFile, &[&[usize]]); 2] = [(PoseFile::Lite, &LANDMARKS), (PoseFile::Detector, &BOXES)];
     for (file, wanted) in wanted {

@@ -1,4 +1,4 @@
-//! Pictures that are none of one person who stands before a webcam: what comes of each is defined, and never a stretched body.
+//! Pictures other than one person who stands before a webcam: the result of each is defined, and never a stretched body.
 //!
 //! The network's files are no part of the repository: where they are not fetched, these tests say so and do not run.
 
@@ -79,7 +79,7 @@ fn is_whole(landmarks: &Landmarks, size: [u32; 2]) {
 }
 
 #[test]
-fn somebody_is_found_once_and_then_followed() {
+fn a_person_is_found_once_and_then_followed() {
     let Some(mut tracker) = tracker() else { return };
     let shown = picture(with(wall(640, 480), &person(440), 200, 20));
     let all = seen(&mut tracker, &shown, 10);
@@ -95,24 +95,24 @@ fn somebody_is_found_once_and_then_followed() {
 }
 
 #[test]
-fn pictures_of_nobody_black_ones_and_noise_show_nobody() {
+fn empty_black_and_noisy_pictures_show_no_person() {
     let Some(mut tracker) = tracker() else { return };
     let mut random = SplitMix64::new(4);
     let noise = RgbImage::from_fn(640, 480, |_, _| Rgb([0; 3].map(|_: u8| random.next_u64() as u8)));
     let stripes = RgbImage::from_fn(640, 480, |x, _| Rgb([if x / 20 % 2 == 0 { 230 } else { 30 }; 3]));
-    for nobody in [wall(640, 480), RgbImage::new(640, 480), noise, stripes, wall(1, 1), wall(4096, 2)] {
-        assert!(seen(&mut tracker, &picture(nobody), 3).iter().all(Option::is_none));
+    for empty in [wall(640, 480), RgbImage::new(640, 480), noise, stripes, wall(1, 1), wall(4096, 2)] {
+        assert!(seen(&mut tracker, &picture(empty), 3).iter().all(Option::is_none));
     }
 }
 
 #[test]
-fn of_three_people_the_nearest_is_followed_and_nobody_else_takes_their_place() {
+fn of_three_people_only_the_nearest_is_followed() {
     let Some(mut tracker) = tracker() else { return };
     let (large, small) = (person(460), person(300));
     let three = with(with(with(wall(960, 480), &small, 40, 150), &large, 330, 10), &small, 720, 150);
     let shown = picture(three);
     for landmarks in seen(&mut tracker, &shown, 10).into_iter().skip(2) {
-        let landmarks = landmarks.expect("somebody is seen");
+        let landmarks = landmarks.expect("a person is seen");
         assert!((400.0..560.0).contains(&hips(&landmarks)[0]), "{:?}", hips(&landmarks));
         is_whole(&landmarks, [960, 480]);
     }
@@ -125,7 +125,7 @@ fn a_photograph_on_a_shirt_is_not_who_wears_it() {
     let worn = with(person(460), &person(80), 119, 130);
     let shown = picture(with(wall(640, 480), &worn, 190, 10));
     for landmarks in seen(&mut tracker, &shown, 10) {
-        let landmarks = landmarks.expect("somebody is seen");
+        let landmarks = landmarks.expect("a person is seen");
         let tall = landmarks.points[27].pixel.y - landmarks.points[0].pixel.y;
         assert!(tall > 280.0, "who is {tall} pixels tall is the photograph");
         is_whole(&landmarks, [640, 480]);
@@ -133,7 +133,7 @@ fn a_photograph_on_a_shirt_is_not_who_wears_it() {
 }
 
 #[test]
-fn of_somebody_who_is_cut_only_what_is_seen_is_believed() {
+fn of_a_cut_person_only_seen_parts_count() {
     let Some(mut tracker) = tracker() else { return };
     let large = person(800);
     // The legs, the head, one half are outside of the picture.

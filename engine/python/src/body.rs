@@ -10,7 +10,7 @@ use crate::{views, words};
 
 /// A body in its rest pose, arms half raised, feet on the floor at y = 0, facing +z.
 ///
-/// Made by ``from_measures``, ``average`` or ``open``, or of somebody who was measured (``Measured.body``). It never changes; any
+/// Made by ``from_measures``, ``average`` or ``open``, or of a measured person (``Measured.body``). It never changes; any
 /// thread may use it.
 #[pyclass(frozen, module = "toile")]
 #[derive(Debug)]
@@ -32,7 +32,7 @@ impl Body {
     /// Raises
     /// ------
     /// InputError
-    ///     A measure that there is not, one that no body has, or measures that none has together.
+    ///     An unknown measure, one that no body has, or measures that none has together.
     #[classmethod]
     #[pyo3(signature = (sex, /, **mm))]
     fn from_measures(_: &Bound<'_, PyType>, sex: &str, mm: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
@@ -109,7 +109,7 @@ impl Body {
         views::lent_triangles(slf, |body| body.inner.faces())
     }
 
-    /// What there is to say about how it was made, a sentence each.
+    /// Notes on how it was made, a sentence each.
     #[getter]
     fn notes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, self.inner.notes())

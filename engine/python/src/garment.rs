@@ -25,7 +25,7 @@ use crate::{results, words};
 /// Raises
 /// ------
 /// InputError
-///     A name, size or fabric that there is not, a file that cannot be used.
+///     An unknown name, size or fabric, a file that cannot be used.
 #[pyclass(frozen, module = "toile")]
 #[derive(Debug)]
 pub struct Garment {

@@ -3,9 +3,8 @@
 //! This is the compiled part of the package `toile`, whose part in Python stands in `package/`; docs/python.md is the guide. Nothing
 //! here is for callers in Rust: they take `toile-sdk`.
 //!
-//! Budget: below 5 us a call beside what `toile-sdk` takes.
-//! Thread: any that holds the interpreter's lock, which is released where something is computed. Scenes take one call at a
-//! time.
+//! A call takes less than 5 µs beside the time of `toile-sdk`. Any thread that holds the interpreter's lock may call; the lock is released
+//! during computations. Scenes take one call at a time.
 
 // Modules in the order of the data: each imports only from the groups above its own (tests/tests/layers.rs).
 mod failure;

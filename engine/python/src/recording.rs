@@ -1,4 +1,4 @@
-//! Recordings: what a sensor saw of somebody, and their measures.
+//! Recordings: a sensor's data of a person, and their measures.
 
 use numpy::PyArray2;
 use numpy::ndarray::Array2;
@@ -234,7 +234,7 @@ impl Recording {
     }
 }
 
-/// Somebody who was measured (``toile.measure``).
+/// A measured person (``toile.measure``).
 #[pyclass(frozen, module = "toile")]
 #[derive(Debug)]
 pub struct Measured {
@@ -256,7 +256,7 @@ impl Measured {
         self.inner.child()
     }
 
-    /// What there is to say about the measures, a sentence each.
+    /// Notes on the measures, a sentence each.
     #[getter]
     fn notes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, self.inner.notes())
@@ -341,7 +341,7 @@ pub fn source(given: &Bound<'_, PyAny>) -> PyResult<SdkRecording> {
     detached(given.py(), || SdkRecording::from_frames("depth", Vec::new(), frames))
 }
 
-/// Measures whoever stands in a recording: by a body fitted to depth where there is any, by the joints otherwise.
+/// Measures the person in a recording: by a body fitted to depth where there is any, by the joints otherwise.
 ///
 /// Parameters
 /// ----------
@@ -356,7 +356,7 @@ pub fn source(given: &Bound<'_, PyAny>) -> PyResult<SdkRecording> {
 /// Raises
 /// ------
 /// InputError
-///     A recording that shows nobody who can be measured; a measure by tape that nobody has.
+///     A recording that shows no person who can be measured; a measure by tape outside of people's range.
 #[pyfunction]
 #[pyo3(signature = (source, shopper=None))]
 pub fn measure(source: &Bound<'_, PyAny>, shopper: Option<&Bound<'_, PyAny>>) -> PyResult<Measured> {

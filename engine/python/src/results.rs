@@ -13,7 +13,7 @@ macro_rules! answer {
 }
 pub(crate) use answer;
 
-/// Objects of some values as a tuple, which nobody changes.
+/// Objects of some values as a tuple, which is immutable.
 fn tuple<'py, T>(
     py: Python<'py>,
     values: &[T],
@@ -51,7 +51,7 @@ pub fn optional_recommendation<'py>(
     fit.map(|fit| recommendation(py, fit)).transpose()
 }
 
-/// A measure of somebody.
+/// A measure of a person.
 pub fn measure<'py>(py: Python<'py>, of: &Measure) -> PyResult<Bound<'py, PyAny>> {
     answer!(py, "Measure", (of.name, of.mm, of.sigma_mm, of.seen, of.definition))
 }

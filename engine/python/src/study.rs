@@ -38,7 +38,7 @@ impl From<StudyError> for Failure {
 /// Raises
 /// ------
 /// InputError
-///     What of the study cannot be used; a row that there is not.
+///     A part of the study that cannot be used; a row out of range.
 #[pyfunction]
 pub fn study_row<'py>(py: Python<'py>, study: &Bound<'py, PyAny>, index: i64) -> PyResult<Bound<'py, PyBytes>> {
     let path = words::path(study, "study")?;

@@ -20,7 +20,7 @@ fn by_view<'py>(py: Python<'py>, drawn: &[Picture]) -> PyResult<Bound<'py, PyDic
     Ok(views)
 }
 
-/// Measures whoever stands in a recording, puts the garments on a body of those measures, lets them move as the recording does and
+/// Measures the person in a recording, puts the garments on a body of those measures, lets them move as the recording does and
 /// draws its end: the same measures, sizes and bits as ``toile try-on``.
 ///
 /// Parameters

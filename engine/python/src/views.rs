@@ -1,4 +1,4 @@
-//! What numpy shows of memory that stands in Rust: arrays that cannot be written, without a copy.
+//! Read-only numpy arrays over memory of Rust, without a copy.
 //!
 //! The memory belongs to a Python object that never changes it. Every array that shows it holds that object, so that an array may
 //! outlive the scene that it came from. numpy gives no way to make such an array writable, since it does not own its memory.
@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 use pyo3::pyclass::boolean_struct::True;
 use toile_sdk::glam::Vec3;
 
-/// Memory that arrays show; nobody calls it.
+/// Owner of the memory that arrays show; it has no methods.
 #[pyclass(frozen, module = "toile")]
 #[derive(Debug)]
 pub struct Memory(Kept);
@@ -72,7 +72,7 @@ where
     // SAFETY: `of` lends the memory out of the owner for as long as that lives, which is frozen, so that nothing moves or changes
     // it; the array holds the owner. It is handed out only once it cannot be written, for which there is a flag of its own.
     let array = unsafe { PyArray::borrow_from_array(&view, owner.into_any()) };
-    // SAFETY: the array was made above and nobody else has it yet.
+    // SAFETY: the array was made above and there is no other reference to it yet.
     unsafe { (*array.as_array_ptr()).fields.flags &= !NPY_ARRAY_WRITEABLE };
     Ok(array)
 }

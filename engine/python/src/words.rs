@@ -1,4 +1,4 @@
-//! Words for what there are few of.
+//! Names of enumerated values.
 
 use std::path::{Path, PathBuf};
 

@@ -21,7 +21,7 @@ def shirt():
 
 @pytest.fixture(scope="session")
 def worn(body, shirt):
-    """A dressed body that nobody steps."""
+    """A dressed body that is never stepped."""
     return toile.Scene(body, shirt)
 
 

@@ -43,7 +43,7 @@ def test_positions_of_one_step_share_their_memory(cloth):
     assert np.shares_memory(cloth.faces(), cloth.faces())
 
 
-def test_memory_that_nobody_looks_at_is_used_again(cloth):
+def test_unreferenced_memory_is_used_again(cloth):
     places = set()
     for _ in range(20):
         cloth.step()

@@ -1,4 +1,4 @@
-//! A garment on a body of measures: which size fits, where its cloth is after a second, and how it does.
+//! A garment on a body of measures: the size that fits, the place of its cloth after a second, and the state of the scene.
 //!
 //! `cargo run --release -p toile-sdk --example on_measures -- [GARMENT [SIZE]]`
 

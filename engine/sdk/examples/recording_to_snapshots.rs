@@ -1,5 +1,5 @@
-//! A recording in, snapshots out: somebody is measured, dressed and followed, and 30 times a second everything that a display needs
-//! is at hand.
+//! A recording in, snapshots out: a person is measured, dressed and followed, and 30 times a second a snapshot holds everything that a
+//! display needs.
 //!
 //! `cargo run --release -p toile-sdk --example recording_to_snapshots -- [RECORDING [GARMENT]]`
 

@@ -1,4 +1,4 @@
-//! Bodies: of given measures, of somebody who was measured, of a file.
+//! Bodies: of given measures, of a measured person, of a file.
 
 use std::path::Path;
 
@@ -33,7 +33,7 @@ impl Body {
     /// What was given counts as taken by tape (sigma 5 mm) where a size is chosen.
     ///
     /// # Errors
-    /// A measure that there is not, one that no body has, or measures that none has together; the sentence names the one to
+    /// An unknown measure, one that no body has, or measures that none has together; the sentence names the one to
     /// correct, and the unit that was probably meant.
     pub fn from_measures_mm(sex: Sex, measures: &[(&str, f64)]) -> Result<Self> {
         let mut wanted: Wanted<En> = Wanted::new();
@@ -84,7 +84,7 @@ impl Body {
         Ok(Self::of_shape(imported.body, known, imported.report.notes))
     }
 
-    /// A body that was fitted, and what is known of whoever it is of.
+    /// A body that was fitted, and what is known of its person.
     pub(crate) fn of_shape(shape: BodyShape, known: Measurements, notes: Vec<String>) -> Self {
         let m = shape.measures;
         let five = [
@@ -112,7 +112,7 @@ impl Body {
     /// One of them by its name (mm).
     ///
     /// # Errors
-    /// A measure that there is not, or that is not read off such a body.
+    /// An unknown measure, or one that is not read off such a body.
     pub fn measure_mm(&self, name: &str) -> Result<f64> {
         let (name, _) = named(name)?;
         let found = self.measures_mm.iter().find(|(of, _)| *of == name);
@@ -132,7 +132,7 @@ impl Body {
         &self.shape.mesh.triangles
     }
 
-    /// What there is to say about how it was made, a sentence each.
+    /// Notes on how it was made, a sentence each.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
@@ -151,7 +151,7 @@ fn readings(readings: &Readings) -> Vec<(&'static str, f64)> {
     all().into_iter().map(|(name, measure)| (name, f64::from(readings.of(measure)) * 1e3)).collect()
 }
 
-/// Of somebody of whom nothing was seen.
+/// Measurements of a person of whom nothing was seen.
 fn nothing_known() -> Measurements {
     Measurements {
         measures: Measures::default(),
@@ -163,7 +163,7 @@ fn nothing_known() -> Measurements {
     }
 }
 
-/// What is known of somebody whose measures were taken by tape.
+/// What is known of a person whose measures were taken by tape.
 fn by_tape(sex: Sex, wanted: &Wanted<En>) -> Result<Measurements> {
     let mut taken = TapeReadings::default();
     for (measure, metres) in wanted.given() {

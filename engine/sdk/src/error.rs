@@ -1,4 +1,4 @@
-//! Why a call cannot be done, in one sentence with its cure.
+//! Cause of a failed call, in one sentence with its cure.
 
 use std::fmt::Display;
 
@@ -8,7 +8,7 @@ use toile_fitting::FittingError;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ErrorKind {
-    /// The call itself: a garment's number that there is not, a step of a kind that this scene does not take.
+    /// The call itself: a garment's number out of range, a step of a kind that this scene does not take.
     Usage,
     /// What was given: a file, a name, a measure, a mesh.
     Input,

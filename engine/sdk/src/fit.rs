@@ -1,4 +1,4 @@
-//! Which size fits, and how each zone of it does.
+//! The size that fits, and the fit of each of its zones.
 
 use serde::Serialize;
 use toile_track::recommend::Recommendation as Judged;
@@ -18,11 +18,11 @@ pub struct ZoneFit {
     pub ease_mm: f64,
     /// Standard deviation of the ease (mm): that of the body's measure.
     pub sigma_mm: f64,
-    /// `tight`, `good`, `loose`, or `unknown` where nobody saw the body there.
+    /// `tight`, `good`, `loose`, or `unknown` where the body was not seen there.
     pub verdict: &'static str,
-    /// How it feels, from `too tight` over `right` to `too loose`; none where nobody saw the body there.
+    /// How it feels, from `too tight` over `right` to `too loose`; none where the body was not seen there.
     pub feel: Option<&'static str>,
-    /// -1 (loose) .. 1 (tight), within half of it where the zone is comfortable; none where nobody saw the body there.
+    /// -1 (loose) .. 1 (tight), within half of it where the zone is comfortable; none where the body was not seen there.
     pub tightness: Option<f32>,
     /// The same for a person to read.
     pub sentence: String,

@@ -74,7 +74,7 @@ impl Garment {
     /// The same in another fabric: a name of [`fabric_names`], or the path of a fabric's TOML file.
     ///
     /// # Errors
-    /// A fabric that there is not, a file that is none.
+    /// An unknown fabric, a file that is none.
     pub fn in_fabric(self, fabric: &str) -> Result<Self> {
         let fabric = if fabric.ends_with(".toml") { read_fabric(Path::new(fabric))? } else { built_in(fabric)? };
         let source = Arc::unwrap_or_clone(self.source).in_fabric(fabric);
@@ -113,7 +113,7 @@ impl Garment {
     /// The fabric that it is made of.
     ///
     /// # Errors
-    /// A fabric that there is not.
+    /// An unknown fabric.
     pub fn fabric(&self) -> Result<String> {
         Ok(self.source.fabric()?.name)
     }

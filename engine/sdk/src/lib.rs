@@ -48,8 +48,8 @@
 //! # Ok::<(), toile_sdk::Error>(())
 //! ```
 //!
-//! Budget: a body 20 ms, dressing a second a garment, a step 8.3 ms, a picture a second.
-//! Thread: the caller's; every type may be sent to another.
+//! A body takes 20 ms, dressing a second for each garment, a step at most 8.3 ms, a picture a second. Everything runs on the caller's thread;
+//! every type may be sent to another.
 //!
 //! # What is promised
 //!

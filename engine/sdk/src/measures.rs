@@ -38,7 +38,7 @@ const WORDS: [(&str, En); 9] = [
     ("leg_length", En::InsideLegHeight),
 ];
 
-/// A measure of somebody who was measured.
+/// A measure of a measured person.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Measure {
     /// Its name, such as `waist_girth`.

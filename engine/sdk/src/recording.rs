@@ -1,4 +1,4 @@
-//! Recordings: what a sensor saw of somebody, and their measures.
+//! Recordings: a sensor's data of a person, and their measures.
 
 use std::path::Path;
 
@@ -40,7 +40,7 @@ pub struct Shopper {
     pub by_tape_mm: Vec<(String, f64)>,
 }
 
-/// Somebody who was measured.
+/// A measured person.
 #[derive(Debug, Clone)]
 pub struct Measured {
     pub(crate) inner: measured::MeasuredSubject,
@@ -103,10 +103,10 @@ impl Recording {
         &self.session.depth
     }
 
-    /// Measures whoever stands in it: by a body fitted to depth where there is any, by the joints otherwise.
+    /// Measures the person in it: by a body fitted to depth where there is any, by the joints otherwise.
     ///
     /// # Errors
-    /// A recording that shows nobody who can be measured; a measure by tape that nobody has.
+    /// A recording that shows no person who can be measured; a measure by tape outside of people's range.
     pub fn measure(&self, shopper: &Shopper) -> Result<Measured> {
         let inner = measured::measure(&self.session, shopper.facts()?)?;
         Ok(Measured { inner, has_tape: !shopper.by_tape_mm.is_empty() })
@@ -115,7 +115,7 @@ impl Recording {
     /// The filtered joints from the moment on at which the person can be dressed; of depth alone, the body is followed through it.
     ///
     /// # Errors
-    /// A recording in which nobody can be followed.
+    /// A recording in which no person can be followed.
     pub fn track(&self, measured: &Measured) -> Result<Vec<Joints>> {
         Ok(measured::track(&self.session, &measured.inner)?)
     }
@@ -166,7 +166,7 @@ impl Measured {
         self.inner.child
     }
 
-    /// What there is to say about the measures, a sentence each.
+    /// Notes on the measures, a sentence each.
     pub fn notes(&self) -> &[String] {
         &self.inner.best.notes
     }

@@ -30,7 +30,7 @@ pub struct TryOnOptions {
 pub struct TryOn {
     /// The person's measures.
     pub measures: Vec<Measure>,
-    /// What there is to say about them and the body, a sentence each.
+    /// Notes on them and the body, a sentence each.
     pub notes: Vec<String>,
     /// How each garment fits; none of a mesh without sizes.
     pub fits: Vec<Option<Recommendation>>,
@@ -42,11 +42,11 @@ pub struct TryOn {
     pub scene: Scene,
 }
 
-/// Measures whoever stands in a recording, puts the garments on a body of those measures, lets them move as the recording does and
+/// Measures the person in a recording, puts the garments on a body of those measures, lets them move as the recording does and
 /// draws its end: the same measures, sizes and bits as `toile try-on`.
 ///
 /// # Errors
-/// A recording in which nobody can be measured or followed, a garment that cannot be worn, a size of pictures that there is not.
+/// A recording in which no person can be measured or followed, a garment that cannot be worn, a size of pictures that cannot be drawn.
 pub fn try_on(recording: &Recording, garments: &[Garment], options: &TryOnOptions) -> Result<TryOn> {
     if let Some(size) = options.picture {
         crate::picture::checked_size(size)?;

@@ -1,4 +1,4 @@
-//! Bodies have the measures that they were asked for, and measures the errors that they are known with.
+//! Bodies have the requested measures, and measures have their known errors.
 
 use std::collections::BTreeSet;
 

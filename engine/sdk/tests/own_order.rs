@@ -1,4 +1,4 @@
-//! Positions come in the order of the caller's own mesh, and pins stay where that has them.
+//! Positions come in the order of the caller's own mesh, and pins stay at their vertices' places.
 
 use std::fmt::Write;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! Every public item of this crate, as a caller sees it, against the list that was agreed: nobody changes it by accident.
+//! Every public item of this crate, as a caller sees it, against the list that was agreed, so that it does not change by accident.
 
 use std::collections::BTreeSet;
 use std::env;
@@ -51,7 +51,7 @@ fn names(tree: &UseTree, to: &mut BTreeSet<String>) {
         UseTree::Group(group) => group.items.iter().for_each(|tree| names(tree, to)),
         UseTree::Name(name) => _ = to.insert(name.ident.to_string()),
         UseTree::Rename(name) => _ = to.insert(name.rename.to_string()),
-        UseTree::Glob(_) => panic!("a `pub use` of everything shows what nobody has listed; name the items"),
+        UseTree::Glob(_) => panic!("a `pub use` of everything shows unlisted items; name the items"),
     }
 }
 
@@ -152,19 +152,19 @@ fn written(items: Vec<Item>) -> String {
 
 /// The whole of it, as Rust without bodies: what is re-exported, then what each file defines of it.
 fn list() -> String {
-    let door = parsed(&here("src/lib.rs"));
+    let root = parsed(&here("src/lib.rs"));
     let private = |item: &Item| match item {
         Item::Use(of) => matches!(of.vis, Visibility::Inherited),
         Item::Mod(of) => matches!(of.vis, Visibility::Inherited),
         _ => false,
     };
-    let opened: Vec<Item> = door.items.into_iter().filter(|item| !private(item)).collect();
+    let opened: Vec<Item> = root.items.into_iter().filter(|item| !private(item)).collect();
     let mut known = BTreeSet::new();
     for item in &opened {
         match item {
             Item::Use(of) => names(&of.tree, &mut known),
             other => {
-                panic!("the crate's door opens more than `pub use` of names; this list does not know it: {other:?}")
+                panic!("the crate's root exports more than `pub use` of names; this list does not know it: {other:?}")
             }
         }
     }

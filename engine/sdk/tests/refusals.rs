@@ -48,7 +48,7 @@ fn garments_that_there_are_not() {
 }
 
 #[test]
-fn recordings_of_nobody() {
+fn recordings_without_a_person() {
     refused(Recording::open("there-is-no-such.mcap"), Input, &["there-is-no-such.mcap"]);
     refused(Recording::from_frames("mine", Vec::new(), Vec::new()), Input, &["mine", "no frame"]);
     let frame = Joints::seen(0, [Vec3::Y; 23]);
@@ -61,8 +61,8 @@ fn recordings_of_nobody() {
     };
     refused(Recording::from_frames("mine", Vec::new(), vec![depth.clone()]), Input, &["4 depths"]);
     let empty = DepthFrame { depth_mm: vec![0; 640 * 480].into(), ..depth };
-    let nobody = Recording::from_frames("mine", Vec::new(), vec![empty]).unwrap();
-    refused(nobody.measure(&Shopper::default()), Input, &[]);
+    let empty = Recording::from_frames("mine", Vec::new(), vec![empty]).unwrap();
+    refused(empty.measure(&Shopper::default()), Input, &[]);
     let embedded = Recording::embedded().unwrap();
     let by = |name: &str, mm: f64| Shopper { by_tape_mm: vec![(name.to_owned(), mm)], ..Shopper::default() };
     refused(embedded.measure(&by("chest", 92.0)), Input, &["chest", "centimetres"]);

@@ -1,4 +1,4 @@
-//! What this crate gives is what the assembly below it gives, to the bit.
+//! This crate gives the same bits as the assembly below it.
 
 use toile_assets::scene_file::{SceneFile, SceneSource};
 use toile_engine::cloth::Settings;

@@ -1,4 +1,4 @@
-//! SHA-256 as text: of the study, of what it reads, of what it writes.
+//! SHA-256 as text: of the study, its inputs and its outputs.
 
 use std::fmt::Write;
 

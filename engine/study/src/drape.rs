@@ -1,4 +1,4 @@
-//! A try-on by physics: a garment in a size put on a body, settled, and what is seen of it there.
+//! A try-on by physics: a garment in a size put on a body, settled, and observed there.
 
 use std::f32::consts::TAU;
 
@@ -21,7 +21,7 @@ use toile_fitting::wearing::{self, CoveredZone, poses};
 use crate::error::{Result, StudyError};
 use crate::garments::{DrapeStart, TriedGarment};
 
-/// Steps that somebody walks: 4 s.
+/// Steps of walking: 4 s.
 const WALK_STEPS: usize = 480;
 
 /// Sectors around the body, nearly all of which a closed section of cloth has.

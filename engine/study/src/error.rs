@@ -1,4 +1,4 @@
-//! Why a study cannot be made: one sentence with its cure.
+//! Cause of a failed study: one sentence with its cure.
 
 use std::fmt::Display;
 use std::io;
@@ -24,7 +24,7 @@ pub enum StudyError {
 pub type Result<T> = std::result::Result<T, StudyError>;
 
 impl StudyError {
-    /// Bad input, described by the error of the room that read it.
+    /// Bad input, described by the error of the crate that read it.
     pub fn input(error: impl Display) -> Self {
         Self::Input(error.to_string())
     }

@@ -41,7 +41,7 @@ toile_base::named! {
     }
 }
 
-/// How a zone of a size is on somebody's true girth.
+/// How a zone of a size is on a person's true girth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ZoneEase {
     /// Where.
@@ -90,7 +90,7 @@ impl TriedGarment {
     /// Opens a garment; paths are from `folder`.
     ///
     /// # Errors
-    /// A garment, fabric or size that there is not; one that has no sizes.
+    /// An unknown garment, fabric or size; one that has no sizes.
     pub fn open(wanted: &WantedGarment, folder: &Path) -> Result<Self> {
         let beside = folder.join(&wanted.name);
         let found = if beside.is_file() { beside.display().to_string() } else { wanted.name.clone() };
@@ -127,7 +127,7 @@ impl TriedGarment {
     }
 
     /// The garment in a size on a body: sewn up around it, or taken over from the body of its size (what that is depends on the
-    /// garment and the size alone, so that a row is the same whoever computes it).
+    /// garment and the size alone, so that every worker computes the same row).
     ///
     /// # Errors
     /// A garment that cannot be laid on this body.
@@ -142,7 +142,7 @@ impl TriedGarment {
         carried.map_or_else(|| Ok(self.source.dress(Some(size), body)?), Ok)
     }
 
-    /// Whether it is made for somebody of a sex.
+    /// Whether it is made for a person of a sex.
     pub fn is_for(&self, sex: Sex) -> bool {
         !matches!((self.made_for, sex), (MadeFor::Women, Sex::Male) | (MadeFor::Men, Sex::Female))
     }

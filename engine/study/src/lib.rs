@@ -1,6 +1,6 @@
-//! How many people each size of a garment fits, where it fails, and which step between sizes would help most.
+//! Counts the people whom each size of a garment fits, finds where it fails, and which step between sizes would help most.
 //!
-//! A study file says which garments, whose bodies, which sensor and how much physics; each try-on is one row, a function of the study
+//! A study file names garments, people, sensor and amount of physics; each try-on is one row, a function of the study
 //! and the row's number alone, so that any machine may compute any part of it:
 //!
 //! ```no_run

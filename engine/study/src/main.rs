@@ -1,4 +1,4 @@
-//! The program `toile-study`: which sizes of garments fit how many people.
+//! The program `toile-study`: counts the people whom each size of a garment fits.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

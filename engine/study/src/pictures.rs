@@ -1,4 +1,4 @@
-//! Pictures of typical people in their sizes, as data that stands in a page.
+//! Pictures of typical people in their sizes, as data within a page.
 
 use std::fmt::Write;
 
@@ -12,7 +12,7 @@ use crate::study::Study;
 /// Size of each (px).
 const SIZE: Size = Size::new(150, 300);
 
-/// A picture of somebody in a garment's size, from the front, as a `data:` address.
+/// A picture of a person in a garment's size, from the front, as a `data:` address.
 ///
 /// # Errors
 /// A garment that cannot be laid on them.

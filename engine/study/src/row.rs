@@ -116,7 +116,7 @@ row! {
     size: String,
     /// The pose of this row.
     pose: String,
-    /// Whether the garment is made for somebody of their sex; else nothing of what follows is judged.
+    /// Whether the garment is made for a person of their sex; else nothing of what follows is judged.
     offered: bool,
     /// The size recommended to the true measures.
     best_size: Option<String>,

@@ -1,4 +1,4 @@
-//! What a sensor makes of true measures: normal errors of known deviations, by seed and number.
+//! A sensor's readings of true measures: normal errors of known deviations, by seed and number.
 
 use toile_base::body::Measures;
 use toile_track::estimate::Estimate;
@@ -30,7 +30,7 @@ impl Sensor {
     /// The sensor that a study wants.
     ///
     /// # Errors
-    /// A view or a measure that there is not.
+    /// An unknown view or measure.
     pub fn open(wanted: &WantedSensor, seed: u64) -> Result<Self> {
         let view = wanted.view.as_deref().unwrap_or("front");
         one_of("[sensor] view", view, &["front", "turned", "none"]).map_err(StudyError::Input)?;

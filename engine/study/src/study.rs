@@ -61,7 +61,7 @@ pub struct Study {
     digest: String,
 }
 
-/// How a garment suits somebody, whatever the size of the row.
+/// How a garment suits a person, whatever the size of the row.
 struct Judged {
     best: Option<String>,
     seen: Option<Recommendation>,
@@ -144,7 +144,7 @@ impl Study {
         &self.garments
     }
 
-    /// Somebody of its population.
+    /// A person of its population.
     pub fn person(&self, number: u64) -> Person {
         self.population.person(number)
     }
@@ -174,7 +174,7 @@ impl Study {
     /// One row, whatever others were asked for.
     ///
     /// # Errors
-    /// A number that there is not; measures that no body has.
+    /// A number out of range; measures that no body has.
     pub fn row(&self, number: u64) -> Result<StudyRow> {
         if number >= self.rows() {
             let rows = self.rows();

@@ -1,4 +1,4 @@
-//! The study file: which garments, which people, which sensor, how much physics. Every key is known or refused.
+//! The study file: garments, people, sensor, amount of physics. Unknown keys are refused.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -232,7 +232,7 @@ impl StudyFile {
         seconds("settle_s", physics.settle_s)?;
         seconds("compare_s", physics.compare_s)?;
         if physics.poses.is_empty() {
-            return Err("[physics] poses is empty; leave it out to let everybody stand".to_owned());
+            return Err("[physics] poses is empty; leave it out to let all people stand".to_owned());
         }
         one_of("[physics] sizes", &physics.sizes, &["recommended", "near", "all"])
     }

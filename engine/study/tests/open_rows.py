@@ -16,8 +16,8 @@ import pyarrow.parquet
 def fitted(rows, garment):
     """Share of people whom the size recommended to them fits."""
     people = rows[(rows.garment == garment) & rows.offered & (rows["size"] == rows.best_size) & (rows.pose == "standing")]
-    everybody = rows[(rows.garment == garment) & rows.offered].drop_duplicates("person")
-    return (people.fits * people.weight).sum() / everybody.weight.sum()
+    offered = rows[(rows.garment == garment) & rows.offered].drop_duplicates("person")
+    return (people.fits * people.weight).sum() / offered.weight.sum()
 
 
 def main(path, summary):

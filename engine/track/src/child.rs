@@ -1,4 +1,4 @@
-//! Whether a shopper is a child: an estimate from the stature, which moves no measure.
+//! Estimates from the stature whether a shopper is a child; it changes no measure.
 
 use toile_assets::sizes::Population;
 
@@ -14,7 +14,7 @@ const SPREAD: f32 = 0.046;
 /// Children among those who step before a camera in a shop for adults.
 const AMONG_SHOPPERS: f32 = 0.05;
 
-/// How likely somebody of this stature (m) is a child of 4 to 13 years rather than an adult, 0 to 1.
+/// How likely a person of this stature (m) is a child of 4 to 13 years rather than an adult, 0 to 1.
 pub fn child_odds(stature: Estimate) -> f32 {
     let density = |mean: f32, sigma: f32| {
         let sigma = sigma.hypot(stature.sigma);

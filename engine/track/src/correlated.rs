@@ -1,4 +1,4 @@
-//! Several lengths of one body with the covariance of their errors, and what one of them, once known, tells of the others.
+//! Several lengths of one body with the covariance of their errors, and the update of the others by one that becomes known.
 
 use crate::estimate::Estimate;
 

@@ -36,7 +36,7 @@ const OUTLIER: f32 = 3.0;
 const MAD_TO_SIGMA: f32 = 1.4826;
 
 /// Mean of a parameter over the frames of one second, without outliers, and the standard error of that mean
-/// (Gultepe 2013, section 6.4, averages the parameters and not the depth, because nobody stands still for a second;
+/// (Gultepe 2013, section 6.4, averages the parameters and not the depth, because no person stands still for a second;
 /// the outliers are our addition). `None` without samples; one sample has no scatter and gets error 0.
 pub fn temporal_mean(samples: &[f32]) -> Option<Estimate> {
     let mut sorted: Vec<f32> = samples.iter().copied().filter(|s| s.is_finite()).collect();

@@ -53,14 +53,14 @@ pub enum MeasureError {
     Empty,
     /// Depth without a person.
     #[error(
-        "nobody is in view in any of the {frames} depth frames; stand upright before the camera, 1.2 to 3.5 m away, \
+        "no person is in view in any of the {frames} depth frames; stand upright before the camera, 1.2 to 3.5 m away, \
          head and shoulders in the picture."
     )]
-    Nobody {
+    NoPerson {
         /// Frames that were looked at.
         frames: usize,
     },
-    /// Somebody, but beyond what can be measured.
+    /// A person, but beyond what can be measured.
     #[error(
         "the person stands {distance:.1} m from the camera, where its depth is too coarse to measure; come closer \
          than {limit:.1} m."

@@ -1,4 +1,4 @@
-//! The measures and what is known of them beforehand: the types that every way of measuring shares.
+//! The measures and their priors: the types that every way of measuring shares.
 
 use toile_assets::sizes::Population;
 

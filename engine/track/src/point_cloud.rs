@@ -1,4 +1,4 @@
-//! The shopper of one depth frame after the other as world points: whoever the segmenter finds, and nothing else.
+//! The shopper of one depth frame after the other as world points: the person whom the segmenter finds, and nothing else.
 
 use glam::Vec3;
 use toile_base::frame::{DepthFrame, Intrinsics};
@@ -8,7 +8,7 @@ use toile_sensors::segment::{Segmenter, Zone};
 /// Farther than this the Kinect's steps exceed 46 mm and a body has under 6,000 pixels (m).
 pub const FARTHEST: f32 = 4.5;
 
-/// Where somebody is measured: wherever a camera sees them well.
+/// Where a person is measured: wherever a camera sees them well.
 const ANYWHERE: Zone = Zone { ahead: [0.4, FARTHEST], half_width: 2.5, mark: None };
 
 /// The lowest share of a person's height, and the share of it along the picture's edge with which the picture cuts them off.

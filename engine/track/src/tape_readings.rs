@@ -1,4 +1,4 @@
-//! Measures that were taken by tape: read from words, checked, and laid over what was measured.
+//! Measures that were taken by tape: read from words, checked, and merged with the measured ones.
 
 use std::sync::LazyLock;
 
@@ -13,11 +13,11 @@ use crate::fit::measuring::{MEASURES, covariance_of};
 /// All measures of a body, with what their errors have in common, in the order of [`MEASURES`].
 pub type BodyEstimate = Correlated<{ MEASURES.len() }>;
 
-/// Standard deviation of a tape in the hands of whoever is at hand (m): ISO 20685 allows trained ones 4 to 9 mm.
+/// Standard deviation of a tape in untrained hands (m): ISO 20685 allows trained ones 4 to 9 mm.
 const TAPE: f32 = 0.005;
 
-/// A measure by tape farther from what the others let expect than this many standard deviations is nobody's.
-const NOBODY: f32 = 5.0;
+/// A measure by tape farther from the value expected by the others than this many standard deviations is refused.
+const FARTHEST_SIGMAS: f32 = 5.0;
 
 /// A measure by tape farther from the camera's than this many standard deviations of both is said to be.
 const APART: f32 = 3.0;
@@ -39,8 +39,8 @@ const UNITS: [(&str, f32); 6] =
     [("mm", 1e-3), ("cm", 1e-2), ("in", 0.0254), ("inch", 0.0254), ("\"", 0.0254), ("m", 1.0)];
 
 /// Standard deviations that people of the survey stray by: within them a measure by tape is taken for its unit's, and beyond them
-/// none is anybody's.
-pub(crate) const ANYBODY: f32 = 6.0;
+/// it is refused.
+pub(crate) const MOST_SIGMAS: f32 = 6.0;
 
 /// Why a measure by tape is refused; each message says what and the cure.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -48,16 +48,16 @@ pub enum TapeError {
     /// No `name=value`.
     #[error("`{0}` is no measure; write it as chest=912 (millimetres), chest=91.2cm or chest=36in")]
     Form(String),
-    /// A name that there is not.
+    /// An unknown name.
     #[error("there is no measure `{name}`; there are {names}")]
     Name {
         /// What was given.
         name: String,
-        /// What there is.
+        /// The names that exist.
         names: String,
     },
-    /// A length that nobody has.
-    #[error("nobody's {measure} is {given_mm:.0} mm: people's lie between {low_mm:.0} and {high_mm:.0} mm{cure}")]
+    /// A length outside of people's range.
+    #[error("no person's {measure} is {given_mm:.0} mm: people's lie between {low_mm:.0} and {high_mm:.0} mm{cure}")]
     Unit {
         /// The measure.
         measure: &'static str,
@@ -70,7 +70,7 @@ pub enum TapeError {
         /// What was probably meant.
         cure: String,
     },
-    /// Two of them that nobody has together.
+    /// Two of them that no person has together.
     #[error(
         "a {measure} of {given_mm:.0} mm does not go with the other measures by tape: with these it is {expected_mm:.0} mm, give \
          or take {sigma_mm:.0}; take it again, or leave one out"
@@ -155,12 +155,12 @@ impl TapeReadings {
     /// Adds a measure by its place in [`MEASURES`] (m).
     ///
     /// # Errors
-    /// A length that nobody has.
+    /// A length outside of people's range.
     pub fn with(mut self, index: usize, value: f32) -> Result<Self, TapeError> {
         let all = population(Population::Mixed);
         let ranges = |index: usize| {
             let Estimate { value, sigma } = all.at(index);
-            value - ANYBODY * sigma..value + ANYBODY * sigma
+            value - MOST_SIGMAS * sigma..value + MOST_SIGMAS * sigma
         };
         let range = ranges(index);
         if !range.contains(&value) {
@@ -186,7 +186,7 @@ impl TapeReadings {
     /// Adds a measure in words, `chest=912` (mm), `chest=91.2cm` or `chest=36in`.
     ///
     /// # Errors
-    /// Words that are no measure, or a length that nobody has.
+    /// Words that are no measure, or a length outside of people's range.
     pub fn and(self, words: &str) -> Result<Self, TapeError> {
         let form = || TapeError::Form(words.to_owned());
         let (name, length) = words.split_once('=').ok_or_else(form)?;
@@ -205,7 +205,7 @@ impl TapeReadings {
     /// All measures in words, checked against one another.
     ///
     /// # Errors
-    /// As [`TapeReadings::and`], and measures that nobody has together.
+    /// As [`TapeReadings::and`], and measures that no person has together.
     pub fn of<S: AsRef<str>>(words: &[S]) -> Result<Self, TapeError> {
         let tape = words.iter().try_fold(Self::default(), |tape, w| tape.and(w.as_ref()))?;
         tape.check()?;
@@ -215,7 +215,7 @@ impl TapeReadings {
     /// Checks each measure against what all others let expect of either sex.
     ///
     /// # Errors
-    /// The measure that stands out most, if nobody has it.
+    /// The measure that stands out most, if no person has it.
     pub fn check(&self) -> Result<(), TapeError> {
         let mut worst: Option<(f32, TapeError)> = None;
         for (index, value) in self.given() {
@@ -225,7 +225,7 @@ impl TapeReadings {
             });
             let off = |e: &Estimate| (value - e.value).abs() / e.sigma;
             let nearest = if off(&expected[0]) < off(&expected[1]) { expected[0] } else { expected[1] };
-            if off(&nearest) > NOBODY && worst.as_ref().is_none_or(|w| off(&nearest) > w.0) {
+            if off(&nearest) > FARTHEST_SIGMAS && worst.as_ref().is_none_or(|w| off(&nearest) > w.0) {
                 let error = TapeError::Contradiction {
                     measure: MEASURES[index].0,
                     given_mm: value * 1e3,

@@ -1,4 +1,4 @@
-//! The body fit held against truth: known bodies before a synthetic camera, and what a real one saw.
+//! The body fit compared with truth: known bodies before a synthetic camera, and recordings of a real one.
 
 use glam::{Affine3A, Quat, Vec3};
 use toile_assets::body::shape::Shapes;
@@ -121,7 +121,7 @@ fn room() -> [[Vec3; 3]; 4] {
 }
 
 #[test]
-fn somebody_is_tracked_through_a_room_that_is_seen_as_well() {
+fn a_person_is_tracked_before_a_visible_room() {
     let room = room();
     let step = |i: usize| turned(0.02 * i as f32, Vec3::new(-0.1 + 0.03 * i as f32, 0.0, 0.02 * i as f32));
     let frames: Vec<(DepthFrame, Truth)> =
@@ -131,7 +131,7 @@ fn somebody_is_tracked_through_a_room_that_is_seen_as_well() {
         .enumerate()
         .map(|(i, (frame, truth))| (DepthFrame { time_ns: i as u64 * 33_333_333, ..frame }, truth))
         .collect();
-    // In the last frame nobody is there: nothing is made up.
+    // In the last frame no person is in view: nothing is made up.
     let (last, _) = seen_before(&room, Sex::Female, &Wanted::new(), turned(0.0, Vec3::new(40.0, 0.0, 0.0)));
     let only: Vec<DepthFrame> =
         frames.iter().map(|f| f.0.clone()).chain([DepthFrame { time_ns: 2_000_000_000, ..last }]).collect();
@@ -148,7 +148,7 @@ fn somebody_is_tracked_through_a_room_that_is_seen_as_well() {
 }
 
 #[test]
-fn somebody_bare_who_is_taken_for_clothed_is_hardly_smaller() {
+fn a_bare_body_taken_for_clothed_hardly_shrinks() {
     let (frame, truth) = seen(Sex::Male, &Wanted::new().with(En::Stature, 1.82), turned(0.1, Vec3::ZERO));
     let found = measuring::measure(&[frame.clone(), frame], Population::Men, FitOptions::MEASURING).expect("a fit");
     let stature = found.named("stature").expect("taken");
@@ -172,7 +172,7 @@ fn a_body_of_the_family_is_measured_and_twice_alike() {
     assert_eq!(bits(&first), bits(&second));
 }
 
-/// Frames of somebody who stands for a moment and then turns so far (rad), fifteen frames a second.
+/// Frames of a person who stands for a moment and then turns so far (rad), fifteen frames a second.
 fn turning(by: f32) -> (Vec<DepthFrame>, Truth) {
     let wanted = Wanted::new().with(En::Stature, 1.70).with(En::WaistGirth, 0.86);
     let (front, truth) = seen(Sex::Female, &wanted, turned(0.0, Vec3::ZERO));
@@ -205,7 +205,7 @@ fn who_turns_all_round_is_measured_from_all_sides_and_who_does_not_from_the_fron
 }
 
 #[test]
-fn hostile_pictures_are_nobody_and_no_panic() {
+fn hostile_pictures_show_no_person_and_no_panic() {
     let (frame, _) = seen(Sex::Male, &Wanted::new(), turned(0.0, Vec3::ZERO));
     let n = frame.depth_mm.len();
     let mut noise = toile_base::numeric::random::SplitMix64::new(3);
@@ -230,7 +230,7 @@ fn a_whole_clothed_woman_is_fitted() {
     let options = OpenOptions { camera: Some(folder.join("chae_depth_camera.json")) };
     let session = open(&folder.join("chae_depth_mm_1024x512.u16le"), &options).unwrap();
     let frame = &session.depth[0];
-    let alone = PersonFinder::default().push(frame).alone.expect("somebody");
+    let alone = PersonFinder::default().push(frame).alone.expect("a person");
     let fitted = measuring::measure(&[alone], Population::Mixed, FitOptions::MEASURING).expect("a fit");
     assert!(fitted.explained > 0.9, "{}", fitted.explained);
     let stature = fitted.measures[0];

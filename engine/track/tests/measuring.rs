@@ -55,7 +55,7 @@ fn without_a_unit_the_stature_is_assumed_and_says_so() {
 }
 
 #[test]
-fn joints_that_nobody_believes_are_refused_in_one_sentence() {
+fn implausible_joints_are_refused_in_one_sentence() {
     let absent = Joints::absent(0);
     let mut nan = absent;
     nan.joints[Joint::Pelvis.index()] = TrackedJoint { position: Vec3::NAN, confidence: 1.0 };

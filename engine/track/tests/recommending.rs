@@ -1,4 +1,4 @@
-//! Recommending: laws that a size must obey.
+//! Recommending: rules that a size must obey.
 
 use toile_assets::sizes::{GarmentKind, SizeTable};
 use toile_base::numeric::random::SplitMix64;
@@ -166,7 +166,7 @@ fn bad_offers_are_refused_in_one_sentence() {
 }
 
 /// A random person between the smallest and the largest size, with errors of up to 4 cm.
-fn anybody(rng: &mut SplitMix64) -> ([f32; 3], f32) {
+fn drawn_person(rng: &mut SplitMix64) -> ([f32; 3], f32) {
     let chest = 0.76 + 0.5 * rng.uniform();
     ([chest, chest - 0.16 + 0.05 * rng.gaussian(), chest + 0.08 + 0.05 * rng.gaussian()], 0.04 * rng.uniform())
 }
@@ -176,7 +176,7 @@ fn probabilities_are_those_of_all_sizes_and_sum_to_one() {
     with(|offer| {
         let mut rng = SplitMix64::new(11);
         for _ in 0..100 {
-            let ([chest, waist, hip], sigma) = anybody(&mut rng);
+            let ([chest, waist, hip], sigma) = drawn_person(&mut rng);
             let r = recommend(&person(chest, waist, hip, sigma), offer).unwrap();
             assert_eq!(r.sizes.iter().map(|s| s.size.as_str()).collect::<Vec<_>>(), offer.table.codes());
             let sum: f32 = r.sizes.iter().map(|s| s.probability).sum();
@@ -195,7 +195,7 @@ fn a_larger_body_never_gets_a_smaller_size() {
         };
         let mut rng = SplitMix64::new(12);
         for _ in 0..60 {
-            let (body, sigma) = anybody(&mut rng);
+            let (body, sigma) = drawn_person(&mut rng);
             for zone in 0..3 {
                 let mut larger = body;
                 larger[zone] += 0.12 * rng.uniform();
@@ -210,7 +210,7 @@ fn a_body_known_exactly_gets_a_certain_size_and_no_tape() {
     with(|offer| {
         let mut rng = SplitMix64::new(13);
         for _ in 0..60 {
-            let ([chest, waist, hip], _) = anybody(&mut rng);
+            let ([chest, waist, hip], _) = drawn_person(&mut rng);
             let r = recommend(&person(chest, waist, hip, 0.0), offer).unwrap();
             assert_eq!(r.probability, 1.0, "{r:?}");
             assert!(!r.uncertain && r.girth_to_take.is_none() && r.verdict.contains("100 % sure"), "{r:?}");

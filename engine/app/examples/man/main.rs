@@ -1,7 +1,7 @@
 //! The manual: one page a command, made from the grammar of the command line.
 //!
 //! `cargo run --release -p toile --example man -- DIR` writes `toile.1`, `toile-try-on.1` and all others into DIR, which is made
-//! where it is missing. It is an example, so that the program itself carries nothing that only a package needs.
+//! where it is missing. It is an example, so that the program itself does not carry it: only packages need it.
 
 mod pages;
 

@@ -1,4 +1,4 @@
-//! Pages: what the grammar knows, and what it does not: exit codes, files, where to read on.
+//! Pages: the grammar's contents, and beside it exit codes, files and further reading.
 
 use std::io;
 
@@ -41,7 +41,7 @@ const KIOSK_FILES: [(&str, &str); 6] = [
         "/etc/toile/kiosk.toml",
         "The configuration that the service reads; `toile kiosk --print-config` explains all keys.",
     ),
-    ("/lib/systemd/system/toile.service", "The service; it is started when somebody enables it."),
+    ("/lib/systemd/system/toile.service", "The service; it is started when an administrator enables it."),
     (
         "/usr/share/doc/toile/examples/loopback.conf",
         "Opens the loopback interface to the service; install it as /etc/systemd/system/toile.service.d/loopback.conf.",

@@ -1,4 +1,4 @@
-//! What hangs in the made-up shop.
+//! The garments of the made-up shop.
 
 /// A colour: its names in English and German, sRGB.
 pub type ShopColour = (&'static str, &'static str, [f32; 3]);

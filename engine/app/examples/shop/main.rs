@@ -1,8 +1,8 @@
 //! A made-up shop: six garments of the built-in drafts in prints, with photographs, prices and names in two languages, and a theme.
 //!
 //! `cargo run --release -p toile --example shop -- DIR` writes `catalogue.toml`, a logo and six packages into DIR, which is made where
-//! it is missing, and what they are made from into DIR/source. The photographs are the mirror's own pictures, the logo is drawn
-//! here: nothing of it belongs to anybody.
+//! it is missing, and the packages' sources into DIR/source. The photographs are the mirror's own pictures, the logo is drawn
+//! here: nothing of it is under another owner's rights.
 
 mod garments;
 mod logo;

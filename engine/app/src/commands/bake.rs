@@ -1,4 +1,4 @@
-//! `toile bake`: what a garment's mesh becomes, and warnings about it.
+//! `toile bake`: bakes a garment's mesh, and warns about its faults.
 
 use std::fmt::Write;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! `toile body`: a body that others made, imported, looked at, and written for other tools.
+//! `toile body`: imports a body made by other tools, shows it, and writes it for other tools.
 
 use std::f32::consts::{FRAC_PI_2, PI};
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! `toile body --colliders`: how closely the collision body follows the skin.
+//! `toile body --colliders`: the distance of the collision body from the skin.
 
 use std::f32::consts::{FRAC_PI_2, PI};
 use std::fmt::Write;

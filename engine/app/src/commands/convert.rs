@@ -1,4 +1,4 @@
-//! `toile convert`: any supported recording as a session, without pictures of anybody unless they are asked for.
+//! `toile convert`: any supported recording as a session, without pictures of people unless they are asked for.
 
 use std::path::PathBuf;
 
@@ -20,7 +20,7 @@ use crate::report::{self, ConvertReport};
 /// session (MCAP). Joints alone are kept unless --depth asks for more: depth images show a person.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(
-    after_help = "Example: keep the joints of a recording, and no picture of anybody\n  toile convert shopper.csv \
+    after_help = "Example: keep the joints of a recording, and no picture of people\n  toile convert shopper.csv \
                         --out shopper.mcap\nExample: the same of depth images alone\n  toile convert frames --fit --out \
                         shopper.mcap"
 )]

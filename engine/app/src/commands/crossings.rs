@@ -1,4 +1,4 @@
-//! Crossings of what is played, counted every tenth step for the reports.
+//! Crossings of the played garments, counted every tenth step for the reports.
 
 use glam::Vec3;
 use toile_base::garment::Garment;

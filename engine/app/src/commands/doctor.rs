@@ -1,4 +1,4 @@
-//! `toile doctor`: what this machine has, and the exact cure for what is missing.
+//! `toile doctor`: checks this machine, and names the exact cure for each missing part.
 
 mod cameras;
 mod check;

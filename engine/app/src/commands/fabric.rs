@@ -1,4 +1,4 @@
-//! `toile fabric`: what fabrics there are, what one is, and a laboratory's sheet made into one.
+//! `toile fabric`: lists fabrics, shows one, and makes one from a laboratory's sheet.
 
 mod loops;
 
@@ -183,7 +183,7 @@ struct FabricList {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 struct ShownFabric {
     fabric: FabricReport,
-    /// What the law of the file gives back when it is measured as the Kawabata system does.
+    /// Loops computed from the file's curves, read as the Kawabata system does.
     loops: Vec<loops::LoopReport>,
     files: Vec<PathBuf>,
 }
@@ -273,7 +273,7 @@ fn finish(fabric: &Fabric, files: Vec<PathBuf>, printing: Printing) -> Result<()
     }
     let mut out = body.fabric.lines();
     for l in &body.loops {
-        put_line!(out, "read off the law {}", l.line());
+        put_line!(out, "read off the curve {}", l.line());
     }
     terminal::print(&out)?;
     body.files.iter().for_each(|f| printing.words().print_line(&format!("{} written", f.display())));

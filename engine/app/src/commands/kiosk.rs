@@ -1,4 +1,4 @@
-//! `toile kiosk`: a shop's fitting room, unattended.
+//! `toile kiosk`: runs a shop's fitting room, unattended.
 
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
@@ -22,7 +22,7 @@ const WINDOW: RangeInclusive<u32> = 240..=8192;
 
 /// Run unattended: wait for shoppers, measure them, dress them, forget them.
 ///
-/// Runs the whole loop until it is asked to end (SIGTERM, SIGINT): waits for somebody to step in, measures them, dresses a
+/// Runs the whole loop until it is asked to end (SIGTERM, SIGINT): waits for a shopper to step in, measures them, dresses a
 /// body of their size, and forgets them when they have left. Nothing about a person is written. Works with systemd as a
 /// service of Type=notify with a watchdog; docs/kiosk.md describes how it is installed.
 #[derive(Debug, Clone, PartialEq, clap::Args)]

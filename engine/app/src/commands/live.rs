@@ -1,4 +1,4 @@
-//! `toile live`: what a camera gives, on the terminal and as pictures.
+//! `toile live`: shows a camera's data, on the terminal and as pictures.
 
 use std::path::PathBuf;
 use std::thread;
@@ -35,7 +35,7 @@ const SHOWN_MM: [f32; 2] = [500.0, 4_500.0];
 
 /// Show what a live camera gives: size, rates, losses, latency, people.
 ///
-/// Opens the camera through its own library, which is loaded while the program runs, follows whoever stands before it, and says once a
+/// Opens the camera through its own library, which is loaded while the program runs, follows the person before it, and says once a
 /// second what came. Nothing is stored but the pictures that --out asks for.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(
@@ -53,7 +53,7 @@ pub struct LiveArgs {
     /// How it is mounted
     #[command(flatten)]
     pub mount: MountArgs,
-    /// Folder for pictures of the last depth and colour; they show whoever stands there
+    /// Folder for pictures of the last depth and colour; they show the people in view
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     #[command(flatten)]
@@ -67,7 +67,7 @@ pub struct LiveRates {
     pub depth: f64,
     /// Colour images.
     pub colour: f64,
-    /// Frames in which somebody was followed.
+    /// Frames in which a person was followed.
     pub joints: f64,
 }
 
@@ -96,9 +96,9 @@ pub struct LiveReport {
     pub reopened: u64,
     /// Rates of what came.
     pub rates_hz: LiveRates,
-    /// From a frame's arrival until the body was fitted to it, while somebody is followed (us).
+    /// From a frame's arrival until the body was fitted to it, while a person is followed (us).
     pub latency_us: Quantiles,
-    /// The same where somebody is found for the first time, or nobody is (us).
+    /// The same where a person is found for the first time, or none is (us).
     pub finding_us: Quantiles,
     /// Most people who were seen at once.
     pub people: u32,
@@ -198,7 +198,7 @@ fn look(feed: &mut CameraFeed, handle: &CameraHandle, length: Duration, words: W
 fn line(last: &CameraFigures, now: &CameraFigures) -> String {
     let (a, b) = (&last.counts, &now.counts);
     let bad = (b.half + b.repeated + b.empty) - (a.half + a.repeated + a.empty);
-    let who = if now.tracked[1] > last.tracked[1] { "somebody is followed" } else { "nobody is followed" };
+    let who = if now.tracked[1] > last.tracked[1] { "a person is followed" } else { "no person is followed" };
     let state = if now.state == CameraState::Seeing { String::new() } else { format!(", {}", now.state) };
     format!(
         "{} frames, {} colour, {} missing, {bad} unusable{state}; {who}",

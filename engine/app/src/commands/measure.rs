@@ -52,7 +52,7 @@ pub struct MeasureArgs {
 /// Runs `toile measure`.
 ///
 /// # Errors
-/// A file that cannot be read or shows nobody, a folder that cannot be written, or a closed stdout.
+/// A file that cannot be read or shows no person, a folder that cannot be written, or a closed stdout.
 pub fn run(args: &MeasureArgs) -> Result<(), AppError> {
     let out = args.out.as_deref().map(OutputFolder::prepare).transpose().map_err(AppError::input)?;
     let mut out = out.map(|out| out.sparing(Inputs::new(args.camera.iter().chain([&args.file]))));

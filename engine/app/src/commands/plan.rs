@@ -1,4 +1,4 @@
-//! `toile plan`: what a scene needs and takes, before it runs.
+//! `toile plan`: predicts memory and time of a scene before it runs.
 
 mod table;
 

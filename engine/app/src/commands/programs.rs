@@ -1,4 +1,4 @@
-//! Commands that programs of their own run: which one, where it is, and how to get it.
+//! Commands that other programs run: the program, its place, and the way to get it.
 
 use std::convert::Infallible;
 use std::env;
@@ -70,7 +70,7 @@ pub static OTHER_COMMANDS: [OtherCommand; 8] = [
         program: "toile-capture",
         about: "Turn the pictures of several calibrated cameras into motion, a pose, a body or a face",
         example: [
-            "the body of somebody whose silhouettes four cameras saw",
+            "a body measured from the silhouettes of four cameras",
             "toile capture body masks --calibration cameras.toml --out fitted",
         ],
     },

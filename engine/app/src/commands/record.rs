@@ -1,4 +1,4 @@
-//! `toile record`: a synthetic session, such as the embedded one: what a depth camera would see of a moving shopper.
+//! `toile record`: makes a synthetic session, such as the embedded one: a moving shopper, rendered as a depth camera would see them.
 
 use std::path::PathBuf;
 
@@ -34,7 +34,7 @@ const _: () = assert!(scene::LENGTH_S == 10.0);
 
 /// Record a session: from a live camera, or a synthetic one such as the embedded one.
 ///
-/// With --camera it records whoever stands before a depth camera, once they have agreed. Without, it renders what a depth camera would see of a moving body, with the camera's noise, and writes it as a session. Without
+/// With --camera it records the people before a depth camera, once they have agreed. Without, it renders what a depth camera would see of a moving body, with the camera's noise, and writes it as a session. Without
 /// --seed and --seconds it makes the session that is embedded in the program.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(
@@ -54,7 +54,7 @@ pub struct RecordArgs {
     /// Camera to record from, as `toile live` names them (default: the synthetic shopper)
     #[arg(long, value_name = "C", value_parser = camera::name, conflicts_with = "seed")]
     pub camera: Option<CameraName>,
-    /// Everybody in view has agreed to be recorded; without it, it is asked
+    /// All people in view have agreed to be recorded; without it, it is asked
     #[arg(long, requires = "camera")]
     pub consent: bool,
     /// How the camera is mounted

@@ -1,4 +1,4 @@
-//! `toile record --camera`: a session of whoever stands before a camera, with their consent.
+//! `toile record --camera`: a session of the people before a camera, with their consent.
 
 use std::io::{self, BufRead, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -36,7 +36,7 @@ pub struct CameraRecordReport {
 }
 
 /// What a session of a camera holds.
-const HOLDS: &str = "depth images of the whole view, from which shape, stature and movement of everybody in it can be taken; no colour, \
+const HOLDS: &str = "depth images of the whole view, from which shape, stature and movement of all people in it can be taken; no colour, \
                      no sound, no name";
 
 /// What is recorded, and how.
@@ -49,7 +49,7 @@ pub(super) struct CameraRequest<'a> {
     pub out: &'a Path,
     /// Length (s).
     pub seconds: u32,
-    /// Whether everybody has agreed already.
+    /// Whether every person in view has agreed already.
     pub consent: bool,
     /// What is printed.
     pub printing: Printing,
@@ -110,21 +110,21 @@ pub(super) fn run(args: &CameraRequest<'_>) -> Result<(), AppError> {
     ))
 }
 
-/// Asks whoever stands there, by way of whoever types.
+/// Asks for the consent of the people in view, through the person at the keyboard.
 fn ask(given: bool) -> Result<(), AppError> {
     if given {
         return Ok(());
     }
     let refused = || {
         AppError::Usage(
-            "recording a person needs their consent; ask everybody in view, and add --consent once they agree"
+            "recording a person needs their consent; ask all people in view, and add --consent once they agree"
                 .to_owned(),
         )
     };
     if !io::stdin().is_terminal() || !io::stderr().is_terminal() {
         return Err(refused());
     }
-    let question = format!("The file will hold {HOLDS}.\nDoes everybody in view agree to be recorded? Type yes: ");
+    let question = format!("The file will hold {HOLDS}.\nDo all people in view agree to be recorded? Type yes: ");
     let mut stderr = io::stderr();
     stderr.write_all(question.as_bytes()).and_then(|()| stderr.flush()).map_err(AppError::internal)?;
     let mut reply = String::new();

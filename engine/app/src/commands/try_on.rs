@@ -294,7 +294,7 @@ fn worn_body(
 
 /// What playing a session left behind.
 struct Played {
-    /// Who drew; nobody where no picture was asked for.
+    /// Name of the renderer; none where no picture was asked for.
     renderer: Option<String>,
     film: Option<PathBuf>,
     export: Option<report::ExportReport>,

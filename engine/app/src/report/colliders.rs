@@ -1,4 +1,4 @@
-//! How closely the collision body follows the skin, as `toile body` reports it.
+//! Distance of the collision body from the skin, as `toile body` reports it.
 
 use serde::Serialize;
 use toile_assets::rig::{RigReport, Zone, ZoneReport};

@@ -18,7 +18,7 @@ const FAKENECT: [&str; 2] = ["/usr/lib/x86_64-linux-gnu/fakenect", "/usr/lib/aar
 /// Images of which a recording is made: each has noise of its own.
 pub const IMAGES: usize = 36;
 
-/// Writes a recording as `fakenect-record` does, of somebody who stands in a room: so many frames, the images again and again.
+/// Writes a recording as `fakenect-record` does, of a person who stands in a room: so many frames, the images again and again.
 pub fn write_recording(folder: &Path, frames: usize) {
     fs::create_dir_all(folder).unwrap();
     let body = toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();

@@ -1,7 +1,6 @@
 //! Scenes in motion.
 //!
-//! Budget: below 5 us a call beside the scene's own work.
-//! Thread: the caller's, one call at a time on a scene; a second one meanwhile is refused.
+//! A call takes less than 5 µs beside the scene's own work. A scene takes one call at a time; a second one meanwhile is refused.
 
 mod make;
 mod options;

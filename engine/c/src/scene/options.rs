@@ -1,4 +1,4 @@
-//! How a body is dressed and moves.
+//! Options of dressing and motion.
 
 use toile_sdk::glam::Vec3;
 use toile_sdk::{DressOptions, Motion as SdkMotion, Quality as SdkQuality, Wind};

@@ -1,4 +1,4 @@
-//! What a scene's handle stands for.
+//! State behind a scene's handle.
 
 use std::ffi::CString;
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
@@ -84,7 +84,7 @@ impl SceneHandle {
 impl SceneState {
     /// A garment by its number.
     pub fn worn(&self, garment: usize) -> Result<&WornGarment> {
-        // What there is to say about a number that there is not, the scene says.
+        // If the number does not exist, the scene returns an error that says so.
         self.scene.faces(garment)?;
         Ok(&self.scene.garments()[garment])
     }

@@ -207,7 +207,7 @@ static void making_scenes(toile_body body, toile_garment garment)
     toile_scene scene;
     toile_body no_body = {0};
     toile_garment several[40], one_null[] = {garment, {0}};
-    toile_joints nobody, broken;
+    toile_joints unseen, broken;
     toile_wind storm = {{NAN, 0, 0}, 0.1f, 0.1f};
     const char *socks[] = {"socks"}, *none[] = {NULL};
     toile_file nameless = {NULL, NULL, 0}, missing = {"flag.obj", NULL, 12};
@@ -215,7 +215,7 @@ static void making_scenes(toile_body body, toile_garment garment)
     float nan_xyz[9] = {0, 1, 0, 0.1f, NAN, 0, 0.1f, 1.1f, 0};
     for (int i = 0; i < 40; i++)
         several[i] = garment;
-    memset(&nobody, 0, sizeof nobody);
+    memset(&unseen, 0, sizeof unseen);
     memset(&broken, 0xff, sizeof broken);
 
     USAGE(toile_scene_dress(no_body, &garment, 1, NULL, &scene), "body is a null handle");
@@ -233,10 +233,10 @@ static void making_scenes(toile_body body, toile_garment garment)
     USAGE(toile_scene_dress(body, &garment, 1, &(toile_dress_options){.tuck_count = 1}, &scene), "tuck in is null");
     refused("toile_scene_dress", __LINE__, DRESS(.tuck = none, .tuck_count = 1), TOILE_CODE_USAGE, "null");
     refused("toile_scene_dress", __LINE__, DRESS(.tuck = socks, .tuck_count = 1), TOILE_CODE_INPUT, "socks");
-    refused("toile_scene_dress", __LINE__, DRESS(.joints = &nobody, .joint_frames = 1), TOILE_CODE_USAGE, "stands or sits");
+    refused("toile_scene_dress", __LINE__, DRESS(.joints = &unseen, .joint_frames = 1), TOILE_CODE_USAGE, "stands or sits");
     refused("toile_scene_dress", __LINE__, DRESS(.motion = 2), TOILE_CODE_USAGE, "one frame");
     refused("toile_scene_dress", __LINE__, DRESS(.motion = 3), TOILE_CODE_INPUT, "track");
-    refused("toile_scene_dress", __LINE__, DRESS(.motion = 2, .joints = &nobody, .joint_frames = 1), TOILE_CODE_INPUT, "hips");
+    refused("toile_scene_dress", __LINE__, DRESS(.motion = 2, .joints = &unseen, .joint_frames = 1), TOILE_CODE_INPUT, "hips");
     refused("toile_scene_dress", __LINE__, DRESS(.motion = 2, .joints = &broken, .joint_frames = 1), TOILE_CODE_INPUT, "finite");
 
     INPUT(toile_scene_open("there-is-no-such.toml", &scene), "there-is-no-such.toml");
@@ -410,11 +410,11 @@ static void snapshots(toile_scene scene)
     USAGE(toile_snapshot_garment(snapshot, 0, &xyz, &count), "closed before");
 }
 
-/* Somebody who was measured. Under valgrind that takes a quarter of an hour, and is left out. */
+/* A measured person. Under valgrind that takes a quarter of an hour, and is left out. */
 static void measuring(toile_recording recording)
 {
     toile_recording null = {0};
-    toile_measured measured, nobody = {0};
+    toile_measured measured, no_person = {0};
     toile_measured_facts known;
     toile_measure measure;
     toile_track track;
@@ -423,7 +423,7 @@ static void measuring(toile_recording recording)
     size_t count;
     char text[1];
     DONE(toile_recording_measure(recording, NULL, &measured));
-    USAGE(toile_recording_track(recording, nobody, &track), "null handle");
+    USAGE(toile_recording_track(recording, no_person, &track), "null handle");
     USAGE(toile_recording_track(null, measured, &track), "null handle");
     USAGE(toile_recording_track(recording, measured, NULL), "null");
     DONE(toile_recording_track(recording, measured, &track));

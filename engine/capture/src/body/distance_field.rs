@@ -1,4 +1,4 @@
-//! How far each place of a picture is from the person, by the exact distance transform of Felzenszwalb and Huttenlocher (2012).
+//! Distance of each place of a picture from the person, by the exact distance transform of Felzenszwalb and Huttenlocher (2012).
 
 /// The distance of each pixel from the nearest one that the person covers (px).
 #[derive(Debug, Clone)]

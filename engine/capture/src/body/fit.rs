@@ -2,7 +2,7 @@
 //!
 //! With the plane of a stretch of outline in a camera at `c` with normal `n`, and the place `x` of the rim that belongs to it, the
 //! residual is `n . (x - c)`: how far the body reaches out of the silhouette there, from inside and outside alike. The prior of the
-//! shape is the population (ANSUR II), that of the pose somebody who stands.
+//! shape is the population (ANSUR II), that of the pose is a standing person.
 
 use std::sync::Arc;
 
@@ -52,7 +52,7 @@ const SKIN: f64 = 0.03;
 pub(super) struct BodyFitter {
     pub views: Arc<[CameraSilhouette]>,
     pub joints: Vec<JointPoint>,
-    /// The state of the frame before, where somebody is followed.
+    /// The state of the frame before, where a person is followed.
     pub before: Option<FitState>,
     pub model: BodyModel,
     pub filter: ShapeFilter,

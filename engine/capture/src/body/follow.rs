@@ -1,4 +1,4 @@
-//! Somebody who was measured in one frame, followed through the next: the same body, moved to each frame's silhouettes.
+//! A measured person in one frame, followed through the next: the same body, moved to each frame's silhouettes.
 //!
 //! A frame starts from where the frame before ended, and from where its motion leads, whichever covers the silhouettes better. Where the fit
 //! ends in less than the frames before, an arm was lost: those that people hold their arms in are tried, and each forearm elsewhere, as at
@@ -26,7 +26,7 @@ const LOST: f64 = 0.015;
 /// half a second is not given up.
 const NEWEST: [f64; 2] = [0.2, 0.02];
 
-/// A frame in which somebody was followed.
+/// A frame in which a person was followed.
 #[derive(Debug, Clone)]
 pub struct FollowedFrame {
     /// Where the joints are, in the cameras' world (m).
@@ -52,7 +52,7 @@ pub struct BodyFollower {
 }
 
 impl BodyFollower {
-    /// Begins with somebody who was measured.
+    /// Begins with a measured person.
     pub fn new(first: &SilhouetteBody) -> Self {
         let mut fitter = BodyFitter::new(first.sex, Arc::new([]), Vec::new());
         fitter.wear(&first.state.shape, &first.body.body.mesh.positions);
@@ -71,7 +71,7 @@ impl BodyFollower {
         }
         let (agreement, state) = self.search();
         if agreement < LEAST_AGREEMENT.min(self.expected - 2.0 * LOST) {
-            // Somebody else, or nobody: what comes next starts from where the person was.
+            // Another person, or none: what comes next starts from where the person was.
             self.before = None;
             return self.frame(agreement, false);
         }

@@ -1,4 +1,4 @@
-//! The visual hull: all places that every silhouette covers (Laurentini 1994), carved as an octree, and what it says of who stands there.
+//! The visual hull: all places that every silhouette covers (Laurentini 1994), carved as an octree, and the person's shape by it.
 
 use glam::{DMat3, DVec3};
 
@@ -18,7 +18,7 @@ const HIPS: [f64; 2] = [0.44, 0.60];
 /// Share of the cells left out at each end of the height: a hull has tips that no body has.
 const TIPS: usize = 1_000;
 
-/// What the hull says of who stands there.
+/// Shape of the person by the hull.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct HullShape {
     /// Lowest and highest place (m).
@@ -43,7 +43,7 @@ pub(super) fn carve(views: &[CameraSilhouette]) -> Result<HullShape, CaptureErro
             "check that pictures and cameras are in the same order, and that all were taken at one moment",
         )
     };
-    let mut cells = vec![meeting(views).ok_or_else(nowhere)?];
+    let mut cells = vec![nearest_to_rays(views).ok_or_else(nowhere)?];
     let mut half = SIDE / 2.0;
     for _ in 0..LEVELS {
         half /= 2.0;
@@ -72,7 +72,7 @@ fn side(bit: usize) -> f64 {
 }
 
 /// The place nearest to the rays through the middles of all silhouettes.
-fn meeting(views: &[CameraSilhouette]) -> Option<DVec3> {
+fn nearest_to_rays(views: &[CameraSilhouette]) -> Option<DVec3> {
     let (mut a, mut b) = (DMat3::ZERO, DVec3::ZERO);
     for view in views {
         let width = (f64::from(view.camera.size[0]) * view.scale).ceil().max(1.0) as usize;

@@ -1,4 +1,4 @@
-//! What silhouettes say of a person: the eleven measures, each with its error, a body of both sexes' fits, and its pose.
+//! Results from silhouettes: the eleven measures, each with its error, a body of both sexes' fits, and its pose.
 
 use std::sync::Arc;
 
@@ -28,7 +28,7 @@ pub(super) const FEWEST: usize = 2;
 /// Heights of a hull that can be a person's (m), and the volume (m3) that the hull of two views may have at most.
 const HEIGHTS: std::ops::Range<f64> = 1.0..2.6;
 
-/// Least share of silhouettes and drawing together that both have: below it somebody else, or something, is in the masks.
+/// Least share of silhouettes and drawing together that both have: below it another person, or something, is in the masks.
 pub(super) const LEAST_AGREEMENT: f64 = 0.80;
 
 /// What the evidence for a sex counts: a body of either sex that the model cannot have errs as much as the sexes differ.

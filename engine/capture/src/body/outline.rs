@@ -1,4 +1,4 @@
-//! The outline of a mask, below the size of a pixel: where coverage passes through a half, and which way is out.
+//! The outline of a mask, below the size of a pixel: the places where coverage passes through a half, and the outward direction.
 
 use glam::DVec2;
 use toile_sensors::masks::Mask;

@@ -1,4 +1,4 @@
-//! The picture of a fit: what silhouettes and body cover, view beside view.
+//! The picture of a fit: silhouettes and body over each other, view beside view.
 
 use std::io::Cursor;
 

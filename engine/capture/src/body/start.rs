@@ -1,4 +1,4 @@
-//! The start of a fit without anybody's help: from the visual hull or from joints, the way somebody faces and how they hold their arms.
+//! The automatic start of a fit: from the visual hull or from joints, the way a person faces and how they hold their arms.
 
 use glam::{DVec3, Quat, Vec3};
 use toile_base::skeleton::{JOINTS, Joint};
@@ -7,7 +7,7 @@ use toile_track::fit::{ARMS, FitState, of_stature, set_arm};
 use super::fit::{BodyFitter, COARSE, FINE};
 use super::hull::HullShape;
 
-/// Ways of facing that are tried: across the hull's spread, both ways, and along it, for somebody who holds both arms ahead; and how
+/// Ways of facing that are tried: across the hull's spread, both ways, and along it, for a person who holds both arms ahead; and how
 /// far off each is looked for besides (rad), because a hull of few views is spread along its corners.
 const FACINGS: usize = 4;
 const BESIDE: [f32; 3] = [-0.35, 0.0, 0.35];
@@ -18,7 +18,7 @@ const REFINED: usize = 4;
 /// Steps from an upright body towards joints.
 const JOINT_STEPS: usize = 25;
 
-/// Confidence from which a joint says which way somebody faces.
+/// Confidence from which a joint says which way a person faces.
 const BELIEVED: f32 = 0.2;
 
 /// The best start of all that are tried: upright bodies of the hull's height, each way of facing; those that cover the silhouettes
@@ -48,7 +48,7 @@ pub(super) fn start(fitter: &mut BodyFitter, hull: &HullShape) -> FitState {
     best.map_or_else(|| upright(fitter, hull, Vec3::Z), |b| b.1)
 }
 
-/// The ways somebody may face: the one that their joints say, or four by the hull.
+/// The ways a person may face: the one that their joints say, or four by the hull.
 fn facings(fitter: &BodyFitter, hull: &HullShape) -> Vec<Vec3> {
     let place = |joint: Joint| fitter.joints.iter().find(|p| p.joint == joint && p.confidence > BELIEVED);
     for (left, right) in [(Joint::LeftHip, Joint::RightHip), (Joint::LeftShoulder, Joint::RightShoulder)] {

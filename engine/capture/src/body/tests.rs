@@ -83,7 +83,7 @@ fn views<'a>(rig: &'a [CalibratedCamera], masks: &'a [Mask]) -> Vec<SilhouetteVi
 fn a_body_of_the_own_family_comes_back_from_four_silhouettes() {
     let wanted = Wanted::<En>::new().with(En::Stature, 1.71).with(En::WaistGirth, 0.79).with(En::HipGirth, 1.03);
     let truth = toile_assets::body::fitted(Sex::Female, &wanted).unwrap();
-    // Turned by half a radian: the fit is not told which way somebody faces.
+    // Turned by half a radian: the fit is not told which way a person faces.
     let positions = standing(&truth.body, 0.5);
     let rig = cameras(&[0.0, 90.0, 180.0, 270.0]);
     let masks = masks(&rig, &positions, &truth.body.mesh.triangles);
@@ -137,7 +137,7 @@ fn cameras_that_stand_opposite_each_other_are_named_where_they_leave_few_ways_of
 }
 
 #[test]
-fn somebody_who_moves_is_followed_by_their_silhouettes() {
+fn a_moving_person_is_followed_by_silhouettes() {
     let wanted = Wanted::<En>::new().with(En::Stature, 1.68).with(En::WaistGirth, 0.81).with(En::HipGirth, 1.02);
     let truth = toile_assets::body::fitted(Sex::Female, &wanted).unwrap();
     let triangles = &truth.body.mesh.triangles;
@@ -155,7 +155,7 @@ fn somebody_who_moves_is_followed_by_their_silhouettes() {
         let (positions, masks) = film(frame);
         let mut seen = views(&rig, &masks);
         match frame {
-            // One camera sees nobody; then all but one do, and the body stands where it was.
+            // One camera sees no person; then all but one do, and the body stands where it was.
             4 => drop(seen.remove(1)),
             6 => seen.truncate(1),
             _ => {}

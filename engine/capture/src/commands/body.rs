@@ -33,7 +33,7 @@ use super::body_frames::{self, MotionReport};
 #[command(
     after_help = "Example: four masks, and the body as a mesh\n  toile capture body masks --calibration cameras.toml --out fitted\n\
                   Example: pictures before a known background, the sex known\n  toile capture body shots --background empty \
-                  --calibration cameras.toml --sex female\nExample: somebody who moves, a folder of masks for each camera\n  \
+                  --calibration cameras.toml --sex female\nExample: a person who moves, a folder of masks for each camera\n  \
                   toile capture body masks --calibration cameras.toml --rate 30 --out moved"
 )]
 pub struct BodyCaptureArgs {
@@ -46,7 +46,7 @@ pub struct BodyCaptureArgs {
     /// Folder with the same pictures without the person: whatever differs is the person
     #[arg(long, value_name = "DIR")]
     pub background: Option<PathBuf>,
-    /// Folder of OpenPose keypoints (BODY_25B) with a calibration in the same world: its first frame with anybody starts the fit
+    /// Folder of OpenPose keypoints (BODY_25B) with a calibration in the same world: its first frame with a person starts the fit
     #[arg(long, value_name = "DIR")]
     pub joints: Option<PathBuf>,
     /// The person's sex, if it is known: female or male

@@ -1,4 +1,4 @@
-//! Somebody who moves before several cameras: measured in the first frame, followed through the others.
+//! A person who moves before several cameras: measured in the first frame, followed through the others.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! `toile capture face`: photographs with marked points, or one whose points are found, become a mannequin's head that is like them.
+//! `toile capture face`: turns photographs with marked points, or one photograph with found points, into a mannequin's head that is like them.
 
 use std::path::PathBuf;
 use std::slice::from_ref;
@@ -61,7 +61,7 @@ pub struct FaceArgs {
     printing: Printing,
 }
 
-/// Standard deviation of a point that somebody marked, where nothing is said (px).
+/// Standard deviation of a point that was marked by hand, where nothing is said (px).
 const MARKED_SIGMA_PX: f64 = 2.0;
 
 fn pixels(text: &str) -> Result<f64, String> {

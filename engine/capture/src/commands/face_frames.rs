@@ -1,4 +1,4 @@
-//! What is reported of a head that is followed through a sequence.
+//! Report of a head that is followed through a sequence.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! The points of a face that nobody marked: MediaPipe's face mesh finds them.
+//! The points of an unmarked face: MediaPipe's face mesh finds them.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! The commands of `toile-capture`: what several calibrated cameras saw becomes a surface that moves, a pose or a body.
+//! The commands of `toile-capture`: they turn the pictures of several calibrated cameras into a surface that moves, a pose or a body.
 
 use clap::{Parser, Subcommand};
 use toile_cli::exit::AppError;

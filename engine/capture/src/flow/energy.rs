@@ -1,4 +1,4 @@
-//! What holds the surface together where pictures do not: springs along edges, folds, inertia.
+//! Energy that holds the surface together where pictures do not: springs along edges, folds, inertia.
 //!
 //! In units of one standard deviation, with the strain `e = (d - d0) / d0` of an edge:
 //!
@@ -10,7 +10,7 @@
 //! ```
 //!
 //! Springs, folds and inertia are the terms of one implicit step of cloth in its variational form (Martin et al. 2011,
-//! "Example-Based Elastic Materials", section 3): what no picture places moves as cloth would.
+//! "Example-Based Elastic Materials", section 3): parts that no picture places move as cloth would.
 
 use glam::{DMat3, DVec3};
 

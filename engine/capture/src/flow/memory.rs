@@ -1,4 +1,4 @@
-//! What is written beside the meshes, so that a run goes on where it stopped with the same bits.
+//! State written beside the meshes, so that a run goes on where it stopped with the same bits.
 
 use std::collections::BTreeSet;
 

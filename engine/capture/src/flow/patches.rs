@@ -1,9 +1,9 @@
-//! What each triangle looked like: samples spread over it, with the values that each camera saw there.
+//! Look of each triangle: samples spread over it, with the values that each camera saw there.
 //!
 //! A pixel of the current frame and its place in the next are joined by the triangle's homography `W = P V S^-1` (equation 5.7).
 //! The same map is written here by the point of the triangle under the pixel: its shares b of the three corners do not change as
 //! the mesh moves, and `W s` is the projection of `sum b_i V_i`. So a triangle has samples at fixed shares, about a pixel apart,
-//! and what was seen there once can be compared with any later frame and with any other camera.
+//! and a value seen there once can be compared with any later frame and with any other camera.
 
 use glam::Vec3;
 

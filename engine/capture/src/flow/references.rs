@@ -1,4 +1,4 @@
-//! What each triangle looked like to each camera, taken in the first frame in which it was seen, and how well two cameras agree.
+//! Look of each triangle to each camera, taken in the first frame in which it was seen, and the agreement of two cameras.
 
 use serde::{Deserialize, Serialize};
 

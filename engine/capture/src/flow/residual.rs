@@ -1,6 +1,6 @@
 //! The difference of the pictures over a triangle, its derivatives by the nine coordinates of its corners, and their sums.
 //!
-//! Residual of a sample with shares b, gain g and offset o: `r = g I(u, v) + o - T`, T what was seen there before. With the point
+//! Residual of a sample with shares b, gain g and offset o: `r = g I(u, v) + o - T`, T the value seen there before. With the point
 //! `p = R sum b_i X_i + t` in the camera's axes, `u = fx p.x / p.z + cx`, `v = fy p.y / p.z + cy` and equation 5.10:
 //!
 //! ```text

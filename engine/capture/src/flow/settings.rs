@@ -1,4 +1,4 @@
-//! What a capture is run with, and which of its parts are on.
+//! Settings of a capture, and switches for its parts.
 
 /// What the next frame's pictures are compared with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,4 +1,4 @@
-//! What a tracker holds between frames, and how the pictures of one are made ready for it.
+//! State of a tracker between frames, and the preparation of a frame's pictures.
 
 use std::ops::Range;
 

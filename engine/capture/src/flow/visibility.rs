@@ -1,4 +1,4 @@
-//! Which samples each camera sees: before it, inside of its pictures, from the right side, and with nothing before them.
+//! Samples that each camera sees: before it, inside of its pictures, from the right side, and not hidden.
 
 use glam::{DVec3, Vec3};
 use toile_sensors::calibration::CalibratedCamera;

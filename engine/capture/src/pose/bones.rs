@@ -1,4 +1,4 @@
-//! The bones between the keypoints of BODY_25B, as a tree that hangs from the neck, and how long they are.
+//! The bones between the keypoints of BODY_25B, as a tree that hangs from the neck, and their lengths.
 
 use toile_base::numeric::statistics::median_of;
 use toile_sensors::source::openpose::{KeypointRecording, POINTS};

@@ -1,4 +1,4 @@
-//! The fit of the skeleton: keypoints pull their rays, bones keep their lengths, and what is not seen moves on as it moved.
+//! The fit of the skeleton: keypoints pull their rays, bones keep their lengths, and unseen parts move on as they moved.
 //!
 //! Unknowns are the keypoints X of a frame. With the pixel `p` of a keypoint in a camera, its score s and the distance in pixels
 //! `r = project(X) - p`, the energy `sum s^2 rho(r) + sum (|X_a - X_b| - L)^2 / l^2 + sum |X - X0|^2 / m^2` is made least by Gauss
@@ -30,7 +30,7 @@ const START: f64 = 1.0;
 /// Iterations a frame.
 const ROUNDS: usize = 12;
 
-/// Frames without anybody over which the pose is carried.
+/// Frames without a person over which the pose is carried.
 const CARRIED: usize = 12;
 
 /// The pose of every frame.
@@ -40,7 +40,7 @@ pub struct PoseMotion {
     pub lengths: Vec<f64>,
     /// Ends of each bone, as keypoints of BODY_25B.
     pub bones: Vec<[usize; 2]>,
-    /// Keypoints of each frame (m, the cameras' world); none where nobody was seen.
+    /// Keypoints of each frame (m, the cameras' world); none where no person was seen.
     #[serde(skip)]
     pub frames: Vec<Option<[DVec3; POINTS]>>,
     /// Frames a second.

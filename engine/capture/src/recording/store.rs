@@ -1,4 +1,4 @@
-//! What a run writes, and reads again when it goes on.
+//! Files that a run writes, and reads again when it goes on.
 
 use std::fs;
 use std::path::{Path, PathBuf};

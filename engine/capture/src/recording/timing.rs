@@ -1,6 +1,6 @@
-//! Cameras out of step: found by how much moves in each camera's pictures, frame by frame.
+//! Cameras out of step: found by the amount of motion in each camera's pictures, frame by frame.
 //!
-//! What moves before one camera moves before the others at the same time. The mean change of each camera's pictures is correlated
+//! A thing that moves before one camera moves before the others at the same time. The mean change of each camera's pictures is correlated
 //! with that of all others, shifted by some frames; a shift that agrees clearly better than none is reported.
 
 use std::fmt;

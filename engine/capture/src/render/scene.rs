@@ -1,4 +1,4 @@
-//! What is before the cameras: a printed surface, the light on it, a shadow that moves, and an arm that passes before it.
+//! Scene before the cameras: a printed surface, the light on it, a shadow that moves, and an arm that passes before it.
 
 use glam::{DMat3, DVec2, DVec3, Vec2};
 use toile_sensors::calibration::{CalibratedCamera, CameraParameters};

@@ -1,8 +1,8 @@
 //! A uniform grid over the boxes of a mesh's triangles, so that an edge is tested with those near it only.
 //!
 //! Its cells are hashed into buckets (Teschner et al. 2003, "Optimized spatial hashing for collision detection of
-//! deformable objects"), so it needs no limits in space. Cells that share a bucket cost time and nothing else, as whoever
-//! is found in one has its box compared.
+//! deformable objects"), so it needs no limits in space. Cells that share a bucket cost time and nothing else, because the box of
+//! each triangle found in one is compared.
 
 use glam::DVec3;
 

@@ -1,6 +1,6 @@
-//! Crossings: which edges of triangle meshes pass through which triangles, by which the contact of cloth is judged.
+//! Finds crossings: edges of triangle meshes that pass through triangles. The contact of cloth is judged by them.
 //!
-//! Budget: three garments of 5,000 vertices within 50 ms, each also with itself; never inside the frame.
+//! Three garments of 5,000 vertices take at most 50 ms, each also with itself. It never runs inside the frame.
 //!
 //! Signs are exact (Shewchuk's predicates), a uniform grid over the triangles finds the pairs that are asked for
 //! (`grid`), and a pair only touches where any of its five signs is 0 (`predicate`), which is no crossing.

@@ -1,4 +1,4 @@
-//! Whether a segment passes through a triangle, by exact signs of orientation.
+//! Tests whether a segment passes through a triangle, by exact signs of orientation.
 
 use glam::DVec3;
 use robust::{Coord3D, orient3d};

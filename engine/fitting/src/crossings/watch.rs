@@ -1,4 +1,4 @@
-//! Crossings over time: how many moments have any, the most of one moment, and how long they last.
+//! Crossings over time: the number of moments with any, the most of one moment, and their duration.
 
 use glam::{DVec3, Vec3};
 use serde::Serialize;

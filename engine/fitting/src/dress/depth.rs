@@ -84,7 +84,7 @@ impl DepthSurface {
             return FittingError::input(match self.too_far {
                 Some(distance) => MeasureError::TooFar { distance, limit: FARTHEST },
                 None if frames == 0 => MeasureError::Empty,
-                None => MeasureError::Nobody { frames },
+                None => MeasureError::NoPerson { frames },
             });
         }
         FittingError::Input(format!(

@@ -1,6 +1,6 @@
 //! The one assembly of the loop: sensor, physics and renderer, joined by the latest value, bounded queues and a handover of scenes.
-//! The kiosk, the latency benchmark and the soak test run this one; what they differ in are the source, the renderer, the clock, and
-//! what a test wraps around the three loops.
+//! The kiosk, the latency benchmark and the soak test run this one. They differ in the source, the renderer, the clock, and
+//! the wrappers that a test puts around the three loops.
 
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ use super::watchdog::Progress;
 
 /// Parts that the loop is started with.
 pub struct LoopParts<S, E: Renderer, F, A> {
-    /// Whoever is shown first.
+    /// The dressed body that is shown first.
     pub first: DressedScene<S, E::Outfit>,
     /// The renderer, which knows the outfit of the first already: that of `first` is what it leaves in its place.
     pub renderer: E,
@@ -34,7 +34,7 @@ pub struct LoopParts<S, E: Renderer, F, A> {
     pub source: F,
     /// What the system counts of the physics thread.
     pub account: A,
-    /// Where what a replay needs goes, where somebody keeps it.
+    /// Recorder of what a replay needs, if it is kept.
     pub recording: Option<Sender<Entry>>,
 }
 
@@ -60,7 +60,7 @@ pub type PhysicsLoop<S, C, A> = PhysicsThread<LiveScene<S>, C, A>;
 /// The render thread's loop.
 pub type RenderLoop<E, C> = WatchedRenderer<E, C>;
 
-/// The ends of the queues that whoever looks after the loop empties.
+/// The ends of the queues that the owner of the loop empties.
 #[derive(Debug)]
 pub struct LoopQueues {
     /// Events of the loop.

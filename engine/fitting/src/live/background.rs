@@ -6,11 +6,11 @@ use std::thread::{self, JoinHandle};
 /// A job that has ended.
 #[derive(Debug)]
 pub enum Finished<T> {
-    /// It gave this; whether somebody still wants it.
+    /// It gave this, and whether the caller still wants it.
     Done {
         /// What the job returned.
         value: T,
-        /// Whether nobody abandoned it.
+        /// Whether it was not abandoned.
         wanted: bool,
     },
     /// The thread of the job panicked.
@@ -46,7 +46,7 @@ impl<T: Send + 'static> BackgroundJob<T> {
         Ok(())
     }
 
-    /// Whoever wanted the job has gone.
+    /// Abandons the job: its result is not wanted any more.
     pub fn abandon(&mut self) {
         self.abandoned = true;
     }

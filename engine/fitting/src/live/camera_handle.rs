@@ -1,4 +1,4 @@
-//! What others know of a live camera, and ask of it: figures, what was gathered of whoever is measured, the last colour image.
+//! Handle of a live camera for other threads: figures, frames gathered of the measured person, the last colour image.
 
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64};
@@ -26,7 +26,7 @@ pub struct CameraFigures {
     pub state: CameraState,
     /// What was counted of its frames.
     pub counts: CameraCounts,
-    /// Frames in which somebody was looked for, and in which somebody was found.
+    /// Frames in which a person was looked for, and in which a person was found.
     pub tracked: [u64; 2],
     /// Colour images that came.
     pub colours: u64,
@@ -43,7 +43,7 @@ struct SharedFigures {
     colours: AtomicU64,
     /// The body model that is asked for: 0 female, 1 male.
     sex: AtomicU8,
-    /// Whether images that nobody has are to be wiped.
+    /// Whether images that no thread holds are to be wiped.
     wipe: AtomicBool,
     stop: AtomicBool,
 }
@@ -51,7 +51,7 @@ struct SharedFigures {
 /// What is gathered for measuring.
 #[derive(Debug)]
 struct Gathered {
-    /// Whether somebody is measured.
+    /// Whether a person is measured.
     wanted: bool,
     frames: Vec<Arc<DepthFrame>>,
     /// Joints, of a camera without depth.
@@ -98,7 +98,7 @@ impl CameraHandle {
         }
     }
 
-    /// Somebody begins to be measured: from now on a second is gathered at full rate, and then a turn.
+    /// Begins to measure a person: from now on a second is gathered at full rate, and then a turn.
     pub fn gather_anew(&self) {
         let mut gathered = self.lock();
         gathered.frames.clear();
@@ -106,8 +106,8 @@ impl CameraHandle {
         (gathered.wanted, gathered.next_ns) = (true, 0);
     }
 
-    /// The shopper has left: what was gathered is thrown away, and the camera's images are wiped. A body of this sex is fitted to whoever
-    /// comes next.
+    /// The shopper has left: what was gathered is thrown away, and the camera's images are wiped. A body of this sex is fitted to the
+    /// next person.
     pub fn forget(&self, sex: Sex) {
         let mut gathered = self.lock();
         gathered.frames.clear();
@@ -118,7 +118,7 @@ impl CameraHandle {
         self.follow(sex);
     }
 
-    /// What was gathered, as a session: depth, or of a camera without depth joints, whose scale nobody knows.
+    /// The gathered frames as a session: depth, or, of a camera without depth, joints of unknown scale.
     pub fn session(&self) -> Session {
         let joints = self.lock().joints.clone();
         if joints.is_empty() { session::of_depth(self.gathered()) } else { session::of_directions(joints) }
@@ -174,7 +174,7 @@ impl CameraHandle {
         self.figures.state.store(state as u8, Relaxed);
     }
 
-    /// Takes a frame for whoever is measured: the first second whole, then what a turn needs.
+    /// Takes a frame of the measured person: the first second whole, then what a turn needs.
     pub(super) fn gather(&self, frame: &Arc<DepthFrame>) {
         let mut gathered = self.lock();
         let (count, time_ns) = (gathered.frames.len(), frame.time_ns);
@@ -187,7 +187,7 @@ impl CameraHandle {
         }
     }
 
-    /// Takes joints for whoever is measured: a second of them.
+    /// Takes joints of the measured person: a second of them.
     pub(super) fn gather_joints(&self, joints: &Joints) {
         let mut gathered = self.lock();
         if gathered.wanted && gathered.joints.len() < FRAMES {
@@ -195,7 +195,7 @@ impl CameraHandle {
         }
     }
 
-    /// Counts a frame that was looked at, and whether somebody was found in it.
+    /// Counts a frame that was looked at, and whether a person was found in it.
     pub(super) fn count_tracked(&self, found: bool) {
         let [looked, some] = &self.figures.tracked;
         looked.fetch_add(1, Relaxed);

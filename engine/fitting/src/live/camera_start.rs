@@ -13,7 +13,7 @@ use super::depth_camera::{self, CameraFeed, CameraHandle, TrackerOptions};
 use super::own_picture::{PictureReceiver, PictureSender, PictureSwitch};
 use super::webcam::{self, WebcamJoints, WebcamOptions};
 
-/// Which camera is opened, and how somebody is seen through it.
+/// Which camera is opened, and how a person is seen through it.
 #[derive(Debug, Clone)]
 pub struct CameraSetup {
     /// The camera.
@@ -75,7 +75,7 @@ where
     let CameraSetup { name, mut options, kept, zone, mut webcam, portraits } = setup;
     let is_webcam = name.kind.is_colour();
     let shown = webcam.own_picture;
-    // Where a face is sought is known by where in the picture somebody is.
+    // Where a face is sought is known by where in the picture a person is.
     webcam.own_picture |= portraits;
     options.colour |= is_webcam || webcam.own_picture;
     let mut sender = webcam.own_picture.then(PictureSender::default);

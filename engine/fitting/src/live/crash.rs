@@ -36,7 +36,7 @@ pub fn forget() {
 
 /// Saves the recorder, if there is one; the sentence says where, or why not. For the panic hook, which must not panic itself.
 pub fn save() -> Option<String> {
-    // Nobody holds this lock for long, but the panicking thread may hold it itself.
+    // No thread holds this lock for long, but the panicking thread may hold it itself.
     let (recorder, path) = KEPT.try_lock().ok()?.take()?;
     let name = path.display();
     let Some(bytes) = recorder.save(LONGEST_WAIT) else {

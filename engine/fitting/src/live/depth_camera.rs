@@ -2,8 +2,8 @@
 //! shopper and fits the body, which takes up to an eighth of a second. Each hands on the latest value; neither the sensor thread nor a
 //! step ever waits for them.
 //!
-//! The frames that a shopper is measured from are gathered beside that, shared and not copied. What guards them is a mutex, which only the
-//! tracker's thread and whoever begins to measure take: no thread of the loop does.
+//! The frames that a shopper is measured from are gathered beside that, shared and not copied. A mutex guards them, which only the
+//! tracker's thread and the measuring thread take: no thread of the loop does.
 
 use std::io;
 use std::sync::Arc;
@@ -35,7 +35,7 @@ const NAP: Duration = Duration::from_millis(50);
 #[derive(Debug, Clone)]
 struct CameraNews {
     frame: Arc<DepthFrame>,
-    /// Joints of the one whom the camera itself tracks, where it tracks anybody.
+    /// Joints of the person whom the camera itself tracks, if any.
     joints: Option<Joints>,
     arrived_ns: u64,
 }
@@ -62,9 +62,9 @@ pub struct TrackerOptions {
 /// Times of the camera's two threads.
 #[derive(Debug, Default)]
 pub struct CameraMeters {
-    /// From the arrival of a frame until it was looked at, by frames in which somebody was followed.
+    /// From the arrival of a frame until it was looked at, by frames in which a person was followed.
     pub followed: Meter,
-    /// The same where somebody was found for the first time, or nobody was.
+    /// The same where a person was found for the first time, or none was.
     pub found: Meter,
 }
 
@@ -210,7 +210,7 @@ impl<C: Clock> Tracking<C> {
         self.meters
     }
 
-    /// Hands the colour image of a depth image on with its joints, where somebody looks at themselves.
+    /// Hands the colour image of a depth image on with its joints, while a shopper looks at themselves.
     fn send_picture(&mut self, frame: &Arc<DepthFrame>, joints: &Joints, found: bool, arrived_ns: u64) {
         let Some((colours, pictures)) = &mut self.pictures else { return };
         let colour = colours.latest();

@@ -1,4 +1,4 @@
-//! Counters of the system for the physics thread, and the cause of a late step by them.
+//! Counters of the system for the physics thread, from which the cause of a late step follows.
 //!
 //! Each step costs two system calls that touch no file: `getrusage(RUSAGE_THREAD)` for faults and lost cores, and the
 //! thread's CPU clock; together under a microsecond. How long the thread waited for a core while it was ready stands only in

@@ -1,4 +1,4 @@
-//! The loop on its threads, by the system's clock: what the kiosk and the latency benchmark run.
+//! The loop on its threads, by the system's clock, as the kiosk and the latency benchmark run it.
 
 use std::io;
 

@@ -1,5 +1,5 @@
-//! The scene as the physics thread steps it, with what its watchers want to know of each step. Another one takes its place by
-//! the loop's own handover ([`toile_engine::frame_loop::handover`]); what left is dropped elsewhere.
+//! The scene as the physics thread steps it, with a report of each step for its watchers. Another one takes its place by
+//! the loop's own handover ([`toile_engine::frame_loop::handover`]); the replaced scene is dropped elsewhere.
 
 use std::sync::Arc;
 

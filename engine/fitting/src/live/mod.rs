@@ -1,8 +1,8 @@
-//! The loop that keeps a dressed body in motion: its threads, how they are joined, and what happens when one of them does not
-//! get on.
+//! The loop that keeps a dressed body in motion: its threads, their queues, and the recovery from a thread that
+//! stalls.
 //!
-//! Budget: ready within 5 s of its start; the loop's own budget in the frame.
-//! Thread: sensor, physics and render threads of its own; the caller's, which looks at the queues some fifty times a second.
+//! It is ready within 5 s of its start. It has sensor, physics and render threads of its own. The caller's thread looks at the queues some
+//! fifty times a second.
 //!
 //! [`assembly`] joins the three loops and [`running`] runs them: the kiosk, the latency benchmark and the soak test alike.
 

@@ -1,8 +1,8 @@
-//! The camera's pictures on their way to the mirror, and to whoever takes a shopper's face, each with what was seen in it: the latest only, in
-//! memory alone, and only while somebody looks at themselves or has their face taken.
+//! Channel of the camera's pictures to the mirror and to the face camera, each with what was seen in it: the latest only, in
+//! memory alone, and only while a shopper looks at themselves or has their face taken.
 //!
-//! A picture is handed on once its joints are there, so that garment and picture are of one moment. What the renderer shows of it comes
-//! back as a number that means something to the two of them.
+//! A picture is handed on once its joints are there, so that garment and picture are of one moment. The renderer's result comes
+//! back as a number that only the two of them interpret.
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
@@ -66,10 +66,10 @@ pub(super) fn copy(from: &ColourImage, to: &mut ColourImage) {
     to.rgb.clone_from(&from.rgb);
 }
 
-/// What both ends and whoever decides share. Relaxed throughout: each stands by itself and orders nothing.
+/// Flags that both ends and the controller share. Relaxed throughout: each stands by itself and orders nothing.
 #[derive(Debug, Default)]
 struct Shared {
-    /// Whether somebody looks at themselves.
+    /// Whether a person looks at themselves.
     wanted: AtomicBool,
     /// What the renderer last made of a picture.
     outcome: AtomicU8,
@@ -115,7 +115,7 @@ struct PictureOutlet {
     unwiped: u8,
 }
 
-/// The end of whoever looks at the pictures.
+/// The receiving end.
 #[derive(Debug)]
 pub struct PictureReceiver {
     reader: Reader<SeenPicture>,
@@ -150,14 +150,14 @@ impl PictureSender {
         (receiver, switch)
     }
 
-    /// A channel before this one, switched by the same switches: pictures on their way to whoever adds what was seen in them.
+    /// A channel before this one, switched by the same switches: it carries pictures to the stage that adds what was seen in them.
     pub(super) fn relay(&self) -> (Self, PictureReceiver) {
         let switches = self.outlets.iter().flat_map(|outlet| outlet.switches.clone()).collect();
         let (outlet, receiver) = PictureOutlet::new(switches, PictureSwitch::default());
         (Self { outlets: vec![outlet] }, receiver)
     }
 
-    /// Hands a picture on to whoever wants it: `fill` writes every part of an older one.
+    /// Hands a picture on where one is wanted: `fill` writes every part of an older one.
     pub fn send(&mut self, mut fill: impl FnMut(&mut SeenPicture)) {
         for outlet in &mut self.outlets {
             if outlet.is_on() {
@@ -169,7 +169,7 @@ impl PictureSender {
         }
     }
 
-    /// Whether somebody wants pictures.
+    /// Whether pictures are wanted.
     pub fn is_on(&self) -> bool {
         self.outlets.iter().any(PictureOutlet::is_on)
     }
@@ -179,7 +179,7 @@ impl PictureSender {
         self.outlets.iter_mut().filter(|outlet| !outlet.is_on()).for_each(PictureOutlet::wipe);
     }
 
-    /// Whoever was seen has left: every copy is wiped, also while pictures are wanted.
+    /// Wipes every copy, also while pictures are wanted: the person has left.
     pub fn forget(&mut self) {
         for outlet in &mut self.outlets {
             outlet.unwiped = COPIES;
@@ -204,7 +204,7 @@ impl PictureReceiver {
         self.switch.0.outcome.store(outcome, Relaxed);
     }
 
-    /// Whether somebody looks at themselves.
+    /// Whether a person looks at themselves.
     pub fn is_on(&self) -> bool {
         self.switch.is_on()
     }
@@ -227,9 +227,9 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_copied_while_nobody_looks() {
+    fn nothing_is_copied_while_no_picture_is_wanted() {
         let (mut sender, mut receiver, switch) = channel();
-        sender.send(|_| panic!("nobody wants it"));
+        sender.send(|_| panic!("no picture is wanted"));
         assert!(receiver.news().is_none());
         switch.set(true);
         sender.send(picture);
@@ -259,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn every_copy_is_wiped_when_nobody_looks_any_more() {
+    fn every_copy_is_wiped_when_unwanted() {
         let (mut sender, mut receiver, switch) = channel();
         switch.set(true);
         for _ in 0..4 {

@@ -1,5 +1,5 @@
-//! Recording: the last seconds before a crash, where the configuration asks for them. Joints and measures of whoever stood
-//! there are in it, so a shop has to ask for it by name.
+//! Recording: the last seconds before a crash, where the configuration asks for them. It holds joints and measures of the person
+//! in view, so a shop has to ask for it by name.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -91,10 +91,10 @@ pub fn keep(first: &DressedWorld, path: PathBuf) -> Result<(Arc<FlightRecorder>,
 /// Takes a kiosk's recording again: the last frame, and what came out.
 ///
 /// # Errors
-/// A recording that does not begin where somebody was dressed, or a scene that cannot be made.
+/// A recording that does not begin with a dressed person, or a scene that cannot be made.
 pub fn again(notes: &[SceneNote], entries: &[Entry], workers: usize) -> Result<(World, Replayed), FittingError> {
     let Some((Entry::Changed { number, .. }, entries)) = entries.split_first() else {
-        return Err(FittingError::Input("it does not begin where somebody was dressed; record it again".into()));
+        return Err(FittingError::Input("it does not begin with a dressed person; record it again".into()));
     };
     let made = |number: u64| {
         let unknown = || FittingError::Input(format!("it does not say how scene {number} was made; record it again"));

@@ -1,4 +1,4 @@
-//! What a run of the loop came to, as reports have it.
+//! Results of a run of the loop, as reports have them.
 
 use serde::Serialize;
 use toile_engine::frame_loop::queue::Capacity;

@@ -13,8 +13,8 @@ use toile_engine::frame_loop::threads::{self, LoopThread, Stop};
 /// second.
 const LONGEST_END: Duration = Duration::from_secs(3);
 
-/// Most revivals of the render thread within [`REVIVAL_WINDOW`]: one that dies more often is broken for good, and whoever started
-/// the program starts it again.
+/// Most revivals of the render thread within [`REVIVAL_WINDOW`]: one that dies more often is broken for good, and the supervisor
+/// starts the program again.
 pub const MOST_REVIVALS: usize = 10;
 
 /// Time over which revivals are counted.

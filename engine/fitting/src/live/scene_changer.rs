@@ -1,5 +1,5 @@
 //! Hands dressed scenes over to the running loop: shoppers come, change clothes and leave, and the mannequin returns. One change is
-//! under way at a time, and what was replaced is freed here, never by the loop's own threads.
+//! under way at a time, and the replaced scene is freed here, never by the loop's own threads.
 
 use std::sync::Arc;
 
@@ -32,7 +32,7 @@ pub struct DressedScene<S, O> {
 }
 
 impl<S, O> DressedScene<S, O> {
-    /// Somebody dressed, as `stage` makes a scene of their frame.
+    /// A dressed person, as `stage` makes a scene of their frame.
     pub fn new(dressed: DressedWorld, stage: impl FnOnce(World) -> (S, O)) -> Self {
         let (still, note) = (dressed.stands(), Some(dressed.note(0)));
         let (scene, outfit) = stage(dressed.world);
@@ -85,7 +85,7 @@ impl<S: LoopScene, O> SceneChanger<S, O> {
     /// Shows a shopper who follows the sensor: another one than before (`afresh`), or the same in other garments. A scene that
     /// still waits is dropped.
     pub fn show(&mut self, scene: DressedScene<S, O>, afresh: bool) {
-        // A shopper who was never shown is followed by one whom nobody has seen either.
+        // After a shopper who was never shown, the next one was not shown either.
         let afresh = afresh || self.is_still || self.waiting.as_ref().is_some_and(|(_, afresh)| *afresh);
         self.waiting = Some((scene, afresh));
         self.wants_still = false;
@@ -97,7 +97,7 @@ impl<S: LoopScene, O> SceneChanger<S, O> {
         self.wants_still = true;
     }
 
-    /// Whether a mannequin has to be made, for the next time that nobody is there. One is dressed anew each time, so that a
+    /// Whether a mannequin has to be made for the next time without a person in view. One is dressed anew each time, so that a
     /// recording that begins with it can be replayed.
     pub fn lacks_mannequin(&self) -> bool {
         (!self.is_still || self.stale) && self.mannequin.is_none()
@@ -108,7 +108,7 @@ impl<S: LoopScene, O> SceneChanger<S, O> {
         (self.mannequin, self.stale) = (Some(mannequin), self.is_still);
     }
 
-    /// Keeps a mannequin for the next time that nobody is there.
+    /// Keeps a mannequin for the next time without a person in view.
     pub fn stand_by(&mut self, mannequin: DressedScene<S, O>) {
         self.mannequin = Some(mannequin);
     }
@@ -299,7 +299,7 @@ mod tests {
         turns(&mut changing, &mut threads);
         assert_eq!(threads.shown(), [5; 2]);
         assert!(changing.is_wiped() && !changing.lacks_mannequin());
-        // Somebody steps in before it was shown: it is there when they have left.
+        // A shopper steps in before it was shown: it is there when they have left.
         changing.show(scene(7), true);
         turns(&mut changing, &mut threads);
         changing.stand_by(scene(0));
@@ -312,7 +312,7 @@ mod tests {
     }
 
     #[test]
-    fn a_change_that_overtakes_the_first_still_brings_somebody_new() {
+    fn an_overtaking_change_still_brings_a_new_shopper() {
         let (mut changing, mut threads) = set();
         changing.show(scene(7), true);
         changing.show(scene(8), false);

@@ -1,4 +1,4 @@
-//! Where a shopper is measured from: a recording, joints that were received, or a live camera.
+//! Source of a shopper's measures: a recording, received joints, or a live camera.
 
 use std::sync::Arc;
 
@@ -16,12 +16,12 @@ pub enum ShopperSource {
     Recording(Arc<Session>),
     /// The joints of the last second, which are all that a live sender gives.
     Joints(Vec<Joints>),
-    /// A live camera: what it has gathered since somebody began to be measured.
+    /// A live camera: what it has gathered since the measuring began.
     Camera(CameraHandle),
 }
 
 impl ShopperSource {
-    /// Somebody begins to be measured: what a camera gathered before is of no use.
+    /// Begins to measure a person: what a camera gathered before is dropped.
     pub fn begin(&self) {
         if let Self::Camera(camera) = self {
             camera.gather_anew();

@@ -1,4 +1,4 @@
-//! What the sensor's thread reads: a recording played round after round with nobody there in between, or a live sender.
+//! Sources of the sensor's thread: a recording played round after round with an empty pause in between, or a live sender.
 
 use std::fmt;
 use std::io;
@@ -14,16 +14,16 @@ use toile_sensors::source::vmc::VmcReceiver;
 
 use super::depth_camera::CameraFeed;
 
-/// Time between two frames in which nobody is seen (ns): a camera of 30 Hz.
+/// Time between two frames in which no person is in view (ns): a camera of 30 Hz.
 const EMPTY_NS: u64 = SECOND_NS / 30;
 
 /// Time between two looks for messages (ns): half a step, so that none waits for longer.
 const LOOK_NS: u64 = SECOND_NS / 240;
 
-/// Visits of a recording: it is played, nobody is seen for a while, it is played again. The first visit begins after a
-/// pause too.
+/// Repeated sessions of a recording: it is played, no person is in view for a pause, it is played again. The first round begins after
+/// a pause too.
 #[derive(Debug, Clone)]
-pub struct Visits {
+pub struct RepeatedSession {
     frames: Box<[SourceFrame]>,
     origin_ns: u64,
     /// Frames of a pause.
@@ -34,7 +34,7 @@ pub struct Visits {
     next: u64,
 }
 
-impl Visits {
+impl RepeatedSession {
     /// Of a recording, with the depth of about the time of each frame, from this time on (ns), for ever.
     pub fn of(session: &Arc<Session>, origin_ns: u64, pause_ns: u64) -> Self {
         let frame = |joints: &Joints| {
@@ -115,7 +115,7 @@ pub struct LiveSender {
 #[derive(Debug)]
 pub enum Feed {
     /// A recording, played again and again.
-    Played(Visits),
+    Played(RepeatedSession),
     /// A sender of joints over the network (VMC).
     Live(Box<LiveSender>),
     /// A live depth camera.
@@ -136,7 +136,7 @@ impl Feed {
 impl FrameSource for Feed {
     fn next_ns(&self) -> Option<u64> {
         Some(match self {
-            Self::Played(visits) => visits.place(visits.next).1,
+            Self::Played(session) => session.place(session.next).1,
             Self::Live(live) => live.next_ns,
             Self::Camera(camera) => return camera.next_ns(),
         })
@@ -144,9 +144,9 @@ impl FrameSource for Feed {
 
     fn read(&mut self) -> Option<SourceFrame> {
         match self {
-            Self::Played(visits) => {
-                let frame = visits.frame(visits.next);
-                visits.next += 1;
+            Self::Played(session) => {
+                let frame = session.frame(session.next);
+                session.next += 1;
                 Some(frame)
             }
             Self::Live(live) => {
@@ -168,10 +168,11 @@ mod tests {
     use toile_base::skeleton::Joint;
 
     #[test]
-    fn a_recording_comes_again_and_again_and_nobody_is_there_between() {
+    fn a_recording_repeats_with_empty_pauses() {
         let mut frames = [500, 500 + EMPTY_NS].map(Joints::absent);
         frames.iter_mut().for_each(|frame| frame.at_mut(Joint::Pelvis).confidence = 1.0);
-        let mut feed = Feed::Played(Visits::new(frames.map(SourceFrame::from).into(), 1_000, 2 * EMPTY_NS + 7));
+        let mut feed =
+            Feed::Played(RepeatedSession::new(frames.map(SourceFrame::from).into(), 1_000, 2 * EMPTY_NS + 7));
         let mut frames_read = Vec::new();
         for _ in 0..9 {
             let due = feed.next_ns().unwrap();
@@ -183,14 +184,14 @@ mod tests {
         assert_eq!(
             frames_read,
             (0..9).map(|i| (i, there(i))).collect::<Vec<_>>(),
-            "every 33 ms, two of four with somebody"
+            "every 33 ms, two of four with a person"
         );
     }
 
     #[test]
     fn a_pause_of_nothing_plays_on() {
         let frames = [0, EMPTY_NS].map(Joints::absent);
-        let mut feed = Feed::Played(Visits::new(frames.map(SourceFrame::from).into(), 0, 0));
+        let mut feed = Feed::Played(RepeatedSession::new(frames.map(SourceFrame::from).into(), 0, 0));
         let times: Vec<u64> = (0..4).map(|_| feed.read().unwrap().joints.time_ns).collect();
         assert_eq!(times, [0, EMPTY_NS, 2 * EMPTY_NS, 3 * EMPTY_NS]);
     }
@@ -218,7 +219,7 @@ mod tests {
             depth: [3, 70].map(|ms| depth(ms * 1_000_000)).to_vec(),
             ..Session::default()
         });
-        let mut feed = Feed::Played(Visits::of(&session, 0, 0));
+        let mut feed = Feed::Played(RepeatedSession::of(&session, 0, 0));
         let seen: Vec<Option<u64>> =
             (0..4).map(|_| feed.read().unwrap().depth.map(|d| d.frame().time_ns / 1_000_000)).collect();
         assert_eq!(seen, [Some(3), None, Some(70), None]);

@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_who_does_not_ask_is_fed() {
+    fn without_a_request_nothing_is_fed() {
         assert!(Watchdog::new(None, 0).is_none());
     }
 }

@@ -23,7 +23,7 @@ use toile_track::fit::tracker::Company;
 use super::depth_camera::{CameraFeed, CameraHandle, CameraMeters, CameraThreads, TrackedFrame};
 use super::own_picture::{PictureSender, copy};
 
-/// How somebody is seen through a webcam.
+/// How a person is seen through a webcam.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WebcamOptions {
     /// Whose mean body has the lengths of the limbs.
@@ -59,7 +59,7 @@ pub struct WebcamJoints {
     options: WebcamOptions,
     fitter: PictureFitter,
     fit: Option<PictureFit>,
-    /// Whether somebody was seen in the last picture.
+    /// Whether a person was seen in the last picture.
     pub found: bool,
 }
 
@@ -80,7 +80,7 @@ impl WebcamJoints {
         })
     }
 
-    /// Joints of a picture that was taken at a time (ns); all of them absent where nobody is seen, or the picture cannot be looked at.
+    /// Joints of a picture that was taken at a time (ns); all are absent where no person is in view, or the picture cannot be read.
     pub fn push(&mut self, picture: &ColourImage, time_ns: u64) -> Joints {
         let seen = self.tracker.push(picture, time_ns);
         self.fit = None;
@@ -101,7 +101,7 @@ impl WebcamJoints {
         joints
     }
 
-    /// The camera of the last picture, and joints that are seen where it shows them; none where nobody is seen, or own pictures are not shown.
+    /// The camera of the last picture, and joints as seen in it; none where no person is in view, or own pictures are not shown.
     pub fn picture_fit(&self) -> Option<&PictureFit> {
         self.fit.as_ref()
     }
@@ -116,7 +116,7 @@ impl WebcamJoints {
         self.tracker.mask()
     }
 
-    /// How large whoever is seen is taken to be (m), and why.
+    /// Stature that the person in view is taken to have (m), and its source.
     pub fn stature(&self) -> (f32, StatureSource) {
         self.stature.stature()
     }
@@ -126,7 +126,7 @@ impl WebcamJoints {
         self.tracker.counts.people.saturating_sub(1).min(u64::from(u8::MAX)) as u8
     }
 
-    /// Somebody else may stand there.
+    /// Another person may stand there.
     fn reset(&mut self) {
         self.stature.reset();
         self.placer.reset();

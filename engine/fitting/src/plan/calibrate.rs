@@ -1,7 +1,7 @@
-//! What a unit of work takes on this machine: some cloths of the program's own are stepped, and what their stages took is
-//! laid on what they counted.
+//! Time of a unit of work on this machine: some cloths of the program's own are stepped, and the times of their stages are fitted
+//! to the counts of their units.
 //!
-//! The cloths are none of the wardrobe's, so that what is said of a garment of it was learnt from others. They differ
+//! None of the cloths is of the wardrobe, so that the prediction for its garments was learnt from others. They differ
 //! in what decides the time: rows and scattered triangles, threads that give and threads that do not, near the body and
 //! far from it, wind, tethers.
 
@@ -108,7 +108,7 @@ pub fn measure(body: Option<(&Body, &Rig, &[Joints])>, workers: usize) -> Result
         *unit = fit(&rows, &times);
     }
     if workers > 1 {
-        costs.meeting_us = meeting_us(&scenes[0], &costs)?;
+        costs.barrier_us = barrier_us(&scenes[0], &costs)?;
     }
     if let Some((body, rig, track)) = body {
         costs.body_us = body_us(body, rig, track, workers)?;
@@ -159,13 +159,13 @@ fn sample(scene: &PlannedScene) -> Result<Sample, PlanError> {
     Ok(Sample { work, stages_us: times.map(|mut all| quartile(&mut all)) })
 }
 
-/// What it takes two workers to meet, from a cloth that they share (us).
-fn meeting_us(scene: &PlannedScene, costs: &Costs) -> Result<f64, PlanError> {
+/// Time of a barrier of two workers, from a cloth that they share (us).
+fn barrier_us(scene: &PlannedScene, costs: &Costs) -> Result<f64, PlanError> {
     let mut pool = WorkerPool::new(SHARES)?;
     let mut playing = Playing::new(scene);
     let (mut times, mut one) = (Vec::new(), Vec::new());
     let mut alone = Playing::new(scene);
-    let mut nobody = WorkerPool::new(1)?;
+    let mut single = WorkerPool::new(1)?;
     for step in 0..WARM_UP + TIMED {
         playing.place();
         timing::wake(&mut pool);
@@ -174,7 +174,7 @@ fn meeting_us(scene: &PlannedScene, costs: &Costs) -> Result<f64, PlanError> {
         let two = begun.elapsed();
         alone.place();
         let begun = Instant::now();
-        alone.take(&scene.settings, &mut nobody);
+        alone.take(&scene.settings, &mut single);
         if step >= WARM_UP {
             times.push(two.as_secs_f64() * 1e6);
             one.push(begun.elapsed().as_secs_f64() * 1e6);

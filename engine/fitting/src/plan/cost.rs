@@ -1,4 +1,4 @@
-//! What a unit of work takes on this machine, and what a scene takes by that.
+//! Time of a unit of work on this machine, and the time of a scene that follows.
 
 use toile_engine::meter::{CLOTH, PUBLISH};
 use toile_engine::workers::SHARES;
@@ -13,8 +13,8 @@ const STEP_STAGES: usize = toile_engine::meter::STAGES.len();
 pub struct Costs {
     /// Time of a unit (us), in the order of [`super::work::UNITS`].
     pub unit_us: [[f64; KINDS]; STAGES.len()],
-    /// Time of a meeting of two workers (us).
-    pub meeting_us: f64,
+    /// Time of a barrier of two workers (us).
+    pub barrier_us: f64,
     /// Time of a particle's copy into the snapshot (us).
     pub copy_us: f64,
     /// The frame without garments: pose, skin and place on this body, the body's part of the publication (us).
@@ -33,15 +33,15 @@ pub struct GarmentTime {
 }
 
 impl Costs {
-    /// What one garment with this work costs.
+    /// Time of one garment with this work.
     pub fn garment(&self, work: &Work) -> GarmentTime {
         let time = |(counts, unit): (&[f64; KINDS], &[f64; KINDS])| counts.iter().zip(unit).map(|(n, us)| n * us).sum();
         let mut stages_us = [0.0; STAGES.len()];
         stages_us.iter_mut().zip(work.counts.iter().zip(&self.unit_us)).for_each(|(to, pair)| *to = time(pair));
         let one_us: f64 = stages_us.iter().sum();
-        // What is no phase is one worker's.
+        // Work outside of the phases is done by one worker.
         let alone = stages_us[STAGES.len() - 1];
-        let two_us = alone + (one_us - alone) * work.share + work.phases * self.meeting_us;
+        let two_us = alone + (one_us - alone) * work.share + work.phases * self.barrier_us;
         GarmentTime { stages_us, one_us, two_us: two_us.min(one_us) }
     }
 
@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn one_garment_is_shared_and_several_go_to_whoever_is_free() {
+    fn one_garment_is_shared_several_are_distributed() {
         assert_eq!(cloth_us(&[of(1000.0)], 1), 1000.0);
         assert_eq!(cloth_us(&[of(1000.0)], 2), 600.0);
         assert_eq!(cloth_us(&[of(1000.0), of(700.0)], 1), 1700.0);
@@ -88,8 +88,8 @@ mod tests {
     }
 
     #[test]
-    fn twice_the_work_takes_twice_the_time_and_meetings_cost() {
-        let costs = Costs { unit_us: [[0.01; KINDS]; STAGES.len()], meeting_us: 0.5, ..Costs::default() };
+    fn twice_the_work_takes_twice_and_barriers_cost() {
+        let costs = Costs { unit_us: [[0.01; KINDS]; STAGES.len()], barrier_us: 0.5, ..Costs::default() };
         let work = |n: f64| Work { counts: [[n; KINDS]; STAGES.len()], phases: 10.0, share: 0.5, substeps: 4 };
         let [once, twice] = [1000.0, 2000.0].map(|n| costs.garment(&work(n)));
         assert!((twice.one_us - 2.0 * once.one_us).abs() < 1e-9);

@@ -1,6 +1,6 @@
-//! Plan: what a scene needs and takes, predicted before it runs.
+//! Plan: predicts memory and time of a scene before it runs.
 //!
-//! Thread: the caller's; the engine's workers where their hand-off is timed.
+//! It runs on the caller's thread, and on the engine's workers where their hand-off is timed.
 
 pub mod calibrate;
 pub mod cost;

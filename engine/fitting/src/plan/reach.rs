@@ -1,5 +1,5 @@
-//! Which colliders each part of a garment can ever touch: those that the part table leaves it, and of these the ones that
-//! come nearer to where it hangs than its cloth is long.
+//! Colliders that each part of a garment can ever touch: those that the part table leaves it, and of these the ones that
+//! come nearer to the part's anchor than its cloth is long.
 //!
 //! A particle gets no farther from its tether's anchor than the tether is long. How near a capsule comes to the anchor
 //! is looked for in poses: of a shopper in many that are drawn at random from ranges wider than any joint's, of a scene

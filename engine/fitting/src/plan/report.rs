@@ -27,7 +27,7 @@ pub fn units(costs: &Costs) -> Vec<UnitCost> {
     let named = STAGES.iter().zip(&UNITS).zip(&costs.unit_us);
     let all = named.flat_map(|((stage, units), us)| units.iter().zip(us).map(|(unit, us)| (*stage, *unit, us * 1e3)));
     let mut all: Vec<_> = all.filter(|u| u.2 > 0.0).map(|(stage, unit, ns)| UnitCost { stage, unit, ns }).collect();
-    all.push(UnitCost { stage: "all", unit: "meetings of two workers", ns: costs.meeting_us * 1e3 });
+    all.push(UnitCost { stage: "all", unit: "barriers of two workers", ns: costs.barrier_us * 1e3 });
     all.push(UnitCost { stage: "publish", unit: "particles", ns: costs.copy_us * 1e3 });
     all
 }

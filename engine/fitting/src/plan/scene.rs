@@ -1,4 +1,4 @@
-//! A scene as the plan sees it: baked garments, colliders, and where the bones are at every step.
+//! A scene as the plan sees it: baked garments, colliders, and the places of the bones at every step.
 
 use glam::Affine3A;
 use toile_assets::scene_file::SceneFile;

@@ -1,4 +1,4 @@
-//! Whether a scene fits into its period, and which changes would make it fit.
+//! Judges whether a scene fits into its period, and finds changes that would make it fit.
 
 use serde::Serialize;
 use toile_engine::cloth::{Cloth, Quality, Settings, Step};

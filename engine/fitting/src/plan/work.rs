@@ -1,5 +1,5 @@
-//! How much work a step of a garment is, counted from its layout in units that each take about the same time: what one
-//! pass of the lanes does, and what is gathered one by one.
+//! Work of a step of a garment, counted from its layout in units that each take about the same time: one pass of the lanes, or one
+//! value that is gathered.
 
 use glam::Vec3;
 use toile_base::garment::layout::{ENDED, Links};
@@ -43,7 +43,7 @@ const BLOCK: f64 = 16.0;
 pub struct Work {
     /// Units, in the order of [`UNITS`].
     pub counts: Counts,
-    /// Phases: as often two workers meet.
+    /// Number of phases, which is the number of barriers of two workers.
     pub phases: f64,
     /// Share of the particles that the busier of two workers has.
     pub share: f64,
@@ -138,7 +138,7 @@ impl Work {
         let beside = first.beside / count.lanes as f64;
         let every = settings.contact;
         let rate = |every: u8, amount: f64| if every == 0 { 0.0 } else { amount / f64::from(every) };
-        let meetings = when(every.folds > 0 || (every.layers > 0 && beside > 0.0), n);
+        let barriers = when(every.folds > 0 || (every.layers > 0 && beside > 0.0), n);
         let counts = [
             per([particles, fixed, count.tensions(), 0.0]),
             bends,
@@ -148,7 +148,7 @@ impl Work {
             [garment.particles() as f64 / BLOCK, touching, n, first.on_skin / BLOCK * n],
             only(settings.wind.is_some(), count.vectors(garment.triangles.len())),
             only(held, particles * n),
-            [rate(every.folds, particles), rate(every.layers, beside), meetings, 0.0],
+            [rate(every.folds, particles), rate(every.layers, beside), barriers, 0.0],
             [particles, fixed, 0.0, 0.0],
         ];
         let bending = Bending { stages: first.bend.stages, friction: friction.acts(), ..Bending::plain(&matrix) };
@@ -221,7 +221,7 @@ impl Count<'_> {
         let weft = &self.garment.layout().weft;
         let [runs, loose] = self.links(weft);
         let passes = self.times(Stage::Weft(0));
-        // Laws look at every link once; each takes about as long as a link.
+        // Each stretch curve looks at its link once, which takes about as long as the link.
         let link_curves: usize = self.garment.layout().link_curves.tables().iter().map(|t| t.len()).sum();
         [runs * passes + self.vectors(link_curves), loose * passes, weft.tuples.sets.len() as f64 * passes, 0.0]
     }

@@ -1,4 +1,4 @@
-//! What contact of cloth with cloth did, as reports have it, and what there was no room for.
+//! Counts of the contact of cloth with cloth for reports, and of pairs and crossings that found a buffer full.
 
 use serde::Serialize;
 use toile_base::limits::MAX_GARMENTS;
@@ -10,7 +10,7 @@ pub const PAIRS_NAME: &str = "PAIRS_A_PARTICLE (pairs of a garment's own particl
 /// Name of [`MOST_CROSSINGS`] in reports and warnings.
 pub const CROSSINGS_NAME: &str = "MOST_CROSSINGS (crossings of a garment that one worker keeps)";
 
-/// What contact between garments, and of garments with themselves, did since they were made.
+/// Counts of contact between garments, and of garments with themselves, since they were made.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct ContactReport {
     /// Particles that were looked at, summed over the steps.
@@ -21,13 +21,13 @@ pub struct ContactReport {
     pub contacts_most: u64,
     /// Most pairs of its own particles that one worker kept of a garment at once.
     pub pairs_most: u64,
-    /// Room for such pairs, of the garment that has most.
+    /// Capacity for such pairs, of the garment that has most.
     pub pairs_room: u64,
-    /// Such pairs that there was no room for, summed over the steps.
+    /// Such pairs left out because the buffer was full, summed over the steps.
     pub crowded: u64,
     /// Most crossings that one worker kept of one garment at once.
     pub crossings_most: u64,
-    /// Crossings that there was no room for, summed over the steps.
+    /// Crossings left out because the buffer was full, summed over the steps.
     pub left_out: u64,
 }
 
@@ -55,7 +55,7 @@ impl ContactReport {
         if *crowded > 0 {
             all.push(format!(
                 "{crowded} times a garment had more near pairs of particles than {PAIRS_NAME} holds, {PAIRS_A_PARTICLE}, and kept the \
-                 nearest; build the program with a larger value, or give the garment more room"
+                 nearest; build the program with a larger value, or give the garment more ease"
             ));
         }
         if *left_out > 0 {

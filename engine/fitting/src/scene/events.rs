@@ -1,4 +1,4 @@
-//! Counts of what the guards of the cloth had to do, in sums and differences.
+//! Counts of the interventions of the cloth's guards, in sums and differences.
 
 use serde::Serialize;
 

@@ -1,8 +1,8 @@
 //! Scenes of a user's own: garments, pins, colliders and settings of a scene file, stepped, timed and measured.
 //!
-//! Budget: baking under a second for 10,000 particles; a step as the cloth's.
+//! Baking 10,000 particles takes under a second.
 //!
-//! Everything that is particular to the engine as it is now stands in [`Runner::new`] and [`Runner::step`].
+//! Everything that is particular to the engine stands in [`Runner::new`] and [`Runner::step`].
 
 pub mod contact;
 pub mod events;

@@ -1,4 +1,4 @@
-//! The surface that is skinned: the scene's shopper in the middle of a step, as often as vertices are asked for.
+//! The surface that is skinned: the scene's shopper in the middle of a step, repeated up to the wanted number of vertices.
 
 use glam::{Affine3A, Vec3};
 use toile_assets::body::BodyError;

@@ -1,4 +1,4 @@
-//! Tests of runs: what a scene says is what happens.
+//! Tests of runs: a scene's settings take effect.
 
 use toile_assets::scene_file::SceneSource;
 

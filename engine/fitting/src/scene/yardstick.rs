@@ -1,5 +1,5 @@
-//! The yardstick of a machine: plain scalar linear-blend skinning of 15,000 vertices with four influences each, position
-//! and normal. Times on different machines are laid side by side through it.
+//! Reference time of a machine: plain scalar linear-blend skinning of 15,000 vertices with four influences each, position
+//! and normal. Times on different machines are compared through it.
 
 use std::hint::black_box;
 
@@ -10,7 +10,7 @@ use toile_engine::lanes::{Kernel, Lanes, Width};
 use super::surface::SkinnedSurface;
 use crate::timing;
 
-/// Vertices of the yardstick, by the benchmark scene.
+/// Vertices of the reference, by the benchmark scene.
 pub const VERTICES: usize = 15_000;
 
 /// Three rows of four: the rotation, then the translation, of each row.
@@ -25,7 +25,7 @@ struct Vertex {
     weights: [f32; 4],
 }
 
-/// The yardstick made ready, to be read more than once in a run.
+/// The reference work, prepared so that it can be timed more than once in a run.
 #[derive(Debug)]
 pub struct Yardstick {
     vertices: Vec<Vertex>,
@@ -33,7 +33,7 @@ pub struct Yardstick {
 }
 
 impl Yardstick {
-    /// The yardstick on the scene's shopper.
+    /// Prepares the reference on the scene's shopper.
     ///
     /// # Errors
     /// Where she cannot be built.
@@ -53,7 +53,7 @@ impl Yardstick {
     }
 }
 
-/// Time of the yardstick on this machine (us, median).
+/// Reference time of this machine (us, median).
 ///
 /// # Errors
 /// Where the scene's shopper cannot be built.
@@ -119,7 +119,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_yardstick_does_the_work_of_the_engine() {
+    fn the_reference_does_the_work_of_the_engine() {
         let surface = SkinnedSurface::new(VERTICES).unwrap();
         let palette: Vec<Matrix> = surface.palette.iter().map(rows).collect();
         let mut posed = vec![[[0.0; 3]; 2]; VERTICES];

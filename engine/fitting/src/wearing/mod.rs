@@ -1,4 +1,4 @@
-//! What a garment does when its wearer raises the arms or sits down: where it pulls, and how far it rides up.
+//! Behaviour of a garment when its wearer raises the arms or sits down: the zones that pull, and the rise of its hems.
 
 pub mod poses;
 mod pulls;

@@ -1,4 +1,4 @@
-//! The poses in which it is seen how clothes hold.
+//! Poses in which clothes are tested.
 
 use glam::{Affine3A, Quat, Vec3};
 use toile_base::frame::{Joints, TrackedJoint};

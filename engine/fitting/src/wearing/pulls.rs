@@ -1,4 +1,4 @@
-//! Stretch by zone in each pose, and how far hems ride up.
+//! Stretch by zone in each pose, and the rise of hems.
 
 use glam::Vec3;
 use serde::Serialize;
@@ -229,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn a_narrow_skirt_pulls_at_the_seat_of_somebody_larger_who_sits() {
+    fn a_narrow_skirt_pulls_at_a_larger_seat() {
         let (own, small) = (tried("pencil-skirt", "40", "40"), tried("pencil-skirt", "36", "40"));
         let seat = |pulls: &[PosePulls]| at(&pulls[1], CoveredZone::Hip);
         assert_eq!(own[1].pose, "sitting");

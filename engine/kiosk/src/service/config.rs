@@ -1,4 +1,4 @@
-//! The configuration, in TOML: the only state that a kiosk has. Unknown keys are refused.
+//! The configuration file (TOML), the only thing that a kiosk keeps. Unknown keys are refused.
 
 use std::net::SocketAddr;
 use std::ops::RangeInclusive;
@@ -65,7 +65,7 @@ pub struct WearConfig {
     pub garments: Vec<String>,
     /// A folder of garment packages that hang in place of the built-in wardrobe.
     pub catalogue: Option<PathBuf>,
-    /// A size for everybody.
+    /// A size for every shopper.
     pub size: Option<String>,
     /// Tested settings of the cloth.
     pub quality: String,
@@ -80,7 +80,7 @@ pub struct WearConfig {
 pub struct ShopperConfig {
     /// Whose proportions apply: female or male; none is found from what is seen.
     pub sex: Option<String>,
-    /// Whether everybody is an adult, or a child: `adult` or `child`; none is estimated.
+    /// Whether every shopper is an adult, or a child: `adult` or `child`; none is estimated.
     pub age: Option<String>,
     /// Measures taken by tape, such as `chest=912`: for a fitting by appointment, or a demonstration.
     pub measures: Vec<String>,
@@ -127,7 +127,7 @@ pub struct SensorConfig {
     pub device: Option<String>,
     /// By how much its images are turned clockwise to be upright (degrees): 0, 90, 180 or 270.
     pub turned_degrees: u32,
-    /// Height of a webcam above the floor (mm), so that it says how tall somebody is.
+    /// Height of a webcam above the floor (mm), so that it says how tall a person is.
     pub camera_height_mm: Option<f64>,
     /// By how much a webcam looks down (degrees).
     pub camera_tilt_degrees: f64,
@@ -137,7 +137,7 @@ impl SensorConfig {
     /// The camera that is configured, if one is.
     ///
     /// # Errors
-    /// A kind that there is not.
+    /// An unknown kind.
     pub fn camera(&self) -> Result<Option<CameraName>, CameraError> {
         let Some(kind) = &self.camera else { return Ok(None) };
         let name = self.device.as_ref().map_or_else(|| kind.clone(), |device| format!("{kind}:{device}"));
@@ -214,9 +214,9 @@ pub struct DisplayConfig {
     pub lower_edge_mm: f32,
     /// Height of the picture (mm).
     pub height_mm: f32,
-    /// The language before somebody chooses one.
+    /// The language before the visitor chooses one.
     pub language: String,
-    /// Whether type is large before somebody chooses.
+    /// Whether type is large before the visitor chooses.
     pub large_type: bool,
     /// Whether anything moves by itself: a mannequin that turns.
     pub motion: bool,
@@ -392,7 +392,7 @@ impl Config {
             .or_else(|| self.wear.quality.parse::<Quality>().err().map(|e| format!("wear.quality: {e}")))
     }
 
-    /// The request that everybody begins with, as it is configured.
+    /// The request that every visitor begins with, as it is configured.
     pub fn request(&self) -> TryOn {
         let shopper = self.shopper.facts().unwrap_or_default();
         let request = TryOn::of_shopper(&self.wear.garments, self.wear.size.as_deref(), shopper);

@@ -1,4 +1,4 @@
-//! The keys of the configuration: one that is not known is refused by its name, its line and the nearest that is.
+//! The keys of the configuration. An unknown key is refused with its name, its line and the nearest known key.
 
 use toile_assets::toml_keys::{self, UnknownKey, place};
 use toml::de::{DeTable, DeValue};

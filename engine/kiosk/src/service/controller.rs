@@ -1,4 +1,4 @@
-//! The service's side of the controller of a session: what the service asks of it, and the parts of the kiosk that it uses.
+//! The service's side of the controller of a session: the interface to the service, and the parts of the kiosk that it uses.
 
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ pub type ToScene<S, O> = Box<dyn Fn(World) -> (S, O)>;
 pub struct ControllerContext<S, O> {
     /// How scenes are changed.
     pub changer: SceneChanger<S, O>,
-    /// The request that everybody begins with, the mannequin too.
+    /// The request that every visitor begins with, the mannequin too.
     pub first: Arc<TryOn>,
     /// The mannequin that is being dressed.
     pub dressing: BackgroundJob<Result<DressedWorld, KioskError>>,
@@ -32,7 +32,7 @@ pub struct ControllerContext<S, O> {
 }
 
 impl<S: LoopScene, O> ControllerContext<S, O> {
-    /// Somebody dressed, as the loop takes them.
+    /// A dressed person, as the loop takes them.
     pub fn scene(&self, dressed: DressedWorld) -> DressedScene<S, O> {
         DressedScene::new(dressed, &self.to_scene)
     }
@@ -67,12 +67,12 @@ impl<S: LoopScene, O> ControllerContext<S, O> {
         }
     }
 
-    /// Whether nobody is shown but the mannequin, and nobody is being dressed.
+    /// Whether only the mannequin is shown, and no shopper is being dressed.
     pub fn is_at_rest(&self) -> bool {
         self.changer.is_wiped() && !self.dressing.is_running()
     }
 
-    /// From now on everybody wears something else first, the mannequin too, where there is another one.
+    /// From now on every visitor wears something else first, the mannequin too, where there is another one.
     pub fn restock(&mut self, first: Arc<TryOn>, mannequin: Option<Box<DressedWorld>>) {
         self.first = first;
         if let Some(mannequin) = mannequin {
@@ -96,7 +96,7 @@ pub trait SessionController<S, O> {
     /// What ends the service.
     fn poll(&mut self, now_ns: u64, context: &mut ControllerContext<S, O>) -> Result<Option<StateChange>, KioskError>;
 
-    /// Lines for whoever looks after the kiosk, each once.
+    /// Lines for the operator, each once.
     fn lines(&mut self) -> Vec<String> {
         Vec::new()
     }

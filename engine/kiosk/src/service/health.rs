@@ -1,5 +1,5 @@
-//! Health: what a kiosk counts while it runs, and the health line. Counted and written by the service's thread, never
-//! by the loop's.
+//! Health: the counters of a running kiosk, and the health line. The service's thread counts and writes, never a thread
+//! of the loop.
 
 use std::fmt::{self, Display, Formatter};
 
@@ -25,8 +25,8 @@ pub struct HealthFigures {
     pub step_p999_us: f64,
     /// Steps that were published after their period, and steps that were dropped.
     pub misses: u64,
-    /// The place in the quality levels.
-    pub rung: u8,
+    /// The quality level: 0 is whole quality.
+    pub level: u8,
     /// Steps that were rolled back because of a NaN or an infinity.
     pub nonfinite: u64,
     /// Shoppers who stepped in.
@@ -47,7 +47,7 @@ impl Default for HealthFigures {
             steps: 0,
             step_p999_us: 0.0,
             misses: 0,
-            rung: 0,
+            level: 0,
             nonfinite: 0,
             sessions: 0,
             pictures: 0,
@@ -68,7 +68,7 @@ impl Display for HealthFigures {
             self.steps,
             self.step_p999_us * 1e-3,
             self.misses,
-            self.rung,
+            self.level,
             self.nonfinite,
             self.sessions,
             self.pictures,
@@ -99,7 +99,7 @@ impl HealthCounter {
         self.step.add(step.step_ns);
         self.figures.steps += 1;
         self.figures.misses += u64::from(step.late);
-        (self.figures.rung, self.figures.nonfinite) = (step.level, step.nonfinite);
+        (self.figures.level, self.figures.nonfinite) = (step.level, step.nonfinite);
     }
 
     /// Something happened in the loop. Late steps are reported by their beats.
@@ -112,7 +112,7 @@ impl HealthCounter {
         }
     }
 
-    /// Somebody is measured, who counts where they are `new`.
+    /// Counts a measured person where they are `new`.
     pub fn stepped_in(&mut self, new: bool) {
         self.figures.sessions += u64::from(new);
     }

@@ -68,7 +68,7 @@ fn running() -> KioskError {
     )
 }
 
-/// Opens a lock's file for reading, and makes it where there is none. Nobody else's link or device is followed or waited for.
+/// Opens a lock's file for reading, and makes it where there is none. No link or device in its place is followed or waited for.
 fn open(path: &Path) -> io::Result<File> {
     match fs::symlink_metadata(path) {
         Ok(found) if found.is_file() => return File::open(path),
@@ -97,7 +97,7 @@ fn allow_reading(_file: &File) -> io::Result<()> {
     Ok(())
 }
 
-/// Whether somebody holds a lock; one that cannot be looked at is nobody's.
+/// Whether a process holds a lock; a lock that cannot be read counts as free.
 fn is_held(path: &Path) -> bool {
     let is_file = fs::symlink_metadata(path).is_ok_and(|found| found.is_file());
     // Shared and for a moment: two that look at it do not see each other.

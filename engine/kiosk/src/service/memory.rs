@@ -1,4 +1,4 @@
-//! Memory that stays: no step waits for a page, and what is known of a shopper is never swapped to a disk.
+//! Locked memory: no step waits for a page, and no data of a shopper is ever swapped to a disk.
 
 use crate::error::KioskError;
 

@@ -62,7 +62,7 @@ fn text(figures: &HealthFigures) -> String {
             figures.step_p999_us * 1e-6,
         ),
         ("deadline_misses_total", "counter", "Steps that were late or dropped.", figures.misses as f64),
-        ("rung", "gauge", "Quality given up: 0 is none.", f64::from(figures.rung)),
+        ("rung", "gauge", "Quality given up: 0 is none.", f64::from(figures.level)),
         ("nonfinite_total", "counter", "Steps rolled back because of a NaN or an infinity.", figures.nonfinite as f64),
         ("sessions_total", "counter", "Shoppers who stepped in.", figures.sessions as f64),
         ("frames_total", "counter", "Pictures taken.", figures.pictures as f64),

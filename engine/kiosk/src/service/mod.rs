@@ -1,8 +1,7 @@
 //! The service: the whole loop, unattended, from shopper to shopper, until it is asked to end.
 //!
-//! Budget: ready within 5 s of its start; a round of the service each 20 ms, under 100 us of the first core.
-//! Thread: the loop's own; a service thread, a dressing thread while somebody is measured, one that watches the catalogue, one
-//! for metrics.
+//! It is ready within 5 s of its start. It has a round each 20 ms, which takes under 100 µs of the first core. Besides the threads of the
+//! loop there is a service thread, one that watches the catalogue, one for metrics, and a dressing thread while a person is measured.
 //!
 //! [`session`] is the state machine that a window drives too, [`controller`] decides by it, and [`runner`] polls the loop. How the
 //! loop's threads are joined, and how one dressed body takes another's place in them, is `toile_fitting::live`.
@@ -43,7 +42,7 @@ use toile_fitting::live::own_picture::{PictureReceiver, PictureSwitch};
 use toile_fitting::live::report::ThreadPlacement;
 use toile_fitting::live::scene_changer::{DressedScene, SceneChanger};
 use toile_fitting::live::shopper_source::ShopperSource;
-use toile_fitting::live::source::{Feed, Visits};
+use toile_fitting::live::source::{Feed, RepeatedSession};
 use toile_fitting::live::{crash, recording};
 use toile_sensors::source::Session;
 
@@ -79,7 +78,7 @@ pub struct KioskOptions {
     pub may_lock_memory: bool,
 }
 
-/// Prints a line for whoever looks after the kiosk.
+/// Prints a line for the operator.
 pub type PrintLine<'a> = &'a (dyn Fn(&str) + Sync);
 
 /// Runs a kiosk by `front`, with a window or without.
@@ -175,7 +174,7 @@ where
 {
     let KioskRun { options, config, stock, begun, clock, stop, print_line, figures } = run;
     let session = played_session(config)?;
-    // The mannequin stands as somebody does in the recording: a pose, and no body.
+    // The mannequin stands as a person does in the recording: a pose, and no body.
     let pose = sessions::standing(&session)?[0];
     let dressed = stock.first.on_mannequin(&pose)?;
     let SensorFeeds { feed, played, pictures, switch, portraits } = feed(config, session, clock)?;
@@ -255,9 +254,9 @@ fn feed(config: &Config, session: Session, clock: RealClock) -> Result<SensorFee
         return Ok(SensorFeeds { feed, played: None, pictures: None, switch: None, portraits: None });
     }
     let session = Arc::new(session);
-    let visits = Visits::of(&session, clock.now_ns(), config::ns(config.sensor.pause_s));
+    let repeated = RepeatedSession::of(&session, clock.now_ns(), config::ns(config.sensor.pause_s));
     let played = Some(ShopperSource::Recording(session));
-    Ok(SensorFeeds { feed: Feed::Played(visits), played, pictures: None, switch: None, portraits: None })
+    Ok(SensorFeeds { feed: Feed::Played(repeated), played, pictures: None, switch: None, portraits: None })
 }
 
 fn workers() -> usize {

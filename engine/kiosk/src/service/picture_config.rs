@@ -1,4 +1,4 @@
-//! Where pictures to take away are served, if they are.
+//! The address at which pictures to take away are served, if they are.
 
 use std::net::{IpAddr, SocketAddr};
 
@@ -50,10 +50,10 @@ fn is_local(address: IpAddr) -> bool {
 pub enum OwnPictureUse {
     /// The mannequin alone; the camera's colour is not even asked for.
     Never,
-    /// The mannequin first; whoever wants it sees themselves.
+    /// The mannequin first; on request the visitor sees themselves.
     #[default]
     Offered,
-    /// Themselves first; whoever wants it sees the mannequin.
+    /// The visitor themselves first; on request they see the mannequin.
     First,
 }
 

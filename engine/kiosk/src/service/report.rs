@@ -46,7 +46,8 @@ pub struct KioskReport {
     /// From when a sensor frame was seen until the first picture that shows it was taken (us).
     pub total_us: Quantiles,
     /// Steps on each quality level.
-    pub rungs: Vec<u64>,
+    #[serde(rename = "rungs")]
+    pub level_steps: Vec<u64>,
     /// Steps that were rolled back because of a NaN or an infinity.
     pub nonfinite: u64,
     /// Whether all memory was kept resident.
@@ -82,7 +83,7 @@ pub struct CameraReport {
     pub lost: u64,
     /// Times that it was opened anew.
     pub reopened: u64,
-    /// Frames in which somebody was followed.
+    /// Frames in which a person was followed.
     pub followed: u64,
 }
 
@@ -178,7 +179,7 @@ impl KioskReport {
             step_us: Quantiles::of(&gauges.step),
             present_us: render.map(|r| Quantiles::of(&r.drawing)).unwrap_or_default(),
             total_us: render.map(|r| Quantiles::of(&r.total)).unwrap_or_default(),
-            rungs: gauges.level_steps.to_vec(),
+            level_steps: gauges.level_steps.to_vec(),
             nonfinite: record.figures.nonfinite,
             memory_locked: record.memory_locked,
             threads: record.threads,

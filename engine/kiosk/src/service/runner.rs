@@ -61,13 +61,13 @@ pub struct ServiceEnvironment<'a, S, O> {
     pub print_line: &'a dyn Fn(&str),
     /// Receives the figures, where metrics are served.
     pub figures: Option<Writer<HealthFigures>>,
-    /// The request that everybody begins with.
+    /// The request that every visitor begins with.
     pub first: Arc<TryOn>,
     /// What a dressed frame becomes in the loop, and what the renderer has to know of it.
     pub to_scene: ToScene<S, O>,
     /// How the mannequin stands.
     pub pose: Joints,
-    /// What is kept for a crash, where somebody asked for it.
+    /// What is kept for a crash, where the configuration asks for it.
     pub flight_recorder: Option<Arc<FlightRecorder>>,
 }
 
@@ -146,7 +146,7 @@ impl<'a, S: LoopScene + Send + 'static, E: Renderer + 'static> Service<'a, S, E>
     /// Runs until it is asked to end or its time is over. Returns a record of the run, and of the loop's threads.
     ///
     /// # Errors
-    /// Where a thread has ended that must not: whoever started the service starts it again.
+    /// Where a thread has ended that must not: the supervisor starts the service again.
     pub fn run(mut self) -> Result<ServiceEnd<S, E>, KioskError> {
         while !self.stop.is_requested() && !self.is_time_over() {
             self.poll()?;

@@ -1,4 +1,4 @@
-//! The session of one shopper as a state machine of four states. It knows the time and what is seen, and nothing else: a
+//! The session of one shopper as a state machine of four states. It knows only the time and the presence of a person: a
 //! window, a service without one and a test drive the same machine.
 
 use serde::Serialize;
@@ -8,13 +8,13 @@ toile_base::named! {
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
     #[serde(rename_all = "kebab-case")]
     pub enum SessionState {
-        /// Nobody is there: the mirror shows what it can do.
+        /// No person is in view: the mirror shows what it can do.
         Attract = "attract",
-        /// Somebody stands there and is measured.
+        /// A person stands there and is measured.
         Measuring = "measuring",
         /// They see themselves dressed.
         TryOn = "try-on",
-        /// They have left, or nobody is seen: what is known of them is about to be wiped.
+        /// They have left, or no person is in view: what is known of them is about to be wiped.
         Left = "left",
     }
 }
@@ -22,11 +22,11 @@ toile_base::named! {
 /// Times of a session.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SessionTimes {
-    /// Somebody must be seen for so long to have stepped in (ns): a passer-by has not.
+    /// Time in view after which a person has stepped in (ns): a passer-by has not.
     pub step_in_ns: u64,
-    /// Nobody must be seen for so long for the shopper to have left (ns): a turn or a lost frame is no leave.
+    /// Time without a person in view after which the shopper has left (ns): a turn or a lost frame is no leave.
     pub step_out_ns: u64,
-    /// So long after that everything is wiped (ns): who comes back before goes on where they were.
+    /// Time from then until everything is wiped (ns): a shopper who comes back before goes on where they were.
     pub wipe_ns: u64,
 }
 
@@ -61,7 +61,7 @@ pub struct SessionMachine {
 }
 
 impl SessionMachine {
-    /// Nobody is there, at this time (ns).
+    /// No person is in view, at this time (ns).
     pub fn new(times: SessionTimes, now_ns: u64) -> Self {
         Self { times, state: SessionState::Attract, entered_ns: now_ns, seen: false, since_ns: now_ns }
     }
@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn a_whole_visit_goes_through_all_states_and_ends_where_it_began() {
+    fn a_visit_goes_through_all_states() {
         let states = visited(&[(1_000, false, false), (1_000, true, false), (4_000, true, true), (8_000, false, true)]);
         let expected = [
             (1_510, SessionState::Measuring),
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_is_dressed_who_is_not_there() {
+    fn an_absent_shopper_is_not_dressed() {
         let gone = visited(&[(600, true, false), (1_500, false, true)]);
         assert_eq!(gone.iter().map(|s| s.1).collect::<Vec<_>>(), [SessionState::Measuring], "dressed, but not seen");
     }

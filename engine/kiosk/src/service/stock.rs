@@ -1,4 +1,4 @@
-//! The stock: what everybody wears first, and a shop's catalogue, as both were read.
+//! The stock: what every visitor wears first, and a shop's catalogue, as both were read.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -39,7 +39,7 @@ pub type FilesSeen = Vec<(PathBuf, Option<FileStamp>)>;
 pub struct Stock {
     /// The shop's catalogue, where there is one.
     pub catalogue: Option<Arc<Catalogue>>,
-    /// What everybody wears first, open.
+    /// What every visitor wears first, open.
     pub first: Arc<TryOn>,
     /// What cannot be used.
     pub left_out: Vec<LeftOut>,
@@ -66,7 +66,7 @@ impl Stock {
         StockReader { config, before: Some(self), left_out: Vec::new() }.stock()
     }
 
-    /// Whether everybody wears the same first as by another stock, of the same files.
+    /// Whether every visitor wears the same first as by another stock, of the same files.
     pub fn wears_the_same(&self, other: &Self) -> bool {
         self.first.garments == other.first.garments && self.stamps == other.stamps
     }

@@ -1,5 +1,5 @@
-//! The stock's watch: looks whether the files of the stock have changed, reads them again on a thread of its own, and offers what
-//! came of it to the controller, which takes it when nobody is there.
+//! The stock's watch: checks whether the files of the stock have changed, reads them again on a thread of its own, and offers the
+//! result to the controller, which takes it when no person is in view.
 
 use std::collections::BTreeSet;
 use std::fmt::{self, Display, Formatter};
@@ -103,7 +103,7 @@ pub struct WatchStart<H> {
     pub config: Config,
     /// The stock as it is.
     pub stock: Stock,
-    /// What was left out of it, by whoever hung it too.
+    /// What was left out of it, also when it was hung.
     pub left_out: Vec<LeftOut>,
     /// How the mannequin stands.
     pub pose: Joints,
@@ -168,7 +168,7 @@ impl<H: Send + 'static> StockWatch<H> {
         self.next.is_some()
     }
 
-    /// Lines for whoever looks after the kiosk, each once.
+    /// Lines for the operator, each once.
     pub fn lines(&mut self) -> Vec<String> {
         std::mem::take(&mut self.lines)
     }
@@ -239,7 +239,7 @@ impl<H> Watcher<H> {
         let stock = self.stock.read_again(&self.config)?;
         left_out.extend(stock.left_out.iter().cloned());
         let hung = (self.hang)(&stock, left_out)?;
-        // Whatever everybody is to wear first is tried here, before anybody wears it.
+        // The first outfit is tried here, before a visitor wears it.
         let mannequin = if stock.wears_the_same(&self.stock) {
             None
         } else {

@@ -1,4 +1,4 @@
-//! Actions: what can be pressed on a page, in the order of the Tab key; first what most will want next.
+//! Actions: the controls of a page, in the order of the Tab key, the most wanted one first.
 
 use std::ops::Range;
 
@@ -170,7 +170,7 @@ impl VisitModel {
         if self.offers_face() {
             add(&[Open(Page::Face)]);
         }
-        // Whoever sees themselves turns by turning.
+        // A visitor who sees themselves turns the picture by turning.
         if !self.sees_themselves() {
             add(&[Turn(-1), Turn(1)]);
         }

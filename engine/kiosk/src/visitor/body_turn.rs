@@ -1,5 +1,5 @@
-//! A shopper's turn: which sides of them were seen, whether that is enough to be measured from all sides, and whether they turn at all.
-//! It is offered and never asked for: who stands still loses nothing.
+//! A shopper's turn: the sides that were seen, whether they suffice to measure from all sides, and whether the shopper turns at all.
+//! It is offered and never asked for: a shopper who stands still loses nothing.
 
 use std::f32::consts::{PI, TAU};
 
@@ -11,11 +11,11 @@ use toile_track::fit;
 /// Sides that are distinguished: of ten degrees each, so that the count of them says the gap to within a side.
 pub const SIDES: usize = 36;
 
-/// Largest gap between neighbouring sides around somebody who was seen from all sides, in sides: as the body fit takes it.
+/// Largest gap between neighbouring sides around a person who was seen from all sides, in sides: as the body fit takes it.
 const CLOSED: usize = (fit::CLOSED / TAU * SIDES as f32) as usize;
 
-/// The offer stands for so long (ns): the sentence is read twice in that time. The front is measured and dressed meanwhile, and nobody
-/// waits for its end.
+/// The offer stands for so long (ns): the sentence is read twice in that time. The front is measured and dressed meanwhile, so
+/// the shopper does not wait for its end.
 const OFFER_NS: u64 = 4_000_000_000;
 
 /// Who is turned by more than this from how they first stood has begun to turn (rad): 25 degrees; people sway and look round by half of it.
@@ -27,7 +27,7 @@ const STILL_NS: u64 = 2_000_000_000;
 /// A turn is at an end after this (ns): no later depth is looked at.
 const LONGEST_NS: u64 = TURN_NS;
 
-/// Between frames that are no farther apart than this (ns), nobody turns by a quarter of a circle.
+/// Between frames that are no farther apart than this (ns), no person turns by a quarter of a circle.
 const CONTINUOUS_NS: u64 = 300_000_000;
 
 /// How far a turn has got.
@@ -112,8 +112,8 @@ impl BodyTurn {
     }
 
     fn face(&mut self, now_ns: u64, facing: f32) {
-        // Sensors that take everybody for facing them name left and right the wrong way round from behind: nobody turns by half a circle
-        // between two frames.
+        // Some sensors take every person to face them, and swap left and right of a person seen from behind. A half turn between two
+        // frames is therefore theirs and not the person's.
         let jumped =
             |&(then, last): &(u64, f32)| now_ns.saturating_sub(then) <= CONTINUOUS_NS && apart(facing, last) > 0.5 * PI;
         let facing = if self.last.as_ref().is_some_and(jumped) { facing + PI } else { facing };

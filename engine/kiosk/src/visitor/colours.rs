@@ -5,7 +5,7 @@ use toile_assets::sizes::GarmentKind;
 
 use super::texts::TextKey;
 
-/// A colour that a garment comes in, with its name, for not everybody tells colours apart.
+/// A colour that a garment comes in, with its name, because not all people tell colours apart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Colour {
     /// Key of the colour's name in the pages' texts.

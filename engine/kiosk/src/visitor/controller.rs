@@ -1,4 +1,4 @@
-//! The controller of a visit: feeds the visitor's model with what the sensor and the window report, and carries out its effects.
+//! The controller of a visit: feeds the visitor's model with the reports of the sensor and the window, and carries out its effects.
 
 use std::sync::Arc;
 
@@ -31,7 +31,7 @@ const STALE_NS: u64 = 500_000_000;
 /// Most sensor frames that a shopper is measured from: the longest measuring at 60 Hz.
 const MOST_FRAMES: usize = 3600;
 
-/// Fewest frames that somebody can be measured from.
+/// Fewest frames that a person can be measured from.
 const FEWEST_FRAMES: usize = 10;
 
 /// A window, as the controller has it.
@@ -39,7 +39,7 @@ pub trait VisitWindow {
     /// The next input from the display since the last poll, if any.
     fn next_input(&mut self) -> Option<Input>;
 
-    /// Shows the model's page; returns a line for whoever looks after the kiosk, where there is one.
+    /// Shows the model's page; returns a line for the operator, where there is one.
     fn show(&mut self, model: &VisitModel) -> Option<String>;
 
     /// Shows two outfits beside each other, or none any more.
@@ -61,7 +61,7 @@ impl VisitWindow for NoWindow {
     fn show_two(&mut self, _two: Option<&[DrapedFrame; 2]>) {}
 }
 
-/// Measuring that takes longer than this many times its own time has found nobody.
+/// Measuring that takes longer than this many times its own time has found no person.
 const PATIENCE: u64 = 4;
 
 /// Jobs that wait for the worker: the last of each kind.
@@ -91,7 +91,7 @@ pub struct VisitController<'a> {
     played: Option<ShopperSource>,
     presence: PresenceTracker,
     gestures: Gestures,
-    /// When a frame last came (ns), what was seen in it, and the last in which somebody stood.
+    /// When a frame last came (ns), what was seen in it, and the last in which a person stood.
     seen: (u64, Presence),
     pose: Option<Joints>,
     /// When depth last came (ns), and up to which time of a recording it was seen since measuring began (ns).
@@ -111,12 +111,12 @@ pub struct VisitController<'a> {
     /// The face that their figure wears.
     worn_face: WornFace,
     watch: Option<StockWatch<Arc<Wardrobe>>>,
-    /// Lines for whoever looks after the kiosk.
+    /// Lines for the operator.
     lines: Vec<String>,
 }
 
 impl<'a> VisitController<'a> {
-    /// Nobody is there. `mark` is the mark's place on the floor (x, z in the sensor's world, m), if that is known.
+    /// No person is in view. `mark` is the mark's place on the floor (x, z in the sensor's world, m), if that is known.
     pub fn new(
         model: VisitModel,
         window: Box<dyn VisitWindow + 'a>,
@@ -160,7 +160,7 @@ impl<'a> VisitController<'a> {
         Self { switch, ..self }
     }
 
-    /// The same, which takes the faces of those who ask for it; whoever dresses them looks at `worn`. Nothing is offered where no face can be
+    /// The same, which takes the faces of those who ask for it; the dressing side reads `worn`. Nothing is offered where no face can be
     /// taken.
     #[must_use]
     pub fn taking_faces(mut self, faces: Option<FaceCamera>, worn: WornFace) -> Self {
@@ -171,7 +171,7 @@ impl<'a> VisitController<'a> {
         Self { worn_face: worn, ..self }
     }
 
-    /// Takes a stock that was read again, when nobody is there: a visitor keeps what they see.
+    /// Takes a stock that was read again, when no person is in view: a visitor keeps what they see.
     fn restock<S: LoopScene, O>(&mut self, context: &mut ControllerContext<S, O>) {
         let Some(watch) = &mut self.watch else { return };
         watch.poll();
@@ -293,7 +293,7 @@ impl<'a> VisitController<'a> {
         let Some(OngoingMeasurement { number, seated, frames, .. }) = self.measuring.take() else { return };
         if enough {
             let source = self.played.clone().unwrap_or(ShopperSource::Joints(frames));
-            // The front first: nobody waits for a turn that may not come.
+            // The front first: the shopper does not wait for a turn that may not come.
             self.jobs.measure = Some((number, MeasuringJob { source, seated, until_ns: 0 }));
         } else {
             self.update(now, Input::Failed(number), context);
@@ -384,7 +384,7 @@ impl<S: LoopScene, O> SessionController<S, O> for VisitController<'_> {
         self.measure(now, context);
         self.start_next_job()?;
         self.restock(context);
-        // Pictures are copied only while somebody looks at themselves.
+        // Pictures are copied only while the visitor looks at themselves.
         if let Some(switch) = &self.switch {
             let shows = self.model.shows_own_picture();
             if switch.is_on() != shows {

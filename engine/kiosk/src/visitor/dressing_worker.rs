@@ -1,5 +1,5 @@
-//! The dressing worker: measures a shopper, dresses them, drapes two sizes, takes a picture and makes a head of their face, one after the other, on a thread of its own that
-//! nothing waits for.
+//! The dressing worker: measures a shopper, dresses them, drapes two sizes, takes a picture and makes a head of their face, one after the other, on a thread of its own for
+//! which no other thread waits.
 
 use std::net::SocketAddr;
 use std::path::Path;
@@ -43,7 +43,7 @@ const WORN_OPEN: usize = 8;
 /// A frame that was dressed, and the snapshot of it.
 pub type DrapedFrame = (World, Snapshot);
 
-/// Somebody who was measured, in the pose in which they are dressed.
+/// A measured person, in the pose in which they are dressed.
 #[derive(Debug, Clone)]
 pub struct MeasuredVisitor {
     /// Measures of the visitor, as far as they are known.
@@ -52,7 +52,7 @@ pub struct MeasuredVisitor {
     pub pose: Joints,
 }
 
-/// Somebody to be measured.
+/// A person to be measured.
 #[derive(Debug, Clone)]
 pub struct MeasuringJob {
     /// What was seen of them.
@@ -66,9 +66,9 @@ pub struct MeasuringJob {
 /// A job for the dressing worker.
 #[derive(Debug, Clone)]
 pub enum DressingJob {
-    /// Measure somebody.
+    /// Measure a person.
     Measure(MeasuringJob),
-    /// Dress somebody in an outfit.
+    /// Dress a person in an outfit.
     Dress(Box<MeasuredVisitor>, Outfit),
     /// Drape two outfits on them.
     Two(Box<MeasuredVisitor>, Box<[Outfit; 2]>),
@@ -80,9 +80,9 @@ pub enum DressingJob {
 
 /// Result of a job.
 pub enum JobResult {
-    /// The measures of somebody.
+    /// The measures of a person.
     Measured(Box<VisitorMeasures>),
-    /// The dressed body of somebody.
+    /// The dressed body of a person.
     Dressed(Box<DressedWorld>),
     /// Both outfits are draped.
     Two(Box<[DrapedFrame; 2]>),
@@ -98,7 +98,7 @@ pub enum JobResult {
 pub struct DressingContext {
     /// The garments that can be chosen.
     pub wardrobe: Arc<Wardrobe>,
-    /// What everybody wears first, open.
+    /// What every visitor wears first, open.
     first: Arc<TryOn>,
     /// How their cloth is stepped.
     quality: Quality,
@@ -174,7 +174,7 @@ impl DressingWorker {
 }
 
 impl DressingContext {
-    /// Nobody has worn anything yet.
+    /// A context in which nothing was worn yet.
     pub fn new(
         wardrobe: Arc<Wardrobe>,
         first: Arc<TryOn>,
@@ -244,7 +244,7 @@ impl DressingContext {
         })
     }
 
-    /// Measures whoever stands or sits there.
+    /// Measures the person who stands or sits in view.
     fn measure(&self, job: MeasuringJob) -> Result<VisitorMeasures, KioskError> {
         let MeasuringJob { source, seated, until_ns } = job;
         let measured = measured::measure(&source.session(), ShopperFacts { seated, until_ns, ..self.facts })?;
@@ -270,7 +270,7 @@ impl DressingContext {
         Ok(TryOn::of_body("shopper", sex, body.measures, garments).in_quality(self.quality))
     }
 
-    /// The sex of the body that is shown of somebody in an outfit: that of the innermost garment that is made for one, where it was not measured.
+    /// Sex of the body shown in an outfit: as measured, else that of the innermost garment that is made for one.
     fn sex(&self, client: &MeasuredVisitor, worn: &Outfit) -> Sex {
         let made_for = worn.iter().filter_map(|w| self.wardrobe.items.get(w.item)).map(|item| item.population);
         let garments = made_for.into_iter().find(|p| *p != Population::Mixed).unwrap_or(Population::Mixed);

@@ -1,4 +1,4 @@
-//! A shopper's own face on the mannequin: asked for, put on, taken away. The pages know whether it is there and never what it looks like.
+//! A shopper's own face on the mannequin: asked for, put on, taken away. The pages know whether it is there, and never see it.
 
 use super::model::{Effect, Effects, VisitModel};
 use super::own_face::FaceTrouble;
@@ -44,7 +44,7 @@ impl VisitModel {
         }
     }
 
-    /// Nothing of it is shown from this moment on, as where somebody else looks; then they are dressed anew without it.
+    /// Nothing of it is shown from this moment on, as where another person looks; then they are dressed anew without it.
     pub(super) fn remove_face(&mut self, effects: &mut Effects) {
         let visit = &mut self.visit;
         (visit.face, visit.pair, visit.snapping, visit.hidden) = (OwnFace::default(), None, None, true);

@@ -37,7 +37,7 @@ impl FaceCamera {
         self.switch.set(true);
     }
 
-    /// Nobody asks any more.
+    /// Cancels the request.
     pub fn cancel(&mut self) {
         self.asked = None;
         self.switch.set(false);

@@ -1,4 +1,4 @@
-//! The entry of a measure that a shopper took by tape: which one, what was typed, in which unit, and why it is not accepted.
+//! The entry of a measure that a shopper took by tape: its name, the typed digits, the unit, and the reason of a refusal.
 
 use toile_assets::sizes::Girth;
 use toile_track::fit::measuring::MEASURES;
@@ -114,7 +114,7 @@ impl LengthUnit {
 pub enum EntryFault {
     /// Nothing was typed that is a number.
     Empty,
-    /// A length that nobody has.
+    /// A length outside of people's range.
     Impossible {
         /// The least that people have (m).
         low_m: f32,

@@ -1,4 +1,4 @@
-//! Measuring, from the front and once the shopper has turned, and what comes of it: sizes, the first outfit, the dressed body.
+//! Measuring, from the front and once the shopper has turned, and its results: sizes, the first outfit, the dressed body.
 
 use super::body_turn::{BodyTurn, TurnState};
 use super::model::{Effect, Effects, VisitModel};

@@ -30,13 +30,13 @@ pub struct VisitTimes {
     pub walk_ns: u64,
     /// Measuring takes so long, without what comes of it.
     pub measure_ns: u64,
-    /// Somebody else is there for so long before they are asked who they are.
+    /// Time that another person is in view before they are asked who they are.
     pub stranger_ns: u64,
     /// Who is asked answers within that, or everything is forgotten.
     pub answer_ns: u64,
     /// Who touched something is there for so long, seen or not.
     pub touch_ns: u64,
-    /// Who has touched something while nobody is seen is waited for so long.
+    /// Time to wait for a visitor who has touched something while no person is in view.
     pub begin_ns: u64,
     /// A picture is kept for so long.
     pub picture_ns: u64,
@@ -66,13 +66,13 @@ impl VisitTimes {
 pub struct VisitDefaults {
     /// Times of a visit.
     pub times: VisitTimes,
-    /// The language before somebody chooses one.
+    /// The language before the visitor chooses one.
     pub language: Language,
-    /// Whether type is large before somebody chooses.
+    /// Whether type is large before the visitor chooses.
     pub large: bool,
-    /// What everybody wears first, by name, inner first; those that the wardrobe does not have are left out.
+    /// What every visitor wears first, by name, inner first; those that the wardrobe does not have are left out.
     pub wear: Vec<String>,
-    /// The size that everybody wears first, where a garment is made in it; else each gets the one that fits.
+    /// The size that every visitor wears first, where a garment is made in it; else each gets the one that fits.
     pub size: Option<String>,
     /// Measures by tape that are known beforehand, for a fitting by appointment.
     pub tape: TapeReadings,
@@ -103,7 +103,7 @@ pub enum NavigationKey {
     Escape,
 }
 
-/// An input of the model. Replies carry the number of the effect; a reply that nobody waits for any more is ignored.
+/// An input of the model. Replies carry the number of the effect; a reply that is no longer awaited is ignored.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Input {
     /// Time has passed: timers are looked at.
@@ -123,7 +123,7 @@ pub enum Input {
     Typed(Action),
     /// A gesture was recognised.
     Gesture(Gesture),
-    /// Somebody was measured.
+    /// A person was measured.
     Measured(u32, Box<VisitorMeasures>),
     /// A body of theirs stands dressed.
     Dressed(u32),
@@ -131,7 +131,7 @@ pub enum Input {
     Draped(u32),
     /// The picture is taken.
     PictureTaken(u32, OfferedPicture),
-    /// The shopper's face was taken and is at hand for whoever dresses them, or why not.
+    /// The shopper's face was taken and is ready for the dressing worker, or why not.
     FaceTaken(u32, Result<(), FaceTrouble>),
     /// What was asked for cannot be done.
     Failed(u32),
@@ -140,7 +140,7 @@ pub enum Input {
 /// An effect, which others carry out. Each that is replied to has a number.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Effect {
-    /// Measure whoever stands there; [`Input::Measured`].
+    /// Measure the person in view; [`Input::Measured`].
     Measure {
         /// Number of the effect, which its reply carries.
         number: u32,
@@ -182,7 +182,7 @@ pub enum Effect {
         /// What the body wears, for whom its drawing may be.
         outfit: Outfit,
     },
-    /// Show the mannequin at once, without a face: somebody else looks, or the shopper takes their face away.
+    /// Show the mannequin at once, without a face: another person is in view, or the shopper takes their face away.
     Hide,
     /// The shopper has left: nothing of them is to stay anywhere.
     Forget,

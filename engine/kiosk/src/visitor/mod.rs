@@ -1,9 +1,9 @@
-//! The visitor's part of the kiosk, without drawing: pages, texts, controls, what is known of them.
+//! The visitor's part of the kiosk, without drawing: pages, texts, controls, and the facts known of the visitor.
 //!
-//! Budget: 0.5 ms a poll, 10 ms where a size is judged.
+//! A poll takes at most 0.5 ms, or 10 ms if it judges a size.
 //!
 //! [`model`] is a state machine that knows the time and its inputs, and nothing else; `pages` makes a [`screen::Screen`] of it. docs/screens.md
-//! shows what leads where.
+//! shows the transitions.
 
 mod actions;
 pub mod body_turn;

@@ -1,4 +1,4 @@
-//! The model: the pages as a state machine. It knows the time, what is seen, what is pressed and what the dressing worker replies: a
+//! The model: the pages as a state machine. It knows the time, the sensor's view, the input and the dressing worker's replies: a
 //! window, a service without one and a test drive the same model.
 //!
 //! It builds on the state machine of [`crate::service::session`], which decides who has stepped in and who has left, and adds the pages.
@@ -31,7 +31,7 @@ pub struct VisitModel {
     pub(super) own_picture: Option<u8>,
     /// Whether shoppers may have their own face taken.
     pub(super) face_offered: bool,
-    /// Since when nobody is seen (ns), and whether the one who has said that they are done is still there.
+    /// Since when no person is in view (ns), and whether the one who has said that they are done is still there.
     unseen_ns: u64,
     resting: bool,
     pub(super) visit: Visit,
@@ -42,7 +42,7 @@ pub struct VisitModel {
 }
 
 impl VisitModel {
-    /// Nobody is there, at this time (ns).
+    /// No person is in view, at this time (ns).
     pub fn new(defaults: VisitDefaults, wardrobe: Arc<Wardrobe>, now_ns: u64) -> Self {
         Self {
             session: SessionMachine::new(defaults.times.session, now_ns),
@@ -66,12 +66,12 @@ impl VisitModel {
         self.face_offered = true;
     }
 
-    /// Whether nobody is there and nobody looks: then another stock may hang.
+    /// Whether no person is in view and the screen was not touched: then another stock may hang.
     pub fn is_idle(&self) -> bool {
         self.page() == Page::Attract && self.visit.touched_ns.is_none()
     }
 
-    /// Other garments hang from now on, of which everybody wears these first.
+    /// Hangs other garments from now on, of which every visitor wears these first.
     pub fn restock(&mut self, wardrobe: Arc<Wardrobe>, wear: Vec<String>) {
         (self.wardrobe, self.defaults.wear) = (wardrobe, wear);
         self.visit = Visit::new(&self.defaults);
@@ -195,7 +195,7 @@ impl VisitModel {
         }
     }
 
-    /// Whether the shopper is there: seen as the same one, or touching something; before there is one, whether anybody is.
+    /// Whether the shopper is there: seen as the same one, or touching something; before there is one, whether any person is.
     fn is_there(&self) -> bool {
         let Visit { shopper, touched_ns, .. } = self.visit;
         let seen = self.seen.who.is_some() && (shopper.is_none() || shopper == self.seen.who);
@@ -203,7 +203,7 @@ impl VisitModel {
         !self.resting && (seen || (touched && self.session.state() != SessionState::Attract))
     }
 
-    /// Whether somebody else is there, or nearer than the shopper.
+    /// Whether another person is there, or nearer than the shopper.
     fn is_stranger(&self) -> bool {
         let other = self.seen.who.is_some() && self.visit.shopper.is_some() && self.seen.who != self.visit.shopper;
         other || (self.seen.nearer && self.visit.shopper.is_some())
@@ -238,7 +238,7 @@ impl VisitModel {
         self.follow_turn(effects);
     }
 
-    /// Looks whether somebody else has stepped in, and gives up waiting for an answer.
+    /// Checks whether another person has stepped in, and gives up waiting for an answer.
     fn strangers(&mut self, effects: &mut Effects) {
         let times = self.defaults.times;
         if let Some(asked) = self.visit.asked_ns {
@@ -258,7 +258,7 @@ impl VisitModel {
         if self.visit.known.is_none()
             && matches!(self.visit.progress, MeasureProgress::No | MeasureProgress::Guide { .. })
         {
-            // Nothing is known of the first one: whoever is there is measured.
+            // Nothing is known of the first one: the person in view is measured.
             self.visit.shopper = self.seen.who;
             self.visit.stranger_ns = None;
             return;
@@ -312,14 +312,14 @@ impl VisitModel {
         let _ = effects.push(Effect::Forget);
     }
 
-    /// The shopper has said that they are done: everything goes, and nobody is measured until they have stepped away or begin.
+    /// The shopper has said that they are done: everything goes, and no person is measured until they have stepped away or begin.
     pub(super) fn leave(&mut self, effects: &mut Effects) {
         self.forget(effects);
         self.resting = true;
         self.unseen_ns = self.now_ns;
     }
 
-    /// Somebody says that they are there.
+    /// The visitor says that they are there.
     pub(super) fn begin(&mut self, effects: &mut Effects) {
         if self.visit.asked_ns.is_some() {
             self.forget(effects);
@@ -328,7 +328,7 @@ impl VisitModel {
         self.visit.begun_ns = Some(self.now_ns);
     }
 
-    /// Whoever is there says that it is still them.
+    /// The person in view says that it is still them.
     pub(super) fn stay(&mut self, effects: &mut Effects) {
         if self.visit.asked_ns.take().is_some() {
             self.visit.shopper = self.seen.who.or(self.visit.shopper);

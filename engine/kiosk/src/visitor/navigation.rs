@@ -1,4 +1,4 @@
-//! Navigation: what a finger, a key and a gesture do. All of them press the same controls, so that nothing needs a gesture.
+//! Navigation: the effects of finger, key and gesture. All of them press the same controls, so that nothing needs a gesture.
 
 use toile_track::gesture::Gesture;
 
@@ -42,7 +42,7 @@ impl VisitModel {
     }
 
     pub(super) fn gesture(&mut self, gesture: Gesture, effects: &mut Effects) {
-        // Somebody else's hands press nothing that is the shopper's.
+        // Another person's hands press nothing that is the shopper's.
         let strange = self.visit.shopper.is_some() && self.seen.who != self.visit.shopper;
         if strange && self.page() != Page::Second {
             return;
@@ -159,7 +159,7 @@ impl VisitModel {
         }
     }
 
-    /// Measures, or measures again, once whoever pressed has walked back and stands as they should.
+    /// Measures, or measures again, once the visitor has walked back and stands as they should.
     fn measure_again(&mut self, walk_ns: u64) {
         let visit = &mut self.visit;
         if self.session.state() == SessionState::TryOn && visit.open != Page::Unmeasured {

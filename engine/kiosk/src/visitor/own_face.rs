@@ -38,7 +38,7 @@ impl From<FaceFault> for FaceTrouble {
     }
 }
 
-/// A picture of somebody, for their face; overwritten when it goes.
+/// A picture of a person, for their face; overwritten when it goes.
 pub struct Portrait {
     /// The picture.
     pub picture: ColourImage,
@@ -61,10 +61,10 @@ impl Drop for Portrait {
     }
 }
 
-/// Overwrites bytes that somebody can be known by.
+/// Overwrites bytes by which a person can be identified.
 pub(super) fn wipe(bytes: &mut [u8]) {
     bytes.fill(0);
-    // Looked at, so that the writing is not left out as one that nobody sees.
+    // Read, so that the compiler does not leave the writing out as a dead store.
     black_box(&bytes);
 }
 

@@ -1,4 +1,4 @@
-//! Measures that shoppers took by tape: typed, checked, and laid over what the camera saw; sizes and the body follow.
+//! Measures that shoppers took by tape: typed, checked, and merged with the camera's measures; sizes and the body follow.
 
 use toile_track::tape_readings::TapeReadings;
 

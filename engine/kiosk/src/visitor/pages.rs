@@ -1,6 +1,4 @@
-//! Pages: the model's page as a screen, in words.
-//!
-//! Budget: 0.2 ms a screen.
+//! Pages: the model's page as a screen, in words, within 0.2 ms.
 
 mod clothes;
 mod face;
@@ -145,7 +143,7 @@ impl PageWriter<'_> {
         self.item().and_then(|item| item.sizes.get(size)).map_or("", String::as_str)
     }
 
-    /// Whether somebody was measured, but not all of them.
+    /// Whether a person was measured, but not all of them.
     fn is_partly(&self) -> bool {
         self.model.visit.known.is_some() && self.model.visit.progress != MeasureProgress::Failed
     }

@@ -1,5 +1,5 @@
-//! Photographs of garments: read on a thread of their own when a page shows them, and kept in a fixed room, the one that was seen
-//! last longest.
+//! Photographs of garments: read on a thread of their own when a page shows them, and kept in a cache of fixed size, which drops the
+//! least recently shown one first.
 
 use std::path::Path;
 use std::sync::Arc;

@@ -1,7 +1,7 @@
-//! Picture: what a shopper asked for and takes along by scanning a code.
+//! Picture: the picture that a shopper asked for and takes along by scanning a code.
 //!
-//! The code of a link is small; the picture stands behind it (`picture_link`). The other code holds the picture itself, as a data link (RFC 2397): nothing is served, sent or written, and who has no camera pointed at the
-//! display gets nothing. A code holds 2,953 bytes at most (ISO/IEC 18004, version 40, level L), so the picture is small: the
+//! The code of a link is small; the picture stands behind it (`picture_link`). The other code holds the picture itself, as a data link (RFC 2397): nothing is served, sent or written, and only a camera pointed at the
+//! display gets it. A code holds 2,953 bytes at most (ISO/IEC 18004, version 40, level L), so the picture is small: the
 //! largest of [`SIZES`] that fits, in [`SHADES`] shades of its own.
 
 use qrcode::{Color, EcLevel, QrCode};
@@ -210,7 +210,7 @@ fn base64(bytes: &[u8]) -> String {
 pub(super) mod tests {
     use super::*;
 
-    /// Somebody of that colour before a lit wall.
+    /// A person of that colour before a lit wall.
     pub(crate) fn figure(size: Size, colour: [u8; 3]) -> RgbImage {
         let mut bytes = Vec::new();
         for y in 0..size.height {

@@ -1,8 +1,8 @@
-//! Picture link: a picture at full size, served on the shop's own network under a name that nobody can guess and that is used once, for two
-//! minutes or until it is forgotten. Nothing listens before a picture is asked for, nor after it is gone.
+//! Picture link: a picture at full size, served on the shop's own network for two minutes or until it is forgotten. Its name cannot be
+//! guessed and is used once. No port is open before a picture is asked for, nor after it is gone.
 //!
-//! One connection at a time, on a thread of its own: two kilobytes and a second a request, sixteen answers a picture. There is no encryption: who listens
-//! on that network sees the mannequin of whoever asked for it, without a name.
+//! One connection at a time, on a thread of its own: two kilobytes and a second a request, sixteen answers a picture. There is no encryption: a listener
+//! on that network sees the shopper's mannequin, without a name.
 
 use std::io::{self, ErrorKind, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};
@@ -19,10 +19,10 @@ pub const SERVED: Duration = Duration::from_secs(120);
 /// Most answers to requests for one picture: a phone looks, loads and saves it, some of them twice.
 const MOST_ANSWERS: usize = 16;
 
-/// Random bytes of a name: 128 bits, which nobody tries out in two minutes.
+/// Random bytes of a name: 128 bits, too many to try out in two minutes.
 const NAME_BYTES: usize = 16;
 
-/// Time between two looks at whether somebody asks or the picture is forgotten.
+/// Time between two checks for a request and for a forgotten picture.
 const LOOK: Duration = Duration::from_millis(30);
 
 /// Bytes that are written between two looks at whether the picture is forgotten.
@@ -91,7 +91,7 @@ impl ServedPicture {
         let mut answers = 0;
         while !self.is_over() && answers < MOST_ANSWERS {
             match listener.accept() {
-                // Whoever goes away before the answer has no use for it.
+                // A client that goes away before the answer has no use for it.
                 Ok((stream, _)) => answers += usize::from(self.answer(stream).unwrap_or(false)),
                 Err(e) if e.kind() == ErrorKind::WouldBlock => thread::sleep(LOOK),
                 // The other end hung up while it waited, or a file more than the system gives: later.
@@ -171,7 +171,7 @@ mod tests {
         ask(address, &format!("GET {path} HTTP/1.1\r\nHost: here\r\n\r\n"))
     }
 
-    /// Waits until nobody answers there any more.
+    /// Waits until no server answers there any more.
     fn wait_until_closed(address: SocketAddr) {
         let end = Instant::now() + Duration::from_secs(30);
         while TcpStream::connect(address).is_ok() {
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn whoever_knows_the_name_gets_the_picture_and_nobody_else() {
+    fn only_the_name_gives_the_picture() {
         let server = PictureServer::start(ANY, png()).unwrap();
         let (address, path) = parts(&server);
         let answer = get(address, &path).unwrap();
@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_and_those_who_say_nothing_stop_nobody_for_long() {
+    fn noise_and_silent_clients_block_only_briefly() {
         let server = PictureServer::start(ANY, png()).unwrap();
         let (address, path) = parts(&server);
         let silent = TcpStream::connect(address).unwrap();

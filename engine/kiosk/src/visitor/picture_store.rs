@@ -1,4 +1,4 @@
-//! Picture store: the one picture of a visit, in memory alone and only for minutes, and which of its codes is shown.
+//! Picture store: the one picture of a visit, in memory alone and only for minutes, and the choice of its code.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ pub struct PictureLink {
     pub code: PictureCode,
     /// Name of the network that it works in, where it is known.
     pub network: Option<String>,
-    /// Serves the picture for as long as somebody has this.
+    /// Serves the picture for as long as this value lives.
     pub server: Arc<PictureServer>,
 }
 

@@ -1,4 +1,4 @@
-//! Why a shopper's own picture has no clothes on it: as a number between the renderer and the service, and as a word on the page.
+//! The reason why a shopper's own picture has no clothes on it: as a number between the renderer and the service, and as a word on the page.
 
 use toile_view::own_picture::Plain;
 

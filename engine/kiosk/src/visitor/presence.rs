@@ -1,9 +1,9 @@
-//! Presence: what the sensor's joints say of who is there: the same person or another, seated or standing, how tall, how far
-//! from the mark.
+//! Presence: finds from the sensor's joints whether the person in view is the same or another, seated or standing, and their height
+//! and distance from the mark.
 //!
-//! One skeleton a frame arrives, that of whoever the sensor follows. Two people are told apart by the lengths of their bones, looked at
-//! anew whenever nobody was seen or the skeleton leapt. People of nearly the same size are not told apart: then the first, as long as they
-//! are seen, or the countdown when they have left, is all that there is between them.
+//! One skeleton a frame arrives, that of the person whom the sensor follows. Two people are told apart by the lengths of their bones. These
+//! are measured anew whenever no person was in view or the skeleton leapt. People of nearly the same size are not told apart: only the
+//! presence of the first, or the countdown when they have left, separates them.
 
 use glam::Vec3;
 use toile_base::frame::Joints;
@@ -20,7 +20,7 @@ pub struct Presence {
     pub people: u8,
     /// Who the nearest of them is, by a number that stays theirs; none where that is not decided yet.
     pub who: Option<u32>,
-    /// Whether somebody stands nearer to the mirror than the shopper does.
+    /// Whether a person stands nearer to the mirror than the shopper does.
     pub nearer: bool,
     /// Whether they sit.
     pub seated: bool,
@@ -34,13 +34,13 @@ pub struct Presence {
     pub depth: bool,
 }
 
-/// Nobody seen for so long (ns), or a leap: who comes is looked at anew.
+/// After so long without a person (ns), or a leap, the bones are measured anew.
 const GAP_NS: u64 = 400_000_000;
 
-/// The hips move farther than this between two frames only where the sensor follows somebody else (m): 15 m/s at 30 Hz.
+/// The hips move farther than this between two frames only where the sensor follows another person (m): 15 m/s at 30 Hz.
 const LEAP_M: f32 = 0.5;
 
-/// Frames from which somebody's bones are known.
+/// Frames from which a person's bones are known.
 const FRAMES: usize = 12;
 
 /// Bones differ by more than this share between two people, taken together. A sensor's own scatter over a dozen frames is a
@@ -50,7 +50,7 @@ const DIFFERENT: f32 = 0.06;
 /// Frames over which seated or standing is decided: most of them must agree.
 const SITTING: usize = 16;
 
-/// A thigh that falls less than this share of its length from hip to knee is that of somebody who sits: 30 degrees from level.
+/// A thigh that falls less than this share of its length from hip to knee is that of a person who sits: 30 degrees from level.
 const LEVEL: f32 = 0.5;
 
 /// Bones by whose lengths people are told apart.
@@ -76,7 +76,7 @@ pub struct PresenceTracker {
     who: Option<u32>,
     known: Option<(u32, BoneLengths)>,
     last: Option<(u64, Vec3)>,
-    /// Bones of the frames since somebody came.
+    /// Bones of the frames since the person came.
     frames: Vec<BoneLengths>,
     /// Frames in which they sat, of the last ones: positive is seated.
     sitting: i32,
@@ -90,7 +90,7 @@ impl PresenceTracker {
         Self { mark, ..Self::default() }
     }
 
-    /// Forgets by what people are known; the next one is somebody new.
+    /// Forgets the known bones; the next person is new.
     pub fn forget(&mut self) {
         *self = Self { mark: self.mark, count: self.count, ..Self::default() };
     }
@@ -187,7 +187,7 @@ mod tests {
 
     const FRAME_NS: u64 = 33_333_333;
 
-    /// Somebody of the embedded session, so much larger, moved aside, at a time.
+    /// A person of the embedded session, so much larger, moved aside, at a time.
     fn frames(scale: f32, aside: f32, from_ns: u64) -> Vec<Joints> {
         let track = session::filtered(&session::open(None, None).unwrap());
         let begin = session::first_standing(&track);
@@ -213,13 +213,13 @@ mod tests {
         assert_eq!(last(&mut watcher, &frames(1.0, 0.1, away)).who, first);
         let other = last(&mut watcher, &frames(1.12, 0.0, 2 * away)).who;
         assert!(other.is_some() && other != first);
-        // A leap without a gap: the sensor follows somebody else.
+        // A leap without a gap: the sensor follows another person.
         let third = last(&mut watcher, &frames(0.9, 1.5, 2 * away + 60 * FRAME_NS)).who;
         assert!(third.is_some() && third != other && third != first);
     }
 
     #[test]
-    fn after_forgetting_everybody_is_new() {
+    fn after_forgetting_every_person_is_new() {
         let mut watcher = PresenceTracker::new(None);
         let first = last(&mut watcher, &frames(1.0, 0.0, 0)).who;
         watcher.forget();

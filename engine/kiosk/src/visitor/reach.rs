@@ -1,9 +1,9 @@
-//! Reach: between which heights the controls stand, so that whoever is there reaches them.
+//! Reach: the heights between which the controls stand, so that the visitor reaches them.
 //!
 //! The bounds are those of the 2010 ADA Standards for Accessible Design, 308.2.1 (unobstructed forward reach) and 308.3.1
-//! (unobstructed side reach): at most 48 in (1,220 mm) and at least 15 in (380 mm) over the floor. What is kept here is the
-//! heights, for a display that hangs where [`DisplayMount`] says. That nothing stands before the display (308.2.2, 308.3.2 allow less then), that
-//! there is clear floor to come near, and that the display hangs where it is said to, is up to who puts it up.
+//! (unobstructed side reach): at most 48 in (1,220 mm) and at least 15 in (380 mm) over the floor. This module keeps to
+//! the heights, for a display that hangs as [`DisplayMount`] says. Nothing may stand before the display (308.2.2, 308.3.2 allow less then), and
+//! there must be clear floor to come near. The installer sees to both, and to the stated height of the display.
 
 /// Most over the floor that a control may be (mm): ADA 308.2.1 and 308.3.1.
 pub const HIGHEST_MM: f32 = 1220.0;
@@ -67,7 +67,7 @@ impl DisplayMount {
         })
     }
 
-    /// The controls' place for somebody whose head's joint is so high (mm); as high as is allowed where that is not known.
+    /// The controls' place for a person whose head's joint is so high (mm); as high as is allowed where that is not known.
     pub fn band(&self, head_mm: Option<f32>) -> ControlBand {
         let (bottom, top) = (LOWEST_MM.max(self.lower_edge_mm), HIGHEST_MM.min(self.lower_edge_mm + self.height_mm));
         let hand = head_mm.filter(|h| h.is_finite()).map_or(HIGHEST_MM, |h| h - HEAD_TO_HAND_MM);
@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn every_control_of_every_sound_mount_is_within_the_standard_for_everybody() {
+    fn every_control_of_valid_mounts_meets_the_standard() {
         let mut sound = 0;
         for lower_edge_mm in (0..2000).step_by(50).map(|v| v as f32) {
             for height_mm in (200..2600).step_by(100).map(|v| v as f32) {

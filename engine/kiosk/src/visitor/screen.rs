@@ -11,13 +11,13 @@ use super::body_turn::SIDES;
 /// Pages of the kiosk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Page {
-    /// Nobody is there: what the mirror can do, in turn.
+    /// No person is in view: what the mirror can do, in turn.
     Attract,
-    /// Somebody has stepped in: where and how to stand.
+    /// A person has stepped in: where and how to stand.
     Guide,
     /// Measures are being taken.
     Measuring,
-    /// Somebody could not be measured, or not all of them: what is missing, and what can be done.
+    /// A person could not be measured, or not all of them: what is missing, and what can be done.
     Unmeasured,
     /// The fitted body, dressed.
     Fitting,
@@ -39,9 +39,9 @@ pub enum Page {
     MeasureEntry,
     /// Language, type size, seated mode, what is stored.
     Settings,
-    /// Somebody else has stepped in.
+    /// Another person has stepped in.
     Second,
-    /// Nobody is seen: everything is wiped soon.
+    /// No person is in view: everything is wiped soon.
     Leaving,
 }
 
@@ -82,7 +82,7 @@ pub enum BodyView {
 /// What pressing a control asks for. Indices are those of the lists that the screen was made from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Action {
-    /// Begin, where touch is how somebody says that they are there.
+    /// Begin, where a visitor starts the session by touch.
     Begin,
     /// Measure, or measure again.
     Measure,
@@ -288,7 +288,7 @@ pub struct Screen {
     pub type_scale: f32,
     /// Upper edge of the controls over the display's lower edge, as a share of its height: within reach of the floor.
     pub reach: f32,
-    /// Lower edge of the controls over the display's lower edge, as a share of its height: nobody has to stoop.
+    /// Lower edge of the controls over the display's lower edge, as a share of its height, so that no visitor has to stoop.
     pub reach_low: f32,
     /// Colours of the garments that are worn, linear RGB, inner first: the order of the snapshot's garments.
     pub colours: Vec<[f32; 3]>,

@@ -39,10 +39,10 @@ pub struct VisitorSetup {
 }
 
 impl VisitorSetup {
-    /// As configured, with nobody there, at this time of the loop's clock (ns).
+    /// As configured, without a visitor, at this time of the loop's clock (ns).
     ///
     /// # Errors
-    /// A display whose controls nobody reaches, a garment that is not in the wardrobe or cannot be used.
+    /// A display whose controls are out of reach, a garment that is not in the wardrobe or cannot be used.
     pub fn new(config: &Config, stock: &Stock, now_ns: u64) -> Result<Self, KioskError> {
         let display = &config.display;
         let mount = DisplayMount { lower_edge_mm: display.lower_edge_mm, height_mm: display.height_mm };
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn what_nobody_could_use_is_refused() {
+    fn an_unusable_setup_is_refused() {
         for (text, word) in
             [("[display]\nlower_edge_mm = 1000.0", "within reach"), ("[wear]\ngarments = [\"tent\"]", "tent")]
         {

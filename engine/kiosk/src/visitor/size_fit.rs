@@ -1,4 +1,4 @@
-//! Fit of a size: how a size sits at each zone, as a shopper reads it, and why.
+//! Fit of a size at each zone, as a shopper reads it, with its reason.
 
 use toile_assets::sizes::{Girth, Population};
 use toile_fitting::dress::measured;
@@ -83,7 +83,7 @@ pub enum MeasureBasis {
     Guessed,
 }
 
-/// What was measured of somebody.
+/// What was measured of a person.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VisitorMeasures {
     /// The measures that were taken, with those by tape laid over them.
@@ -104,7 +104,7 @@ pub struct VisitorMeasures {
 }
 
 impl VisitorMeasures {
-    /// Of somebody measured seated or standing; what is missing is found out.
+    /// Of a person measured seated or standing; what is missing is found out.
     pub fn new(measured: Measurements, seated: bool) -> Self {
         Self {
             missing: missing(&measured),
@@ -153,7 +153,7 @@ impl VisitorMeasures {
         }
     }
 
-    /// Whether nobody knows the girth of each zone, in the order of `Girth::ALL`: it is a guess, and so would be how anything fits there.
+    /// Whether the girth of each zone is unknown, in the order of `Girth::ALL`. It is then a guess, and so would be any fit there.
     pub fn unknown(&self) -> [bool; 3] {
         Girth::ALL.map(|zone| self.is_unknown(zone))
     }
@@ -196,7 +196,7 @@ pub struct ZoneFit {
     pub zone: Girth,
     /// Whether the size is chosen by this zone.
     pub primary: bool,
-    /// How the zone feels, in one of seven words; none where nobody saw the body there.
+    /// How the zone feels, in one of seven words; none where the body was not seen there.
     pub feel: Option<Feel>,
     /// How it may feel too: what the ease less or more its error comes to, where that is comfortable when this is not or the
     /// other way round.
@@ -209,7 +209,7 @@ pub struct ZoneFit {
     pub garment_m: f32,
     /// Least and most ease that is comfortable (m).
     pub comfort_m: [f32; 2],
-    /// -1 (loose) .. 1 (tight), within half of it where the zone is comfortable; none where nobody saw the body there.
+    /// -1 (loose) .. 1 (tight), within half of it where the zone is comfortable; none where the body was not seen there.
     pub tightness: Option<f32>,
 }
 
@@ -230,11 +230,11 @@ pub struct SizeFit {
     pub zones: Vec<ZoneFit>,
     /// Set where the primary girth lies outside of what is made.
     pub outside: Option<OutOfRange>,
-    /// What there is to choose from.
+    /// Whether there are several sizes to choose from.
     pub choice: SizeChoice,
 }
 
-/// What there is to choose from.
+/// Number of sizes to choose from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SizeChoice {
     /// Several sizes.
@@ -321,7 +321,7 @@ fn zones(offer: &GarmentOffer, known: &VisitorMeasures, judged: &Recommendation)
             Girth::Hip => hip,
         };
         let comfort_m = offer.comfort(z.zone)?;
-        // What nobody measured is a guess, though a recommendation may be made from it.
+        // A girth that was not measured is a guess, though a recommendation may be made from it.
         let known = (z.verdict != Verdict::Unknown && !known.is_unknown(z.zone)).then_some(());
         Some(ZoneFit {
             zone: z.zone,

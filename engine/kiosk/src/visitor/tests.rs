@@ -81,7 +81,7 @@ impl Play {
         }
     }
 
-    /// With somebody measured and dressed.
+    /// With a person measured and dressed.
     pub(crate) fn dressed() -> Self {
         let mut play = Self::new();
         play.see(Some(1));
@@ -144,7 +144,7 @@ impl Play {
         self.update(Input::Presence(seen));
     }
 
-    /// The hip of whoever is measured is not seen.
+    /// Hides the hip of the measured person.
     pub(crate) fn hide_hip(&mut self) {
         self.known.measured.measures.hip_girth = None;
         self.known = VisitorMeasures::new(self.known.measured.clone(), false);
@@ -208,7 +208,7 @@ fn texts_of(screen: &Screen) -> Vec<String> {
     all
 }
 
-/// A picture of somebody.
+/// A picture of a person.
 fn still() -> picture::RgbImage {
     picture::tests::figure(Size::new(96, 160), [180, 80, 70])
 }

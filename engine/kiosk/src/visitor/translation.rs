@@ -86,7 +86,7 @@ impl Translation<'_> {
         self.format(key, &[])
     }
 
-    /// A text with values; the name of a text that there is not, which tests forbid.
+    /// A text with values; the name of an unknown text, which tests forbid.
     pub fn format(&self, key: TextKey, values: &[(&str, TextValue)]) -> String {
         let mut args = FluentArgs::with_capacity(values.len());
         for (name, value) in values {

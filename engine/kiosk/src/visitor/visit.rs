@@ -132,7 +132,7 @@ pub(super) struct Visit {
     pub snap_failed: bool,
     /// Their own face.
     pub face: OwnFace,
-    /// Since when somebody else stands there (ns), and since when they are asked (ns).
+    /// Since when another person stands there (ns), and since when they are asked (ns).
     pub stranger_ns: Option<u64>,
     pub asked_ns: Option<u64>,
     pub language: Language,
@@ -140,7 +140,7 @@ pub(super) struct Visit {
 }
 
 impl Visit {
-    /// Nobody, as every visit begins.
+    /// A visit as it begins: without a shopper.
     pub fn new(defaults: &VisitDefaults) -> Self {
         Self {
             shopper: None,

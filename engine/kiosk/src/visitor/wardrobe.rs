@@ -1,6 +1,6 @@
-//! Wardrobe: the garments to choose from, in the order of dressing, which of them exclude each other, their sizes and colours.
+//! Wardrobe: the garments to choose from, in the order of dressing, their exclusions, sizes and colours.
 //!
-//! The eight layers, and where a garment is held on the body, are those of Ugur 2008, sections 6.1 and 6.2.
+//! The eight layers, and the places that hold a garment on the body, are those of Ugur 2008, sections 6.1 and 6.2.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -172,7 +172,7 @@ impl WardrobeItem {
     /// A garment that is built in, or the file of one.
     ///
     /// # Errors
-    /// A garment that there is not, a file, sizes or a fabric that cannot be used.
+    /// An unknown garment; a file, sizes or a fabric that cannot be used.
     pub fn new(name: &str) -> Result<Self, KioskError> {
         Self::of(&GarmentSource::find(name)?, &average()?)
     }
@@ -258,7 +258,7 @@ impl WardrobeItem {
     }
 }
 
-/// The body on which what is made for nobody in particular is judged.
+/// The average body, on which garments made for no particular body are judged.
 fn average() -> Result<Body, KioskError> {
     toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(KioskError::internal)
 }
@@ -477,7 +477,7 @@ mod tests {
         assert_eq!((coat.layer, coat.colours.len()), (Layer::Coat, 1));
         assert_eq!(coat.colours[0].words.as_ref().map(|words| word(words, "de")), Some("Moos"));
         assert!(dress.sizes.len() > 3 && dress.name.ends_with("DR-1.toile"));
-        // What is named besides hangs there as well; what there is not is refused.
+        // Garments that are named besides hang there as well; an unknown name is refused.
         let more = Wardrobe::of(&stock(&["t-shirt"]).unwrap(), Some(&hung), &mut Vec::new()).unwrap();
         assert_eq!(more.items.len(), 3);
         assert!(stock(&["DR-9"]).is_err());

@@ -38,7 +38,7 @@ pub struct BodyModel {
     pub levels: [f32; 3],
     /// Height of the body (m).
     pub stature: f32,
-    /// The same body for the shopper's own picture; none of the mannequin before anybody was dressed.
+    /// The same body for the shopper's own picture; none of the mannequin before the first shopper was dressed.
     pub own: Option<Arc<OwnPictureModel>>,
 }
 

@@ -1,5 +1,5 @@
-//! The dressed body as it is drawn behind the panel: its surfaces on the device, what the newest snapshot moved, and
-//! from where it is looked at.
+//! The dressed body as it is drawn behind the panel: its surfaces on the device, their positions by the newest snapshot, and
+//! the camera.
 
 use std::f32::consts::TAU;
 

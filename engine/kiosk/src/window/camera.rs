@@ -1,13 +1,13 @@
-//! The camera: from where the body is seen, so that it stands in what the panel leaves free.
+//! The camera: frames the body in the part of the display that the panel leaves free.
 
 use glam::Vec3;
 use toile_base::numeric::statistics;
 use toile_view::scene::{Bounds, OrbitCamera};
 
-/// Arm's reach beside the body (m): what stays in the picture when somebody lifts their arms.
+/// Arm's reach beside the body (m): it stays in the picture when the shopper lifts their arms.
 const HALF_REACH_M: f32 = 0.5;
 
-/// Half of what a body with its arms at rest needs, in statures, where there is no room for more.
+/// Half of the width of a body with its arms at rest (statures), where there is no room for more.
 const HALF_REST: f32 = 0.185;
 
 /// Narrower than this, width over height, there is none.

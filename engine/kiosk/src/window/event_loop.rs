@@ -82,7 +82,7 @@ impl WindowApp {
             None => covering(on, attributes.with_decorations(false)),
         };
         let window = on.create_window(attributes).map_err(|e| format!("no window can be opened ({e})"))?;
-        // A shop's screen shows no arrow until somebody moves a mouse.
+        // A shop's screen shows no arrow until a mouse moves.
         window.set_cursor_visible(self.windowed.is_some());
         Ok(Arc::new(window))
     }
@@ -92,7 +92,7 @@ impl WindowApp {
     }
 }
 
-/// A window over the whole display. Its place and size are said too: without a window manager nobody else sees to them.
+/// A window over the whole display. Its place and size are set too, because there may be no window manager to do it.
 fn covering(on: &ActiveEventLoop, attributes: WindowAttributes) -> WindowAttributes {
     let attributes = attributes.with_fullscreen(Some(Fullscreen::Borderless(None)));
     match on.primary_monitor().or_else(|| on.available_monitors().next()) {

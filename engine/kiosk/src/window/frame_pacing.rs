@@ -1,4 +1,4 @@
-//! Frame pacing: when the next picture may be drawn. A graphics card draws each time that one is due; a driver that draws on the processor is
+//! Frame pacing: the time of the next picture. A graphics card draws each time that one is due; a driver that draws on the processor is
 //! held to a share of its core, so that the physics' worker and the sensor, which live there too, find it free.
 
 use std::time::{Duration, Instant};
@@ -9,7 +9,7 @@ const SOFTWARE_SHARE: f64 = 0.5;
 /// Longest time between two pictures that were drawn on the processor: a finger wants its answer.
 const LONGEST: Duration = Duration::from_millis(250);
 
-/// Time between two looks at a window that nobody sees.
+/// Time between two looks at a hidden window.
 const HIDDEN: Duration = Duration::from_millis(200);
 
 /// Decides when the next picture may be drawn.
@@ -35,7 +35,7 @@ impl FramePacer {
         self.due = Some(now + HIDDEN);
     }
 
-    /// Somebody has touched it: the answer does not wait.
+    /// The screen was touched: the answer does not wait.
     pub fn hurry(&mut self) {
         self.due = None;
     }

@@ -1,4 +1,4 @@
-//! Frame statistics of the window: its adapter, how evenly pictures came, how soon the first one did.
+//! Frame statistics of the window: its adapter, the evenness of pictures, the time to the first one.
 
 use std::time::Instant;
 

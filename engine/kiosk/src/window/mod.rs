@@ -1,6 +1,6 @@
 //! The kiosk's window.
 //!
-//! Thread: main waits for the window system; render paints and presents; the service decides on a thread of its own.
+//! The main thread waits for the window system. The render thread paints and presents. The service decides on a thread of its own.
 //!
 //! ```text
 //! main     winit's events            -- InputEvent, a bounded queue; WindowState, the latest value -->  render

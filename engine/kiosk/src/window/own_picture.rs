@@ -25,7 +25,7 @@ impl OwnPictureView {
         Self { pictures, mirror: OwnPicture::new(), has_picture: false, drawn_for }
     }
 
-    /// Nobody looks at themselves: what was shown is blackened, and the camera's last pictures are let go.
+    /// Ends the own picture: blackens what was shown, and lets the camera's last pictures go.
     pub fn rest(&mut self) {
         _ = self.pictures.news();
         if std::mem::take(&mut self.has_picture) {

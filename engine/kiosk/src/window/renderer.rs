@@ -270,7 +270,7 @@ impl Renderer for WindowRenderer {
 
     fn set_outfit(&mut self, outfit: &mut BodyModel) {
         std::mem::swap(&mut self.model, outfit);
-        // Two sizes were those of whoever stood there before.
+        // Two sizes were those of the shopper before.
         (self.pair, self.changed) = (None, true);
     }
 

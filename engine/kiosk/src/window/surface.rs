@@ -1,4 +1,4 @@
-//! What the window draws on: a device, the window's surface, the body and the overlay. All of it is made anew where the device
+//! Drawing surface of the window: a device, the window's surface, the body and the overlay. All of it is made anew where the device
 //! is lost.
 
 use std::sync::Arc;

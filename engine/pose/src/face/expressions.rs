@@ -1,6 +1,6 @@
 //! A few expressions of a face: fields of displacements on the mannequin's head, each with an amplitude from 0, at rest, to 1.
 //!
-//! An expression says where some of the 68 points are displaced to, and which of them hold still; between them a compact radial function
+//! An expression gives the displacements of some of the 68 points, and names those that hold still; between them a compact radial function
 //! (Wendland 1995) carries it over the surface.
 
 use glam::DVec3;

@@ -1,4 +1,4 @@
-//! Where a head stands before the cameras, by Gauss-Newton on what is seen of it.
+//! Pose of a head before the cameras, by Gauss-Newton on its sightings.
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use toile_base::numeric::linear;

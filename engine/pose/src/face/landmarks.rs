@@ -1,4 +1,4 @@
-//! Where the 68 points of a face are on the mannequin's head: points of its triangles, which every shape of it carries along.
+//! Places of the 68 points of a face on the mannequin's head: points of its triangles, which every shape of it carries along.
 
 use glam::{DVec3, Vec3};
 use toile_assets::body::shape::Shapes;

@@ -1,6 +1,6 @@
-//! A head from photographs with marked points: the mannequin's head adapted by radial functions, its picture, and how it moves.
+//! A head from photographs with marked points: the mannequin's head adapted by radial functions, its picture, and its motion.
 //!
-//! What is off from the mannequin's head is a field of displacements d(x) with a prior: smooth (a compact radial function), nearly the
+//! The difference from the mannequin's head is a field of displacements d(x) with a prior: smooth (a compact radial function), nearly the
 //! same on both sides, and with an affine part. The marked points are its observations, each two equations in one photograph, and so are
 //! stretches of the head's outline, one equation each; the most likely field is a sum of radial functions around them (Roussel and
 //! Gagalowicz 2003 adapt through points in space; with the prior one photograph will do). Pose and field are found in turn. An expression

@@ -1,4 +1,4 @@
-//! How heads differ from the mannequin's: the covariance of displacements at two places of a head, and the most likely field given
+//! Differences of heads from the mannequin's: the covariance of displacements at two places of a head, and the most likely field given
 //! observations of it.
 
 use glam::{DMat3, DVec3};

@@ -1,6 +1,6 @@
 //! A sequence of one camera without any other photograph: the head is adapted to all frames together while it is followed.
 //!
-//! One frame says little of how deep a face is; the same face turned says it. So the head of the first frame is followed, the frames that
+//! One frame says little about the depth of a face; the same face turned shows it. So the head of the first frame is followed, the frames that
 //! show it most differently turned become observations of one field, each by its own pose and expressions, and pose and field are found
 //! in turn as with photographs.
 

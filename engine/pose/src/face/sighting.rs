@@ -1,4 +1,4 @@
-//! What the photographs show of a head: places of its surface, where each was seen, and the equations that this gives.
+//! Sightings of a head in the photographs: places of its surface, the pixels where each was seen, and the equations that follow.
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
@@ -38,7 +38,7 @@ pub(super) struct Sighting {
     pub by: DVec3,
     /// Where it was seen, as by a lens that bends nothing (px, from the principal point).
     pub at: DVec2,
-    /// Of an outline: the way across it. Where along an outline a place was seen, nobody knows.
+    /// Of an outline: the way across it. Where along an outline a place was seen is unknown.
     pub across: Option<DVec2>,
     /// Standard deviation, and the distance from which it counts little (px).
     pub sigma: f64,

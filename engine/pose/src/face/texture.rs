@@ -1,8 +1,8 @@
-//! The head's picture from the photographs, by inverse mapping: each texel of the body's atlas looks up where it was seen.
+//! The head's picture from the photographs, by inverse mapping: each texel of the body's atlas takes its colour from the place where it was seen.
 //!
 //! A texel of the head is seen by a photograph where nothing hides it and the head goes on around it; photographs count by the square of
 //! the cosine between the surface and the line of sight and less towards the rim, so that seams between them are feathered. Where none
-//! looks square on, and towards the neck, the skin's own colour fades in: the upper quartile of what was seen well. All of the atlas that is not
+//! looks square on, and towards the neck, the skin's own colour fades in: the upper quartile of the well-seen texels. All of the atlas that is not
 //! the head has that colour, which carries it to the body.
 
 use std::hint::black_box;
@@ -104,7 +104,7 @@ pub fn texture(head: &AdaptedHead, views: &[FaceView], photographs: &[RgbImage])
     }
     spread(&mut picture, &mut filled);
     let seen = sums.iter().filter(|s| s.1 > WELL).count() as f64 / sums.len().max(1) as f64;
-    // Somebody could be known by what was summed.
+    // A person could be identified by what was summed.
     sums.fill(([0.0; 3], 0.0));
     black_box(&sums);
     HeadTexture { picture, skin: shown, seen }

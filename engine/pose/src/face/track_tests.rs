@@ -119,7 +119,7 @@ fn a_frame_of_garbage_is_said_so_and_does_not_spoil_the_next() {
 fn angles_are_those_of_the_wearer() {
     let camera = &cameras(&[0.0])[0];
     let of = |turn: DQuat| TrackedHead { turn, place: DVec3::ZERO, amplitudes: [0.0; EXPRESSIONS] }.angles(camera);
-    assert!(of(DQuat::from_rotation_y(0.2))[0] > 0.15, "the left of whoever faces +z is +x");
+    assert!(of(DQuat::from_rotation_y(0.2))[0] > 0.15, "the left of a face towards +z is +x");
     assert!(of(DQuat::from_rotation_x(-0.2))[1] > 0.15, "raised");
     assert!(of(DQuat::from_rotation_z(-0.2))[2] > 0.15, "the left ear goes down");
 }

@@ -1,4 +1,4 @@
-//! Why a head cannot be made of what was seen of it.
+//! Reasons why a head cannot be made from its sightings.
 
 use thiserror::Error;
 

@@ -6,7 +6,7 @@ use toile_sensors::face_points::FACE_POINTS;
 
 use super::unfit::UnfitFace;
 
-/// Focal length over the longer side of a picture whose lens nobody knows: a portrait's.
+/// Focal length over the longer side of a picture of unknown lens: a portrait's.
 const PORTRAIT: f64 = 1.6;
 
 /// One photograph with its camera.

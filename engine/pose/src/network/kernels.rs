@@ -1,4 +1,4 @@
-//! Depthwise convolution and what moves or adds numbers, on lanes of channels.
+//! Depthwise convolution, sums and copies, on lanes of channels.
 
 use toile_engine::lanes::{Kernel, Lanes, ReadColumn, WriteColumn};
 

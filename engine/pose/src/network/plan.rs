@@ -1,4 +1,4 @@
-//! From a file's operators to steps: only what the wanted outputs need, every shape checked, memory shared by what is not there at
+//! From a file's operators to steps: only what the wanted outputs need, every shape checked, memory shared by values that do not live at
 //! the same time.
 
 use super::op::{Op, Sliding};
@@ -233,7 +233,7 @@ struct Memory {
     numbers: Vec<usize>,
     /// Buffer of each tensor.
     of: Vec<Option<usize>>,
-    /// Sizes of the buffers, and which nobody has.
+    /// Sizes of the buffers, and the free ones.
     sizes: Vec<usize>,
     free: Vec<usize>,
 }

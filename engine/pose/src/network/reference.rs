@@ -1,7 +1,7 @@
-//! Every operator in plain f32, one number after the other: what the fast kernels are held against, to the bit.
+//! Scalar reference: every operator in plain f32, one number after the other. The fast kernels give the same bits.
 //!
-//! A sum begins with its bias and takes the window's rows, its columns and the channels in this order. What lies outside of the
-//! image is left out.
+//! A sum begins with its bias and takes the window's rows, its columns and the channels in this order. Terms outside of the
+//! image are left out.
 
 use super::op::{Op, Sliding};
 use super::shape::Shape;

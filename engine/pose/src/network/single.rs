@@ -1,4 +1,4 @@
-//! Convolution to one channel, such as the mask's last: a panel of [`super::conv`] would compute fifteen others that nobody asks for.
+//! Convolution to one channel, such as the mask's last: a panel of [`super::conv`] would compute fifteen others that are not needed.
 //!
 //! Lanes are neighbouring pixels instead. The rows that a window reaches over lie apart channel by channel, each laid out once and kept for the
 //! windows below. Each sum has its products in the reference's order, so the bits are the same at every width.

@@ -53,7 +53,7 @@ fn after(window: Window, size: [usize; 2], input: Shape, channels: usize) -> Sha
 }
 
 #[test]
-fn convolutions_are_those_of_their_twin_to_the_bit() {
+fn convolutions_equal_the_scalar_reference_bit_for_bit() {
     let mut random = SplitMix64::new(1);
     for (i, (window, size, input)) in windows().into_iter().enumerate() {
         let outs = [1, 13, 16, 40][i % 4];
@@ -66,7 +66,7 @@ fn convolutions_are_those_of_their_twin_to_the_bit() {
 }
 
 #[test]
-fn convolutions_to_one_channel_are_those_of_their_twin_to_the_bit() {
+fn one_channel_convolutions_equal_the_scalar_reference() {
     let mut random = SplitMix64::new(4);
     let all = windows().into_iter().filter(|(window, ..)| window.stride == [1, 1]);
     let wide = Shape { height: 4, width: 131, channels: 8 };
@@ -81,7 +81,7 @@ fn convolutions_to_one_channel_are_those_of_their_twin_to_the_bit() {
 }
 
 #[test]
-fn depthwise_convolutions_are_those_of_their_twin_to_the_bit() {
+fn depthwise_convolutions_equal_the_scalar_reference() {
     let mut random = SplitMix64::new(2);
     for (window, size, input) in windows() {
         let output = after(window, size, input, input.channels);
@@ -93,7 +93,7 @@ fn depthwise_convolutions_are_those_of_their_twin_to_the_bit() {
 }
 
 #[test]
-fn sums_and_other_sizes_are_those_of_their_twin_to_the_bit() {
+fn sums_and_resizes_equal_the_scalar_reference() {
     let mut random = SplitMix64::new(3);
     let small = Shape { height: 5, width: 7, channels: 19 };
     let [a, b] = [drawn(&mut random, small.numbers()), drawn(&mut random, small.numbers())];
@@ -110,7 +110,7 @@ fn sums_and_other_sizes_are_those_of_their_twin_to_the_bit() {
 }
 
 #[test]
-fn slopes_are_those_of_their_twin_to_the_bit() {
+fn slopes_equal_the_scalar_reference_bit_for_bit() {
     let mut random = SplitMix64::new(6);
     for channels in [1, 5, 16, 19, 128] {
         let shape = Shape { height: 3, width: 5, channels };

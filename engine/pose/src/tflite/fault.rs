@@ -1,4 +1,4 @@
-//! What is wrong with a file.
+//! Faults of a file.
 
 /// One thing that is wrong with a network's file, in words that follow its path.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

@@ -1,7 +1,7 @@
 //! FlatBuffers, as far as a file of a network needs them: tables with optional fields, vectors, numbers.
 //!
-//! A table begins with the distance back to its list of fields, which says where in the table each field lies; what is not in
-//! the list has its default. Nothing of a file is believed: every place is checked before it is read.
+//! A table begins with the distance back to its list of fields, which says where in the table each field lies; a field that is not in
+//! the list has its default. No value of a file is trusted: every place is checked before it is read.
 //!
 //! Source: <https://flatbuffers.dev/internals>.
 

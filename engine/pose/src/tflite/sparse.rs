@@ -1,4 +1,4 @@
-//! Constants that are stored without their zeros: what DENSIFY puts back.
+//! Constants that are stored without their zeros; DENSIFY puts these back.
 //!
 //! Dimension after dimension, outermost first: a dense one has all its places; a sparse one lists, for each place of the
 //! dimensions before it, the places that are there (compressed sparse rows). Blocks are not read, since no network here has them.

@@ -1,9 +1,9 @@
-//! Whether a network runs as its plain twin does.
+//! Compares a network with its scalar reference.
 
 use toile_base::numeric::random::SplitMix64;
 use toile_pose::network::Network;
 
-/// Whether both give the same bits of a picture of noise, in each of so many outputs.
+/// Whether both give the same bits for a picture of noise, in each of so many outputs.
 pub fn agree(network: &mut Network, outputs: usize) -> bool {
     let mut random = SplitMix64::new(2);
     let picture: Vec<f32> = network.input().iter().map(|_| random.uniform()).collect();

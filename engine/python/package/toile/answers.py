@@ -69,7 +69,7 @@ class Wind:
 
 @dataclass(frozen=True)
 class Measure:
-    """A measure of somebody: its name, value and standard deviation (mm), whether it was seen, where it is taken."""
+    """A measure of a person: its name, value and standard deviation (mm), whether it was seen, where it is taken."""
 
     name: str
     mm: float
@@ -99,7 +99,7 @@ class ZoneFit:
     ease_mm, sigma_mm : float
         Girth of the garment less that of the body, and its standard deviation (mm).
     verdict : str
-        "tight", "good", "loose", or "unknown" where nobody saw the body there.
+        "tight", "good", "loose", or "unknown" where the body was not seen there.
     feel : str or None
         From "too tight" over "right" to "too loose".
     tightness : float or None

@@ -47,7 +47,7 @@ type Surface<'py> = (Bound<'py, PyArray2<f32>>, Bound<'py, PyArray2<f32>>);
 /// Raises
 /// ------
 /// InputError
-///     A garment that cannot be laid on this body, joints that pose nobody.
+///     A garment that cannot be laid on this body, joints that give no pose.
 #[pyclass(frozen, module = "toile")]
 #[derive(Debug)]
 pub struct Scene {

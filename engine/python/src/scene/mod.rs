@@ -1,7 +1,7 @@
 //! Scenes in motion.
 //!
-//! Budget: below 5 us a call beside what `toile-sdk` takes.
-//! Thread: one call at a time, of any thread; steps, dressing and pictures run without the interpreter's lock.
+//! A call takes less than 5 µs beside the time of `toile-sdk`. A scene takes one call at a time, of any thread. Steps, dressing and pictures
+//! run without the interpreter's lock.
 
 mod class;
 mod moments;

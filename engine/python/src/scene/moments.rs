@@ -1,4 +1,4 @@
-//! Positions as they were after a step, in memory that is used again once nobody looks at it.
+//! Positions as they were after a step, in memory that is used again once no array refers to it.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! How a body is dressed and moves.
+//! Options of dressing and motion.
 
 use pyo3::prelude::*;
 use toile_sdk::glam::Vec3;

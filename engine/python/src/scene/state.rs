@@ -1,4 +1,4 @@
-//! A scene that one call at a time works on, and what becomes of it: open, closed, broken by a fault.
+//! A scene on which one call at a time works, and its state: open, closed, broken by a fault.
 
 use std::mem;
 use std::panic::{self, AssertUnwindSafe};
@@ -47,7 +47,7 @@ impl SceneState {
 
     /// A garment by its number.
     pub fn worn(&self, garment: usize) -> toile_sdk::Result<&WornGarment> {
-        // What there is to say about a number that there is not, the scene says.
+        // If the number does not exist, the scene returns an error that says so.
         self.scene.faces(garment)?;
         Ok(&self.scene.garments()[garment])
     }

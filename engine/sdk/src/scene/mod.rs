@@ -1,7 +1,6 @@
 //! Scenes in motion: a dressed body, or cloth and colliders of a scene file.
 //!
-//! Budget: dressing a second and more, a step as the engine's (8.3 ms), pictures a second each.
-//! Thread: the caller's; a scene may be sent to another thread.
+//! Dressing takes a second and more, a step at most 8.3 ms, a picture a second. A scene may be sent to another thread.
 
 mod cloth;
 mod dressed;
@@ -73,7 +72,7 @@ impl Scene {
     /// The same with a motion, quality, workers, wind and what is tucked in.
     ///
     /// # Errors
-    /// As [`Self::dress`]; joints that pose nobody, options that cannot be had.
+    /// As [`Self::dress`]; joints that give no pose, options that cannot be had.
     pub fn dress_with(body: &Body, garments: &[Garment], options: &DressOptions) -> Result<Self> {
         let dressed = DressedScene::dress(body, garments, options)?;
         Ok(Self { kind: SceneKind::Dressed(Box::new(dressed)) })
@@ -100,7 +99,7 @@ impl Scene {
     /// these positions. For wind, colliders and moving pins write a scene file.
     ///
     /// # Errors
-    /// A mesh that cannot be cloth, a pin that is no vertex, a fabric that there is not.
+    /// A mesh that cannot be cloth, a pin that is no vertex, an unknown fabric.
     pub fn of_mesh(positions: &[Vec3], triangles: &[[u32; 3]], pins: &[u32], fabric: &str) -> Result<Self> {
         let mut obj = String::new();
         for p in positions {
@@ -144,7 +143,7 @@ impl Scene {
     /// One step of a dressed body to joints of the caller's own, those at the step's end (m); it stays there until moved on.
     ///
     /// # Errors
-    /// Joints that pose nobody; a scene without a body, or whose body follows a track.
+    /// Joints that give no pose; a scene without a body, or whose body follows a track.
     pub fn step_to(&mut self, joints: &Joints) -> Result<()> {
         match &mut self.kind {
             SceneKind::Dressed(scene) => scene.step_to(joints),
@@ -197,7 +196,7 @@ impl Scene {
     /// a face stand. Always finite.
     ///
     /// # Errors
-    /// A garment's number that there is not.
+    /// A garment's number out of range.
     pub fn positions(&self, garment: usize) -> Result<Vec<Vec3>> {
         let mut positions = vec![Vec3::ZERO; self.known(garment)?.vertices];
         self.read_positions(garment, &mut positions)?;

@@ -1,4 +1,4 @@
-//! How a body is dressed and moves.
+//! Options of dressing and motion.
 
 use toile_assets::scene_file::Wind;
 use toile_base::frame::Joints;
@@ -111,7 +111,7 @@ pub(super) fn checked(joints: &Joints) -> Result<&Joints> {
     }
     if !session::is_present(joints) {
         return Err(Error::input(
-            "nobody can be posed by these joints: pelvis and both hips have to be seen (confidence 0.5 or more)",
+            "these joints give no pose: pelvis and both hips have to be seen (confidence 0.5 or more)",
         ));
     }
     Ok(joints)

@@ -1,4 +1,4 @@
-//! The garments of a scene, and how they do.
+//! The garments of a scene, and their state.
 
 use serde::Serialize;
 use toile_engine::cloth::Cloth;
@@ -54,7 +54,7 @@ impl GarmentStats {
     }
 }
 
-/// That a scene file has nobody in it.
+/// The error that a scene file has no body.
 pub(super) fn no_body(what: &str) -> Error {
     Error::usage(format!("there is no {what}, because a scene file has no body; dress a body to have one"))
 }

@@ -8,7 +8,7 @@ use crate::shares::{GarmentSummary, Share};
 const COLOURS: [&str; 8] = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#806000", "#444444"];
 
 /// Of people whom no size fits.
-const NOBODY: &str = "#c9c9c9";
+const UNFITTED: &str = "#c9c9c9";
 
 /// Text as it stands between elements.
 pub(super) fn escaped(text: &str) -> String {
@@ -42,7 +42,7 @@ pub(super) fn shares(garment: &GarmentSummary) -> String {
                 x(share) - left
             )
         };
-        put_line!(inside, "{}{}", bar(size.recommended.share, NOBODY), bar(size.fitted.share, colour));
+        put_line!(inside, "{}{}", bar(size.recommended.share, UNFITTED), bar(size.fitted.share, colour));
         let (low, high, middle) = (x(size.fitted.low), x(size.fitted.high), y + 9.0);
         put_line!(
             inside,
@@ -61,7 +61,7 @@ pub(super) fn shares(garment: &GarmentSummary) -> String {
     svg(920.0, 16.0 + row * garment.sizes.len() as f64, &inside)
 }
 
-/// Stature against the girth that designates sizes: everybody by the size recommended, filled where it fits.
+/// Stature against the girth that designates sizes: every person by the size recommended, filled where it fits.
 pub(super) fn map(garment: &GarmentSummary) -> String {
     let girth = |w: &crate::shares::SummaryWearer| match garment.primary.as_str() {
         "waist" => w.girths_mm[1],

@@ -61,7 +61,7 @@ fn put_table(html: &mut String, heads: &[&str], rows: impl IntoIterator<Item = V
 fn put_garment(html: &mut String, garment: &GarmentSummary, pictures: &[TypicalPicture]) {
     put_line!(html, "<h2>{}</h2>", escaped(&garment.name));
     if garment.people == 0 {
-        put_line!(html, "<p>Nobody of these people is of the sex that it is made for.</p>");
+        put_line!(html, "<p>None of these people is of the sex that it is made for.</p>");
         return;
     }
     put_line!(
@@ -104,7 +104,7 @@ fn put_garment(html: &mut String, garment: &GarmentSummary, pictures: &[TypicalP
     put_table(html, &["change", "more people fitted"], helpful.map(|step| vec![change(step), points(&step.gain)]));
     put_line!(
         html,
-        "<p class=\"small\">Each step between two sizes made 10 mm larger or smaller at one zone, everything larger moved with it, and everybody given the best size anew.</p>"
+        "<p class=\"small\">Each step between two sizes made 10 mm larger or smaller at one zone, everything larger moved with it, and every person given the best size anew.</p>"
     );
     if let Some(draped) = &garment.draped {
         put_physics(html, draped);
@@ -159,7 +159,7 @@ fn put_physics(html: &mut String, draped: &DrapedFigures) {
         ("physics takes a larger size", percent(&draped.larger)),
         ("something pulls in the recommended size", percent(&draped.pulls)),
         ("try-ons that were simulated", draped.try_ons.to_string()),
-        ("garments that could not be laid on somebody", draped.troubles.to_string()),
+        ("garments that could not be laid on a person", draped.troubles.to_string()),
     ];
     put_table(html, &["", "draped"], rows.into_iter().map(|(name, value)| vec![name.to_owned(), value]));
     put_table(

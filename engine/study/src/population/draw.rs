@@ -36,7 +36,7 @@ const GIVEN: [En; 10] = [
     En::ThighGirth,
 ];
 
-/// Draws until there is somebody whom a body can be built for: one of a million is not.
+/// Draws until there is a person whom a body can be built for: one of a million is not.
 const DRAWS: usize = 16;
 
 /// A body of the survey: measures drawn from its means and covariance, with one of them as given (m) where that is so, and the shape
@@ -94,12 +94,12 @@ mod tests {
             std::array::from_fn(|_| f64::from(random.gaussian()))
         };
         // What is left of waist and hip once the bust is known, by regression over people of any bust, and by people of this bust.
-        let anybody: Vec<_> = (0..4_000).map(|n| shapes.person(&normal(n, 0))).collect();
+        let people: Vec<_> = (0..4_000).map(|n| shapes.person(&normal(n, 0))).collect();
         let of_bust: Vec<_> = (0..4_000).map(|n| shapes.person_with(&normal(n, 1), En::BustGirth, 0.9)).collect();
         assert!(of_bust.iter().all(|p| p.of(En::BustGirth) == 0.9));
         for measure in [En::WaistGirth, En::HipGirth, En::Stature] {
-            let pairs = anybody.iter().map(|p| [p.of(En::BustGirth), p.of(measure)].map(f64::from));
-            let n = anybody.len() as f64;
+            let pairs = people.iter().map(|p| [p.of(En::BustGirth), p.of(measure)].map(f64::from));
+            let n = people.len() as f64;
             let [mx, my] = pairs.clone().fold([0.0; 2], |m, [x, y]| [m[0] + x / n, m[1] + y / n]);
             let [xx, xy] =
                 pairs.clone().fold([0.0; 2], |s, [x, y]| [s[0] + (x - mx).powi(2), s[1] + (x - mx) * (y - my)]);

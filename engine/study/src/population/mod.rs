@@ -1,4 +1,4 @@
-//! Who tries garments on: person number i of a study, drawn by seed and number or read from a table.
+//! Population of a study: person number i, drawn by seed and number or read from a table.
 
 mod draw;
 mod people;

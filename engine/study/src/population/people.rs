@@ -1,4 +1,4 @@
-//! The population of a study: person number i, whatever the way they come by.
+//! People of a study by number, drawn or read from a table.
 
 use std::path::Path;
 
@@ -133,7 +133,7 @@ impl PeopleFrom {
     }
 }
 
-/// Somebody of the survey, with one measure as given (m) where that is so.
+/// A person of the survey, with one measure as given (m) where that is so.
 fn drawn_person(number: u64, sex: Sex, known: Option<(En, f32)>, random: &mut SplitMix64) -> Person {
     let shapes = Shapes::of(sex);
     let shape = draw::shape(shapes, known, random);
@@ -148,7 +148,7 @@ fn drawn_person(number: u64, sex: Sex, known: Option<(En, f32)>, random: &mut Sp
     Person { number, weight: 1.0, sex, measures, origin: Origin::Shape(Box::new(shape)) }
 }
 
-/// Somebody of given measures: those that are missing are what people with the others have in the mean.
+/// A person of given measures: those that are missing are what people with the others have in the mean.
 fn given(number: u64, weight: f64, sex: Sex, given: Vec<(En, f32)>) -> Person {
     let known = expected(sex, given.iter().copied());
     let at = |measure: En| {
@@ -165,7 +165,7 @@ fn given(number: u64, weight: f64, sex: Sex, given: Vec<(En, f32)>) -> Person {
     Person { number, weight, sex, measures, origin: Origin::Given(given) }
 }
 
-/// What is known of somebody of whom some measures are known exactly.
+/// What is known of a person of whom some measures are known exactly.
 fn expected(sex: Sex, given: impl Iterator<Item = (En, f32)>) -> BodyEstimate {
     let all = tape_readings::population(Some(sex).into());
     given
@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn a_person_is_the_same_by_number_whoever_was_asked_for_before() {
+    fn a_person_is_the_same_by_number() {
         let population = opened("from = \"ansur\"\npeople = 50\nwomen = 0.5").unwrap();
         let all: Vec<Person> = (0..50).map(|n| population.person(n)).collect();
         for n in [49, 3, 17] {

@@ -15,7 +15,7 @@ pub(super) enum Origin {
     Given(Vec<(En, f32)>),
 }
 
-/// Somebody of a population.
+/// A person of a population.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Person {
     /// Number in the population, from 0.

@@ -36,7 +36,7 @@ const WORDS: [(&str, &str); 6] = [
     ("shoulders", "shoulder_breadth"),
 ];
 
-/// Somebody of a table.
+/// A person of a table.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct TableRow {
     pub weight: f64,
@@ -90,7 +90,7 @@ pub(super) fn read(path: &Path, wanted: &WantedPopulation) -> Result<Vec<TableRo
     }
     if rows.iter().map(|r| r.weight).sum::<f64>() <= 0.0 {
         return Err(StudyError::Input(format!(
-            "{shown}: every weight is 0, so that it stands for nobody; correct the column weight"
+            "{shown}: every weight is 0, so that it stands for no person; correct the column weight"
         )));
     }
     Ok(rows)
@@ -128,11 +128,11 @@ fn row(
                 if found.weight < 0.0 {
                     let weight = found.weight;
                     return Err(StudyError::Input(format!(
-                        "{shown}: line {line}: the weight is {weight}, and nobody stands for fewer than no people; give 0 or more"
+                        "{shown}: line {line}: the weight is {weight}, and a weight cannot be negative; give 0 or more"
                     )));
                 }
             }
-            // What was not taken of somebody follows from what was.
+            // What was not taken of a person follows from what was.
             Holds::Measure(_) if cells.get(at).is_none_or(|c| c.trim().is_empty()) => {}
             Holds::Measure(measure) => {
                 let value = number(at)?;

@@ -1,4 +1,4 @@
-//! Which size suits true girths, and what becomes of it where a step between two sizes is made larger or smaller.
+//! The size that suits true girths, and its change where a step between two sizes is made larger or smaller.
 
 use serde::Serialize;
 use toile_track::recommend::{OFF_MIDDLE, TIGHT_TO_LOOSE};
@@ -120,7 +120,7 @@ mod tests {
 
     #[test]
     fn a_step_that_is_too_large_is_found() {
-        // Between the sizes' bodies, 880..920 and 980..1020, nobody is fitted; most people are just below the larger one.
+        // Between the sizes' bodies, 880..920 and 980..1020, no person is fitted; most people are just below the larger one.
         let hips = [890.0, 900.0, 970.0, 972.0, 974.0, 976.0, 1000.0];
         let wearer = |hip: &f64| Wearer { weight: 1.0, girths: [0.0, 0.0, *hip], ..Wearer::default() };
         let wearers = Wearers { all: hips.iter().map(wearer).collect(), ..Wearers::of_note(skirt()) };

@@ -1,4 +1,4 @@
-//! What rows come to: shares of people with intervals, where sizes fail, which step between sizes would help.
+//! Results of rows: shares of people with intervals, zones where sizes fail, the step between sizes that would help.
 
 mod grading;
 mod interval;

@@ -109,7 +109,7 @@ pub struct Convergence {
     pub fitted: Share,
 }
 
-/// Somebody of a garment's people.
+/// A person of a garment's people.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SummaryWearer {
     /// Number of the person.
@@ -153,7 +153,7 @@ pub struct DrapedFigures {
     pub unsettled_mm: [f64; 3],
     /// Of these, how many pull at other zones once they have settled.
     pub verdicts_changed: u64,
-    /// Garments that could not be laid on somebody.
+    /// Garments that could not be laid on a person.
     pub troubles: usize,
 }
 
@@ -194,7 +194,7 @@ impl Counted<'_> {
         self.bootstrap.mean(self.wearers.all.iter().map(counted))
     }
 
-    /// Whether a size fits somebody at every zone.
+    /// Whether a size fits a person at every zone.
     fn fits(&self, wearer: &Wearer, size: Option<usize>) -> bool {
         size.is_some_and(|size| judge(&self.wearers.note, size, wearer.girths, |_| 0.0).fits())
     }
@@ -202,7 +202,7 @@ impl Counted<'_> {
 
 fn garment(wearers: &Wearers, seed: u64) -> GarmentSummary {
     let counted = Counted { wearers, bootstrap: Bootstrap::new(wearers.all.len(), seed) };
-    let everybody = |_: &Wearer| true;
+    let all_wearers = |_: &Wearer| true;
     let note = &wearers.note;
     let shown = |w: &Wearer, share: f64| SummaryWearer {
         person: w.person,
@@ -218,11 +218,11 @@ fn garment(wearers: &Wearers, seed: u64) -> GarmentSummary {
         primary: note.primary.clone(),
         zones: note.comfort_mm.iter().map(|(zone, _)| zone.clone()).collect(),
         people: wearers.all.len(),
-        fitted: counted.share(|w| counted.fits(w, w.best), everybody),
-        fitted_as_seen: counted.share(|w| counted.fits(w, w.seen), everybody),
-        other_size_as_seen: counted.share(|w| w.seen != w.best, everybody),
-        fitted_by_table: counted.share(|w| counted.fits(w, w.by_table), everybody),
-        table_agrees: counted.share(|w| w.by_table == w.best, everybody),
+        fitted: counted.share(|w| counted.fits(w, w.best), all_wearers),
+        fitted_as_seen: counted.share(|w| counted.fits(w, w.seen), all_wearers),
+        other_size_as_seen: counted.share(|w| w.seen != w.best, all_wearers),
+        fitted_by_table: counted.share(|w| counted.fits(w, w.by_table), all_wearers),
+        table_agrees: counted.share(|w| w.by_table == w.best, all_wearers),
         sizes: (0..note.sizes.len()).map(|size| of_size(&counted, size)).collect(),
         steps: grading::steps(wearers, &counted.bootstrap),
         convergence: convergence(wearers, seed),
@@ -235,7 +235,7 @@ fn garment(wearers: &Wearers, seed: u64) -> GarmentSummary {
 fn of_size(counted: &Counted<'_>, size: usize) -> SizeSummary {
     let note = &counted.wearers.note;
     let gets = |w: &Wearer| w.best == Some(size);
-    let everybody = |_: &Wearer| true;
+    let all_wearers = |_: &Wearer| true;
     // The judged zones that this size has, in their order.
     let zones = note.comfort_mm.iter().enumerate().filter(|(zone, _)| note.sizes[size].1[*zone].is_some());
     let failure = |(place, (_, (zone, _))): (usize, (usize, &(String, [f64; 2])))| {
@@ -248,9 +248,9 @@ fn of_size(counted: &Counted<'_>, size: usize) -> SizeSummary {
     };
     SizeSummary {
         size: note.sizes[size].0.clone(),
-        recommended: counted.share(gets, everybody),
-        fitted: counted.share(|w| gets(w) && counted.fits(w, Some(size)), everybody),
-        would_fit: counted.share(|w| counted.fits(w, Some(size)), everybody),
+        recommended: counted.share(gets, all_wearers),
+        fitted: counted.share(|w| gets(w) && counted.fits(w, Some(size)), all_wearers),
+        would_fit: counted.share(|w| counted.fits(w, Some(size)), all_wearers),
         failures: zones.enumerate().map(failure).collect(),
     }
 }

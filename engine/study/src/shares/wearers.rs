@@ -1,4 +1,4 @@
-//! Rows gathered: what is known of each person in each garment.
+//! Rows gathered: the facts of each person in each garment.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -75,7 +75,7 @@ pub(super) fn note<'n>(notes: &'n Notes, name: &str) -> Result<&'n str> {
 }
 
 impl Wearers {
-    /// A garment that nobody has tried on yet.
+    /// A garment that no person has tried on yet.
     pub fn of_note(note: GarmentNote) -> Self {
         Self {
             note,

@@ -45,7 +45,7 @@ const BETTER: f32 = 0.93;
 /// Levenberg-Marquardt damping, a fraction of each diagonal: keeps steps in poorly observed directions short.
 const DAMPING: f64 = 1e-3;
 
-/// Frames after which the pose of somebody who is measured is kept, and the standard deviation of every angle about it (rad).
+/// Frames after which the pose of a person who is measured is kept, and the standard deviation of every angle about it (rad).
 const SETTLED: usize = 3;
 const HOLDING: f32 = 0.3;
 
@@ -105,7 +105,7 @@ pub struct BodyFit {
     /// The same with fewer samples, for the first fit; `None` if this one's are few already.
     coarse: Option<Box<BodyFit>>,
     state: Option<FitState>,
-    /// Every state of somebody who is measured; empty while they only move.
+    /// Every state of a person who is measured; empty while they only move.
     pub(super) path: Vec<PathState>,
     /// Frames pushed.
     pushed: usize,
@@ -119,7 +119,7 @@ pub struct BodyFit {
 }
 
 impl BodyFit {
-    /// A fit that has seen nobody; the body model is that of a sex.
+    /// A fit that has seen no person yet; the body model is that of a sex.
     pub fn new(sex: Sex, options: FitOptions) -> Self {
         let shapes = Shapes::of(sex);
         let model = BodyModel::new(shapes, options.spacing);
@@ -199,7 +199,7 @@ impl BodyFit {
 
     fn fail(&mut self) {
         self.failures += 1;
-        // Somebody who turns is lost from the side for a moment; who begins anew there is taken to face the camera.
+        // A person who turns is lost from the side for a moment; who begins anew there is taken to face the camera.
         let turns = self.path.len() > SETTLED;
         if self.failures >= PATIENCE && !turns {
             self.state = None;
@@ -259,7 +259,7 @@ impl BodyFit {
         self.matches.off
     }
 
-    /// Where somebody who is measured will be in this frame: they turn on as they turned, through frames in which they were lost, too.
+    /// Where a person who is measured will be in this frame: they turn on as they turned, through frames in which they were lost, too.
     fn ahead(&self, state: &FitState) -> FitState {
         let Some(now) = self.path.last() else { return *state };
         let since = self.path.len().saturating_sub(1 + RATE_OVER);

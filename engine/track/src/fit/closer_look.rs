@@ -1,8 +1,8 @@
-//! A closer look at somebody who was followed: shape and poses once more from all sides, then the surface that was seen.
+//! A closer look at a person who was followed: shape and poses once more from all sides, then the surface that was seen.
 //!
-//! Following finds the shape little by little, so that its first frames were held against another body than its last. Here
-//! some views from every side are fitted again from where they were found, with the pose that the shopper kept; then the
-//! surface itself is moved to what was seen ([`SeenSurface`]), and each view is posed again with it, in turn.
+//! Following finds the shape little by little, so that its first frames were compared with another body than its last. Here
+//! some views from every side are fitted again from their found poses, with the pose that the shopper kept. Then the
+//! surface itself is moved to the seen points ([`SeenSurface`]), and each view is posed again with it, in turn.
 
 use std::f32::consts::TAU;
 
@@ -21,7 +21,7 @@ use super::residuals::{self, Observation};
 use super::seen_surface::SeenSurface;
 use super::shape_filter::ShapeFilter;
 
-/// Sides from which somebody can be seen: 30 degrees each.
+/// Sides from which a person can be seen: 30 degrees each.
 const SIDES: usize = 12;
 
 /// Most views of one side, and fewest of all: a single side is looked at ten times, a whole turn 24 times.
@@ -40,7 +40,7 @@ const ROUNDS: usize = 3;
 /// Cells that one stretch of the rim counts as.
 const RIM_WORTH: f32 = 3.0;
 
-/// Largest angle between neighbouring views around somebody who was seen from all sides (rad): front, sides and back will do.
+/// Largest angle between neighbouring views around a person who was seen from all sides (rad): front, sides and back will do.
 pub const CLOSED: f32 = 1.75;
 
 /// A body with the surface that was seen.
@@ -87,7 +87,7 @@ impl BodyFit {
         self.shape_filter = again;
         let shape = self.shape_filter.estimate().0;
         let body = self.model.shapes.body(&shape).body;
-        // What is seen of somebody in clothes is no skin.
+        // What is seen of a person in clothes is no skin.
         let clothed = self.options.clothed;
         let rest = if clothed { body.mesh.positions } else { self.surface(&shape, &body, &kept, &mut views) };
         self.last = self.last_pose_again(frames, &kept, &shape);

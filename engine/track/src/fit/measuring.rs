@@ -276,7 +276,7 @@ pub fn covariance_of(
     }
 }
 
-/// What clothes add to it (m), in the order of [`MEASURES`]: how far everyday ones stand off the skin nobody sees from outside. The fit
+/// What clothes add to it (m), in the order of [`MEASURES`]: how far everyday ones stand off the skin cannot be seen from outside. The fit
 /// follows the inner side of what it sees; a loose T-shirt lies 5 mm farther off or nearer than it thinks, which is 35 mm of girth.
 const CLOTHES_ERROR: [f32; MEASURES.len()] =
     [0.006, 0.006, 0.008, 0.008, 0.008, 0.010, 0.035, 0.030, 0.030, 0.028, 0.018];

@@ -1,4 +1,4 @@
-//! What a caller chooses about the body fit.
+//! Options of the body fit.
 
 use toile_base::skeleton::Joint;
 
@@ -39,21 +39,21 @@ impl FitOptions {
 /// that the thirty cells there count as one: 4 mm times the root of 30.
 const CELL_SIGMA: f32 = 0.022;
 
-/// The same where somebody is measured: errors of a body that the model cannot have are correlated over more than a hand's
+/// The same where a person is measured: errors of a body that the model cannot have are correlated over more than a hand's
 /// breadth, and then a front that fits a little better does not outweigh the breadth that is seen.
 const CORRELATED_CELL_SIGMA: f32 = 0.040;
 
-/// Share of the usual spreads of joint angles that somebody has who stands upright to be measured.
+/// Share of the usual spreads of joint angles that a person has who stands upright to be measured.
 const UPRIGHT: f32 = 0.5;
 
-/// Standard deviation of a joint angle's change from one frame to the next (rad): of somebody who moves; of somebody who stands, and
+/// Standard deviation of a joint angle's change from one frame to the next (rad): of a person who moves; of a person who stands, and
 /// their arms, which a turn hides for some frames.
 const MOTION: f32 = 0.25;
 const STILL: f32 = 0.03;
 const STILL_ARM: f32 = 0.10;
 
 impl FitOptions {
-    /// Whether the outline shows the body from both sides: of somebody who is measured, and whose clothes do not stand off.
+    /// Whether the outline shows the body from both sides: of a person who is measured, and whose clothes do not stand off.
     pub(super) const fn has_rim(&self) -> bool {
         matches!(self.stance, Stance::Held) && !self.clothed
     }

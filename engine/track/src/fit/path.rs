@@ -1,4 +1,4 @@
-//! The way that somebody who is measured took through the frames.
+//! Path of the measured person through the frames.
 
 use std::f32::consts::TAU;
 
@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::posed_body::FitState;
 
-/// One frame of somebody who is measured.
+/// One frame of the measured person.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PathState {
     /// Number of the frame, from 0.

@@ -1,8 +1,8 @@
-//! The surface that was seen: how far it lies outside the fitted body, vertex by vertex.
+//! The surface that was seen: its distance outside the fitted body, vertex by vertex.
 //!
 //! A parametric body has some twenty numbers, and no two people are the same in all others. What the camera saw beside the
 //! fitted surface, over all views, is a field of displacements along the body's normals: smooth, near what was seen,
-//! and fading to nothing where nobody looked. The tape then lies on that surface.
+//! and fading to nothing where nothing was seen. The tape then lies on that surface.
 
 use super::posed_body::BodyModel;
 use super::residuals::Observation;
@@ -147,7 +147,7 @@ mod tests {
         let mut seen = SeenSurface::new(model.samples.len());
         let nothing = seen.displacements(&model, &vec![0.0; vertices]);
         assert!(nothing.iter().all(|d| *d == 0.0));
-        // Everything 5 mm out, but for the head, where nobody looked.
+        // Everything 5 mm out, but for the head, which was not seen.
         let neck = shapes.body(shapes.mean()).body.levels.neck;
         let place = |v: u32| shapes.base().positions[v as usize];
         for (i, sample) in model.samples.iter().enumerate() {

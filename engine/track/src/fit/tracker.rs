@@ -29,7 +29,7 @@ pub struct Company {
 const BEHIND: f32 = 0.6;
 
 impl BodyTracker {
-    /// A tracker that has seen nobody; the body model is that of a sex, and the shopper is whoever enters the zone.
+    /// A tracker that has seen no person yet; the body model is that of a sex, and the shopper is the person who enters the zone.
     pub fn new(sex: Sex, zone: Zone, options: FitOptions) -> Self {
         Self {
             segmenter: Segmenter::new(zone),
@@ -39,7 +39,7 @@ impl BodyTracker {
         }
     }
 
-    /// Tracks the shopper in the next frame. Whoever takes their place in the zone starts a new fit.
+    /// Tracks the shopper in the next frame. Another person in their place in the zone starts a new fit.
     pub fn push(&mut self, frame: &DepthFrame) -> FittedFrame {
         let seen = self.segmenter.push(frame);
         let mask = seen.mask;
@@ -79,7 +79,7 @@ impl BodyTracker {
     }
 }
 
-/// The joints of a whole recording, one a frame; absent in frames in which nobody is tracked.
+/// The joints of a whole recording, one a frame; absent in frames in which no person is tracked.
 pub fn track(frames: &[DepthFrame], sex: Sex, options: FitOptions) -> Vec<Joints> {
     let mut tracker = BodyTracker::new(sex, Zone::default(), options);
     frames.iter().map(|frame| tracker.push(frame).joints).collect()

@@ -1,4 +1,4 @@
-//! What is recognised, and the longest gap between frames that a gesture survives.
+//! Events of gestures, and the longest gap between frames that a gesture survives.
 
 use super::trunk::Side;
 

@@ -13,7 +13,7 @@ const HYSTERESIS: [f32; 2] = [0.35, 0.65];
 /// A hand must be seen this long before it is called open or closed (ns).
 const FIRST_NS: u64 = 200_000_000;
 
-/// After a change no other is given for this long (ns): nobody opens and closes a hand on purpose faster.
+/// After a change no other is given for this long (ns): people do not open and close a hand on purpose faster.
 const COOL_DOWN_NS: u64 = 300_000_000;
 
 /// The grip of one hand.

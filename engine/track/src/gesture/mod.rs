@@ -33,7 +33,7 @@ const SHORTEST_STEP_NS: u64 = 20_000_000;
 /// After an event no other is given for this long (ns): arms need as long to come to rest.
 const COOL_DOWN_NS: u64 = 500_000_000;
 
-/// The trunk moves faster than this (arm lengths/s) in somebody who walks, jumps or sits down: no time for gestures.
+/// The trunk moves faster than this (arm lengths/s) in a person who walks, jumps or sits down: no time for gestures.
 /// Standing people sway at under a tenth of it.
 const WALKING: f32 = 0.6;
 
@@ -74,7 +74,7 @@ impl Default for Gestures {
 }
 
 impl Gestures {
-    /// A recogniser that has seen nobody. Allocates all that it will ever need.
+    /// A recogniser that has seen no person yet. Allocates all that it will ever need.
     pub fn new() -> Self {
         Self {
             last_ns: None,

@@ -50,7 +50,7 @@ const ASIDE: f32 = 0.5;
 const DEEP: f32 = 0.9;
 
 /// How long a stroke to the side must not turn back to be believed (ns); wavers turn within it. A stroke upwards may be
-/// followed by dropping the arm, and nobody waves up and down.
+/// followed by dropping the arm, and people do not wave up and down.
 const PROVING_NS: [u64; 2] = [130_000_000, 0];
 
 /// A stroke that gives back this part of its length has turned.

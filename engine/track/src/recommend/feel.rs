@@ -1,4 +1,4 @@
-//! How a zone feels: one scale from its ease to a word and to the fit map's colours.
+//! Feel of a zone: one scale from its ease to a word and to the fit map's colours.
 
 toile_base::named! {
     /// How a zone feels, from tight to loose. A garment is comfortable within the range that its file gives; its lower third is

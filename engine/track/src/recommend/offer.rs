@@ -1,4 +1,4 @@
-//! A garment to choose a size of: the sizes that are made, their finished girths, and the ease that feels right.
+//! A garment with its choice of sizes: the sizes that are made, their finished girths, and the ease that feels right.
 
 use toile_assets::sizes::{GarmentKind, Girth, SizeTable};
 

@@ -1,4 +1,4 @@
-//! How probable each size is: bodies drawn from the measures' errors, each given the size that suits it best.
+//! Probability of each size: bodies drawn from the measures' errors, each given the size that suits it best.
 
 use super::{EaseRange, MadeSize, ScoredZone};
 

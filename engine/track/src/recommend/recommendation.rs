@@ -1,4 +1,4 @@
-//! A size, judged: how each zone fits, how probable each size is, and what to do where none is sure.
+//! A judged size: the fit of each zone, the probability of each size, and the advice where none is sure.
 
 use super::feel::Feel;
 use super::offer::Zone;
@@ -13,7 +13,7 @@ toile_base::named! {
         Good = "good",
         /// More ease than is comfortable.
         Loose = "loose",
-        /// Nobody saw the body there: its girth is guessed from the stature and the shoulders.
+        /// The body was not seen there: its girth is guessed from the stature and the shoulders.
         Unknown = "unknown",
     }
 }
@@ -31,13 +31,13 @@ pub struct ZoneFit {
     pub sigma: f32,
     /// Whether it is comfortable.
     pub verdict: Verdict,
-    /// How it feels, in one of seven words; none where nobody saw the body there.
+    /// How it feels, in one of seven words; none where the body was not seen there.
     pub feel: Option<Feel>,
     /// How it may feel too: what the ease less or more its error comes to, where that is comfortable when this is not or the
     /// other way round.
     pub perhaps: Option<Feel>,
-    /// -1 (loose) .. 1 (tight), within half of it where the zone is comfortable: the fit map's scale; none where nobody saw the
-    /// body there.
+    /// -1 (loose) .. 1 (tight), within half of it where the zone is comfortable: the fit map's scale; none where the body was
+    /// not seen there.
     pub tightness: Option<f32>,
     /// The same for a person to read.
     pub sentence: String,

@@ -1,4 +1,4 @@
-//! Libraries of live cameras: which are there, and the exact command for those that are not.
+//! Libraries of live cameras: the installed ones, and the exact command for each missing one.
 
 use toile_pose::files::{self, NetworkPackage};
 use toile_sensors::source::live::{self, CameraError, CameraKind};

@@ -1,4 +1,4 @@
-//! One thing that is looked at, and the texts in which the kernel describes it.
+//! One check, and the texts in which the kernel describes its subject.
 
 use std::path::Path;
 

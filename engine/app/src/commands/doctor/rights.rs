@@ -1,4 +1,4 @@
-//! What the kernel lets this process do: real-time priority, locked memory.
+//! Rights of this process: real-time priority, locked memory.
 
 use toile_engine::frame_loop::thread_roles::{self, RolePlacement, ThreadRole};
 

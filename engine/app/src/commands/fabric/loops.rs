@@ -1,4 +1,4 @@
-//! The loops of a fabric: made by its law, read as the Kawabata system reads them, drawn beside what was measured.
+//! Hysteresis loops of a fabric: computed from its curves, read as the Kawabata system reads them, drawn beside the measured values.
 
 use serde::Serialize;
 use toile_base::fabric::Fabric;
@@ -11,23 +11,23 @@ use toile_view::plot::chart::{Chart, Series, SeriesStyle};
 use toile_view::plot::raster;
 use toile_view::plot::{BLACK, Drawing, SERIES_COLOURS};
 
-/// A loop: how far it is made, between which deformations it is read, its words.
+/// Kind of a loop: its range of deformation, the range in which it is read, its names and units.
 #[derive(Clone, Copy)]
 struct LoopKind {
     name: &'static str,
     /// Deformations between which it goes to and fro (1/m, rad, 1): the Kawabata system's.
     most: [f64; 2],
     read: [f64; 2],
-    /// What the Kawabata system calls stiffness and width.
+    /// Symbols of the Kawabata system for stiffness and width.
     symbols: [&'static str; 2],
     unit: [&'static str; 2],
     /// SI units in those two (1).
     of_si: [f64; 2],
-    /// What units of the axes are of these (1).
+    /// Units of the axes in these (1).
     scale: [f64; 2],
 }
 
-/// KES-FB2: to 2.5 1/cm, read at .5 and 1.5.
+/// KES-FB2: to 2.5 1/cm, read at 0.5 and 1.5.
 const fn bending(name: &'static str) -> LoopKind {
     LoopKind {
         name,
@@ -40,7 +40,7 @@ const fn bending(name: &'static str) -> LoopKind {
     }
 }
 
-/// KES-FB1: to 8 degrees, read at .5 and 2.5.
+/// KES-FB1: to 8 degrees, read at 0.5 and 2.5.
 const SHEAR: LoopKind = LoopKind {
     name: "shear",
     most: [-8.0 * DEGREE, 8.0 * DEGREE],
@@ -67,14 +67,14 @@ fn stretch(name: &'static str, curve: &StretchCurve) -> LoopKind {
     }
 }
 
-/// One loop as measured and as the law gives it back.
+/// One loop as measured and as computed from the curve.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LoopReport {
-    /// Which it is.
+    /// Name of the loop.
     pub name: &'static str,
     /// Measured stiffness and width, in `unit`.
     pub measured: [f64; 2],
-    /// Both as read off the law's loop.
+    /// Both as read off the computed loop.
     pub read: [f64; 2],
     /// Units of the two.
     pub unit: [&'static str; 2],
@@ -89,11 +89,11 @@ impl LoopReport {
     }
 }
 
-/// A loop with its law in SI units, its stiffness as measured and its width.
+/// A loop with its curve in SI units, its measured stiffness and width.
 type MeasuredLoop = (LoopKind, LinkCurve, [f64; 2]);
 
 /// The loops that a fabric has, of bending, of shear and of stretch.
-fn laws(fabric: &Fabric) -> [Vec<MeasuredLoop>; 3] {
+fn measured_loops(fabric: &Fabric) -> [Vec<MeasuredLoop>; 3] {
     let widths = fabric.hysteresis;
     let of = |kind: LoopKind, stiffness: f32, width: f32| {
         let measured = [f64::from(stiffness), f64::from(width)];
@@ -120,19 +120,19 @@ fn laws(fabric: &Fabric) -> [Vec<MeasuredLoop>; 3] {
     ]
 }
 
-/// Whether there is anything to draw.
+/// Whether the fabric has a loop to draw.
 pub fn any(fabric: &Fabric) -> bool {
-    laws(fabric).iter().any(|laws| !laws.is_empty())
+    measured_loops(fabric).iter().any(|loops| !loops.is_empty())
 }
 
-/// The loops of a fabric's law, read.
+/// The loops of a fabric's curves, read.
 pub fn readings(fabric: &Fabric) -> Vec<LoopReport> {
     let of = |(kind, mut link_curve, measured): MeasuredLoop| {
         let read = read_loop(kind.most[1], kind.read, |d| link_curve.force(d));
         let [slope, width] = kind.of_si;
         LoopReport { name: kind.name, measured, read: [read.slope * slope, read.width * width], unit: kind.unit }
     };
-    laws(fabric).into_iter().flatten().map(of).collect()
+    measured_loops(fabric).into_iter().flatten().map(of).collect()
 }
 
 /// Points of a branch.
@@ -174,7 +174,7 @@ pub fn png(fabric: &Fabric) -> Result<Vec<u8>, AppError> {
 
 /// The loops as a drawing: bending above, shear and stretch below where they were measured.
 fn drawing(fabric: &Fabric) -> Drawing {
-    let [bent, shear, stretched] = laws(fabric);
+    let [bent, shear, stretched] = measured_loops(fabric);
     let [bent, stretched] = [bent, stretched].map(|loops| match &loops[..] {
         [(kind, warp, measured), (_, weft, _)] if warp == weft => {
             vec![(LoopKind { name: "warp and weft", ..*kind }, *warp, *measured)]

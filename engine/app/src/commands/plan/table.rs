@@ -95,7 +95,7 @@ fn stages(plan: &Plan, lines: &mut Vec<String>, paint: Paint) {
     if !v.within_budget {
         let gives_up = v.gives_up.map_or_else(
             || "the last quality level does not bring it within the budget".to_owned(),
-            |what| format!("the governor gives up {what} to hold the budget"),
+            |what| format!("the quality control gives up {what} to hold the budget"),
         );
         lines.push(paint.tone(&format!("  {gives_up}"), Tone::Warn).into_owned());
         lines.extend(v.cures.iter().map(|c| format!("  cure: {c}")));

@@ -1,4 +1,4 @@
-//! Dumps of a run: where every vertex of the user's mesh is, frame by frame, so that anybody can check them with tools
+//! Dumps of a run: the place of every vertex of the user's mesh, frame by frame, so that users can check them with tools
 //! of their own.
 //!
 //! CSV has the shortest decimals that read back as the same f32. PLY is binary little endian (version 1.0, G. Turk 1994)

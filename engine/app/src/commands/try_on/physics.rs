@@ -1,4 +1,4 @@
-//! How the physics of a try-on went: times, strain, contact, and what was out of order.
+//! Report of the physics of a try-on: times, strain, contact, and faults.
 
 use toile_base::garment::Garment;
 use toile_base::limits::STEP_HZ;

@@ -1,4 +1,4 @@
-//! What is said of the garments that are worn.
+//! Report of the worn garments.
 
 use toile_assets::wardrobe::own;
 use toile_fitting::dress::garment_source::FittedGarment;

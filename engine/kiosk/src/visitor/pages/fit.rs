@@ -12,7 +12,7 @@ fn cm(m: f32) -> f32 {
     m * 100.0
 }
 
-/// An error as it is said (cm): a whole one at least, for nobody's tape is better.
+/// An error as shown (cm): at least 1 cm, because no tape is better.
 fn rounded_sigma(sigma_m: f32) -> TextValue<'static> {
     TextValue::Number(cm(sigma_m).max(1.0), 0)
 }

@@ -29,7 +29,7 @@ fn open(face: Result<(), FaceTrouble>) -> Play {
     play
 }
 
-/// How often somebody was dressed.
+/// How often a person was dressed.
 fn dressed(play: &Play) -> usize {
     play.effects.iter().filter(|e| matches!(e, Effect::Dress { .. })).count()
 }
@@ -101,7 +101,7 @@ fn what_goes_wrong_is_said_and_leaves_everything_as_it_was() {
 }
 
 #[test]
-fn a_face_goes_with_who_leaves_and_where_somebody_else_looks() {
+fn a_face_is_wiped_on_leaving_and_for_strangers() {
     let on = || {
         let mut play = open(Ok(()));
         play.press(Action::TakeFace);
@@ -122,7 +122,7 @@ fn a_face_goes_with_who_leaves_and_where_somebody_else_looks() {
     play.wait(1_100);
     assert!(play.page() == Page::Second && play.effects.contains(&Effect::Hide));
     assert_eq!(play.model.visit.face, Default::default());
-    // One that is being taken while they leave is nobody's.
+    // One that is being taken while they leave is thrown away.
     let mut play = open(Ok(()));
     play.press(Action::TakeFace);
     play.press(Action::Back);

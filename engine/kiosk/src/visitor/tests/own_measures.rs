@@ -1,4 +1,4 @@
-//! Measures that shoppers took by tape: typed, refused with a reason, laid over what was seen, removed, forgotten.
+//! Measures that shoppers took by tape: typed, refused with a reason, merged with the seen measures, removed, forgotten.
 
 use super::*;
 use crate::visitor::measure_entry::OwnMeasure;
@@ -9,7 +9,7 @@ fn place(own: OwnMeasure) -> usize {
     OwnMeasure::ALL.into_iter().position(|o| o == own).unwrap()
 }
 
-/// Somebody whose hip was not seen, on the page of their own measures.
+/// A person whose hip was not seen, on the page of their own measures.
 fn listed() -> Play {
     let mut play = Play::new();
     play.hide_hip();
@@ -38,7 +38,7 @@ fn size(play: &Play) -> usize {
 }
 
 #[test]
-fn a_hip_that_nobody_saw_is_typed_and_sizes_and_the_body_follow() {
+fn an_unseen_hip_is_typed_and_sizes_follow() {
     let mut play = listed();
     let dressed = |play: &Play| play.effects.iter().filter(|e| matches!(e, Effect::Dress { .. })).count();
     let (before, guessed) = (dressed(&play), play.model.known().unwrap().measured.measures);
@@ -170,7 +170,7 @@ fn who_is_measured_again_keeps_what_they_took_by_tape_and_who_leaves_leaves_noth
 }
 
 #[test]
-fn a_zone_that_nobody_saw_has_no_feel_no_colour_and_leads_to_the_tape() {
+fn an_unseen_zone_has_no_feel_and_no_colour() {
     let mut play = Play::new();
     play.hide_hip();
     play.see(Some(1));

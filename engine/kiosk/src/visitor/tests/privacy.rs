@@ -1,4 +1,4 @@
-//! What is left of somebody who has left: nothing.
+//! No data of a person is left after they have left.
 
 use super::*;
 use crate::visitor::picture::encode;

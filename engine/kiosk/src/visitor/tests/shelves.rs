@@ -84,7 +84,7 @@ fn garments_with_photographs_are_tiles_with_price_and_what_pressing_does() {
 }
 
 #[test]
-fn a_wardrobe_changes_only_when_nobody_is_there() {
+fn a_wardrobe_changes_only_without_a_visitor() {
     let mut play = Play::new();
     assert!(play.model.is_idle());
     play.press(Action::LargeType);

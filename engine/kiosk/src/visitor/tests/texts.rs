@@ -1,4 +1,4 @@
-//! The texts: all languages say the same things, all that the code says is there, and nothing falls back.
+//! The texts: all languages have the same keys, every key of the code exists, and no text falls back.
 
 use std::collections::{BTreeMap, BTreeSet};
 

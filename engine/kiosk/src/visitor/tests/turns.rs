@@ -1,4 +1,4 @@
-//! A turn before the display: offered where there is depth, taken up only by who turns, and never waited for by who does not.
+//! A turn before the display: offered where there is depth, taken up only by turning, and never waited for.
 
 use std::f32::consts::TAU;
 
@@ -119,7 +119,7 @@ fn no_turn_is_offered_to_who_sits_nor_where_there_is_no_depth() {
 }
 
 #[test]
-fn somebody_else_ends_a_turn_and_forgetting_leaves_nothing_of_it() {
+fn another_person_ends_a_turn_and_leaves_nothing() {
     let mut play = measuring();
     play.face(0.0);
     turn(&mut play, 0.3 * TAU, 1.8);

@@ -1,4 +1,4 @@
-//! What happens to whom.
+//! Visits: one shopper, another person, an empty view, and the pages in between.
 
 use std::net::{Ipv4Addr, SocketAddr};
 
@@ -30,7 +30,7 @@ const ALL: [Page; 15] = [
 ];
 
 #[test]
-fn a_whole_visit_by_touch_ends_where_it_began() {
+fn a_visit_by_touch_ends_where_it_began() {
     let mut play = Play::dressed();
     let trousers = play.model.wardrobe.find("wide-leg-trousers").unwrap();
     let shirt = play.model.wardrobe.find("tee").unwrap();
@@ -139,7 +139,7 @@ fn who_is_left_alone_is_warned_and_then_forgotten_and_who_comes_back_in_time_goe
 }
 
 #[test]
-fn somebody_else_sees_nothing_of_the_first_and_says_who_they_are() {
+fn another_person_sees_nothing_of_the_first() {
     let mut play = Play::dressed();
     play.press(Action::TakePicture);
     play.wait(1_000);
@@ -310,7 +310,7 @@ fn every_page_is_reached_by_keys_alone_and_by_gestures_alone() {
                 play.update(input);
             }
             play.wait(20 * dice.below(60) as u64);
-            // Now and then they leave, or somebody else comes.
+            // Now and then they leave, or another person comes.
             match turn % 400 {
                 150 => play.see(None),
                 200 => play.see(Some(1 + turn / 400)),
@@ -351,7 +351,7 @@ fn swipes_move_the_focus_and_once_the_view_is_turned_they_turn_it_on() {
 }
 
 #[test]
-fn somebody_elses_gestures_and_presses_of_a_page_before_do_nothing() {
+fn strangers_gestures_and_late_presses_do_nothing() {
     let mut play = Play::dressed();
     play.see(Some(9));
     play.update(Input::Gesture(Gesture::Confirm));
@@ -399,7 +399,7 @@ fn whatever_is_pressed_something_has_the_focus_and_one_control_at_most_stands_ou
     let mut dice = Dice(2026);
     for turn in 0..9_000 {
         if turn % 500 == 499 {
-            // Everybody walks away, and what was touched is long ago.
+            // Every person walks away, and what was touched is long ago.
             play.see(None);
             play.wait(13_000);
         }
@@ -455,10 +455,10 @@ fn a_camera_that_is_lost_or_covered_is_said_on_every_page_and_unsaid_when_it_is_
     }
 }
 
-/// Whoever wants to see themselves does, with a word where the clothes cannot be put on the picture, and is the mannequin's again when
+/// A visitor may choose to see themselves, with a word where the clothes cannot be put on the picture, and is the mannequin's again when
 /// they say so, or have left.
 #[test]
-fn whoever_wants_to_sees_themselves_and_is_forgotten_with_it() {
+fn own_pictures_are_shown_on_request_and_forgotten() {
     let sees = |play: &Play| matches!(play.screen().body_view, BodyView::Shopper { own_picture: true, .. });
     let offers = |play: &Play| play.screen().controls.iter().any(|c| c.action == Action::OwnPicture);
     let mut play = Play::dressed();
@@ -467,7 +467,7 @@ fn whoever_wants_to_sees_themselves_and_is_forgotten_with_it() {
     assert!(offers(&play) && !sees(&play), "the mannequin first");
     play.press(Action::OwnPicture);
     assert!(sees(&play) && play.model.shows_own_picture());
-    // Whoever sees themselves turns by turning.
+    // A visitor who sees themselves turns the picture by turning.
     assert!(!play.screen().controls.iter().any(|c| matches!(c.action, Action::Turn(_))));
     let says = |play: &Play, key: TextKey| {
         let words = play.texts.of(play.model.language()).text(key);

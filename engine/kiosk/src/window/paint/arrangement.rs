@@ -1,5 +1,5 @@
-//! Arrangement: where the panel stands, so that whoever looks at the clothes sees them large. A mannequin is three fifths of the display
-//! high at least wherever clothes are shown, unless somebody asked for large type or a code has to be read off the display.
+//! Places the panel so that the clothes are shown large. Wherever clothes are shown, the mannequin takes at least three fifths of the
+//! display's height, unless the visitor asked for large type or a code has to be read off the display.
 
 use egui::{Pos2, Rect, pos2};
 
@@ -10,7 +10,7 @@ use crate::visitor::screen::{Block, BodyView, Screen};
 /// Most of a standing display's height that a panel below the body covers.
 pub const MOST_PANEL: f32 = 0.72;
 
-/// The same where it stands before somebody who looks at themselves, if it can.
+/// The same where it stands before a person who looks at themselves, if it can.
 const BELOW_BODY: f32 = 0.48;
 
 /// Most of the display's height that a panel below two bodies covers: what is left holds them at three fifths of it.

@@ -1,4 +1,4 @@
-//! Blocks: how much room what is read takes, before it has its place.
+//! Blocks: the size of each text and picture, before it has its place.
 
 use egui::{FontId, Painter, Pos2, Rect, Vec2, vec2};
 

@@ -1,4 +1,4 @@
-//! Controls: rows of buttons. Neighbours that look alike stand in one grid, so that what is seen has the order of the Tab key.
+//! Controls: rows of buttons. Neighbours that look alike stand in one grid, so that the order on the screen is that of the Tab key.
 
 use std::ops::Range;
 

@@ -40,7 +40,7 @@ const PAGE: &str = "TOILE_FACE_PAGE";
 /// A kiosk's usual display.
 const DISPLAY: DisplayMetrics = DisplayMetrics { size: [1080, 1920], pixel_mm: 0.63 };
 
-/// Somebody 2.3 m before a camera on its side that sees all of them.
+/// A person 2.3 m before a camera in portrait format that sees all of them.
 const STANDING: Shot =
     Shot { below: 0.7, distance: 2.3, yaw: 0.0, height: 0.35, size: Size::new(720, 1280), fov_y: 0.84 };
 
@@ -110,7 +110,7 @@ fn skin(image: &Image) -> f64 {
 }
 
 #[test]
-fn a_picture_of_somebody_becomes_the_face_on_the_page() {
+fn a_portrait_becomes_the_face_on_the_page() {
     if let Err(error) = NetworkPackage::Face.check(&files::folder()) {
         assert!(env::var_os(files::FOLDER_VARIABLE).is_none(), "{error}");
         eprintln!("skipped, did not run: {error}");

@@ -50,7 +50,7 @@ fn ease(t: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// The mark on the floor, brighter when somebody stands on it.
+/// The mark on the floor, brighter when a person stands on it.
 fn mark((painter, palette): (&Painter, &Palette), floor: Pos2, tall: f32, arrived: f32) {
     let size = vec2(0.3, 0.062) * tall;
     let line = (tall * 0.014).max(2.0);

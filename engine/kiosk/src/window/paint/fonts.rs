@@ -1,4 +1,4 @@
-//! Fonts: Noto Sans and what of Noto Sans CJK JP the texts need, within the program, so that no shop has to install one.
+//! Fonts: Noto Sans and the glyphs of Noto Sans CJK JP that the texts need, within the program, so that no shop has to install one.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! Layout: where everything of a screen stands, before anything is painted: what a finger hits is what a test measures.
+//! Layout: the places of all parts of a screen, before anything is painted. Touch and tests use the same places.
 
 use egui::{Painter, Pos2, Rect, Vec2, pos2, vec2};
 

@@ -1,9 +1,6 @@
-//! Paint: a screen as shapes.
+//! Paints a screen as shapes, on the render thread: at most 2 ms of its core for each picture. Neither pictures nor physics wait for it.
 //!
-//! Budget: 2 ms a picture of the render thread's core; no picture waits for it, nor does physics.
-//! Thread: render.
-//!
-//! [`layout`] finds places, `shapes` fills them, [`touch`] finds what was pressed in the same places. Look follow the
+//! [`layout`] finds places, `shapes` fills them, [`touch`] finds the pressed control in the same places. Sizes follow the
 //! display: type from its height, touch targets from its millimetres.
 
 mod arrangement;

@@ -1,4 +1,4 @@
-//! Every page of the visitor, in every language, on every display: a law of the layout, and pictures to look at.
+//! Tests every page of the visitor, in every language, on every display: the rules of the layout, and pictures to look at.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -24,7 +24,7 @@ pub fn all(language: usize, large: bool) -> BTreeMap<String, Screen> {
     seen
 }
 
-/// The pages of somebody who may see themselves: offered, and with the longest word about why nothing is worn.
+/// The pages of a person who may see themselves: offered, and with the longest word about why nothing is worn.
 fn own_picture(language: usize, large: bool) -> BTreeMap<String, Screen> {
     let mut play = begun(language, large);
     play.see(Some(1));
@@ -37,7 +37,7 @@ fn own_picture(language: usize, large: bool) -> BTreeMap<String, Screen> {
     [("30-see-myself".to_owned(), offered), ("31-myself".to_owned(), plain)].into()
 }
 
-/// The pages of somebody who puts their own face on the mannequin: offered beside all else, asked for, with the longest trouble, and on.
+/// The pages of a person who puts their own face on the mannequin: offered beside all else, asked for, with the longest trouble, and on.
 fn own_face(language: usize, large: bool) -> BTreeMap<String, Screen> {
     let mut seen = BTreeMap::new();
     let mut play = begun(language, large);
@@ -70,7 +70,7 @@ fn begun(language: usize, large: bool) -> Play {
     play
 }
 
-/// The pages of somebody who is offered a turn, whose hip is not seen, and who gives measures by tape.
+/// The pages of a person who is offered a turn, whose hip is not seen, and who gives measures by tape.
 fn by_tape(language: usize, large: bool) -> BTreeMap<String, Screen> {
     let mut seen = BTreeMap::new();
     let mut play = begun(language, large);

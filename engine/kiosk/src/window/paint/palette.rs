@@ -1,4 +1,4 @@
-//! Palette: the colours of everything that is painted: the kiosk's own, or those of a shop's theme with what follows from them.
+//! Palette: the colours of everything that is painted: the kiosk's own, or those of a shop's theme with the colours derived from them.
 
 use egui::Color32;
 use toile_assets::catalogue::limits::MIN_CONTRAST;

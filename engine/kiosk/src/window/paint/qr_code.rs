@@ -14,10 +14,10 @@ pub fn modules(side: usize) -> f32 {
     (side + 2 * QUIET) as f32
 }
 
-/// Width and height of the whole within a room (pixels), its modules whole pixels wide.
-pub fn side(side: usize, room: f32) -> f32 {
+/// Width and height of the whole within a space (pixels), its modules whole pixels wide.
+pub fn side(side: usize, space: f32) -> f32 {
     let all = modules(side);
-    (room / all).floor().clamp(1.0, MOST_MODULE) * all
+    (space / all).floor().clamp(1.0, MOST_MODULE) * all
 }
 
 /// Paints it in the middle of a place, its modules whole pixels wide.

@@ -37,7 +37,7 @@ pub struct ScreenStyle {
     pub target: f32,
     /// Whether the panel stands beside the picture.
     pub landscape: bool,
-    /// Whether the panel is a column beside somebody who stands.
+    /// Whether the panel is a column beside a person who stands.
     pub narrow: bool,
     /// Height of the smallest type.
     pub least: f32,

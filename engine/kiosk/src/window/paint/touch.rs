@@ -1,4 +1,4 @@
-//! Touch: what a finger or the mouse presses, scrolls and turns. One finger at a time counts; a second one is a palm.
+//! Touch: presses, scrolls and turns by a finger or the mouse. One finger at a time counts; a second one is a palm.
 
 use egui::{Pos2, Vec2};
 
