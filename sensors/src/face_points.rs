@@ -7,7 +7,7 @@
 //!
 //! A point that is not seen is `null`. `camera` names one of a calibration; without it `focal_px`, where the lens is known. Names are
 //! the numbers of the 68 points: `"30"` is the tip of the nose. `outline` is a curve along the outline of the head, or several. With
-//! `"sequence": true` the photographs are frames of one camera in the order of time, of which some may show nobody.
+//! `"sequence": true` the photographs are frames of one camera in the order of time, and some may show no person.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! The shopper is found among all that a depth camera sees, and nobody else ever is in the mask.
+//! The shopper is found in everything that a depth camera sees, and no other person is ever in the mask.
 
 use glam::{Quat, Vec3};
 use toile_base::body::{Body, Measures, Sex};

@@ -1,4 +1,4 @@
-//! A mesh by somebody else, while it becomes a garment: every vertex and face remembers what it was in the file.
+//! A foreign mesh while it becomes a garment: every vertex and face remembers what it was in the file.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! A garment package: a pattern with its seams, spacing and fabric in one file, to be draped on whoever wears it.
+//! A garment package: a pattern with its seams, spacing and fabric in one file, to be draped on its wearer.
 
 use std::path::Path;
 

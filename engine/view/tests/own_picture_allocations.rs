@@ -1,5 +1,5 @@
 //! The mirror that shows the shopper's own picture allocates nothing once it has drawn a picture of a size: every allocation of the thread is
-//! counted while somebody moves, goes out of the picture, and comes back.
+//! counted while a shopper moves, leaves the picture, and comes back.
 
 #![expect(unsafe_code, reason = "a counting allocator has to implement an unsafe trait")]
 

@@ -1,7 +1,6 @@
 //! Joints made believable, frame by frame: gate, smooth, hold what is lost, keep the bones' lengths.
 //!
-//! Budget: under 50 us a frame, no allocation, fixed state.
-//! Thread: the sensor thread.
+//! Runs on the sensor thread in less than 50 µs a frame, with a fixed state and no allocation.
 
 pub mod angles;
 pub mod bones;

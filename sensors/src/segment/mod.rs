@@ -1,12 +1,11 @@
-//! Who of all that a depth camera sees is the shopper: floor off, pieces of surface, people, the one in the measuring zone.
+//! Finds the shopper in a depth frame: takes the floor away, then finds pieces of surface, people, and the one in the measuring zone.
 //!
-//! Budget: 5 ms a 640x480 frame, no allocation once the first frame was seen.
-//! Thread: the sensor thread.
+//! Runs on the sensor thread: at most 5 ms for a 640x480 frame. After the first frame it allocates nothing.
 //!
 //! No user map is needed. The floor is a plane found by random sampling and then fitted robustly ([`floor`]); what stands on it
 //! falls into pieces where depth jumps (`pieces`); pieces that carry a head above a chest are people, and one piece of
 //! two people who touch is parted between their heads (`heads`). Of the people, the shopper is the nearest one in the
-//! [`Zone`], and stays the shopper until they leave it. Nothing of anybody else is in the mask.
+//! [`Zone`], and stays the shopper until they leave it. No pixel of another person is in the mask.
 
 pub mod floor;
 mod grid;

@@ -1,4 +1,4 @@
-//! Somebody in a room, as a camera sees them, and the recordings that a Kinect would make of it.
+//! A person in a room, as a camera sees them, and the recordings that a Kinect would make of it.
 
 use std::fmt::Write;
 use std::fs;

@@ -1,4 +1,4 @@
-//! Small recordings of skeleton trackers, made here: somebody who stands before the camera, 2.5 m away and 1 m below it.
+//! Small recordings of skeleton trackers, made here: a person who stands before the camera, 2.5 m away and 1 m below it.
 
 use glam::Vec3;
 use toile_base::frame::Joints;

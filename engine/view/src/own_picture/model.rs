@@ -1,4 +1,4 @@
-//! What is drawn of somebody who is dressed: made once, where they are dressed.
+//! The model of a dressed shopper as it is drawn, made once when they are dressed.
 
 use std::sync::Arc;
 

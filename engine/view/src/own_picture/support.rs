@@ -1,4 +1,4 @@
-//! Whether the picture bears out that the fitted body stands there: if it does not, no garment is drawn on anybody.
+//! Checks the fitted body against the picture. If the picture does not confirm the body, no garment is drawn.
 
 use glam::Vec2;
 

@@ -1,4 +1,4 @@
-//! Depth images that go round: made at load, lent out, and filled again once nobody has them any more.
+//! A pool of depth images: made at load, lent out, and filled again after the last borrower has dropped them.
 
 use std::sync::Arc;
 
