@@ -1,6 +1,6 @@
 //! The one way to read a user's file: a regular file, of a bounded size, or one sentence that says what is wrong.
 //!
-//! What is not a regular file is refused before it is opened, because opening a FIFO waits for a writer and reading a
+//! Anything but a regular file is refused before it is opened, because opening a FIFO waits for a writer and reading a
 //! device may never end. The opened file is looked at again, in case it was exchanged in between, and the bytes are
 //! counted while they are read, because a file may grow and those of `/proc` say that they are empty.
 

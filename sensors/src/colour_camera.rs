@@ -1,4 +1,4 @@
-//! How a colour camera sees the world: its lens, and where it stands. What is drawn on its picture is drawn through this.
+//! A colour camera: its lens and its pose. Everything drawn on its picture is projected through it.
 
 use glam::{Affine3A, Mat3, Vec2, Vec3};
 

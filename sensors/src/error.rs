@@ -1,4 +1,4 @@
-//! What can be wrong with a recording: one sentence that says what, where, and the cure.
+//! Errors of a recording: one sentence with the fault, its place, and the cure.
 
 use std::fmt;
 

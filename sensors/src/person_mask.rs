@@ -1,4 +1,4 @@
-//! Which parts of a picture show a person: odds in a square of it that need not be upright.
+//! The odds of a person at each pixel of a square of the picture, which need not be upright.
 
 use glam::{Affine2, Vec2};
 

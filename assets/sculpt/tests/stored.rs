@@ -1,4 +1,4 @@
-//! What `toile-assets` ships is what the drawings give.
+//! The bodies that `toile-assets` ships equal those of the drawings.
 
 use toile_assets::body::stored::StoredBodies;
 

@@ -1,4 +1,4 @@
-//! What becomes of each piece: cloth where it can be simulated well, else skin; small ones ride along without bending.
+//! Decides the use of each piece: cloth if it can be simulated well, else skin; small pieces ride along without bending.
 
 use glam::Vec3;
 

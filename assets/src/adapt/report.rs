@@ -1,4 +1,4 @@
-//! What was found in a mesh by others, what was repaired, and what became of each of its pieces.
+//! Report on a foreign mesh: findings, repairs, and the use of each piece.
 
 use serde::Serialize;
 

@@ -1,7 +1,7 @@
 //! Calibration: the sliders at which a body has the given measures, all at once.
 //!
-//! What is given is met; what is not is expected as people have it: the readings of a body are held against a normal
-//! distribution of people ([`People`]), so that what is unmeasured follows from what is measured by regression, and a
+//! Given measures are met; the others take the values that people have. The readings of a body are held against a normal
+//! distribution of people ([`People`]), so that unmeasured values follow from measured ones by regression, and a
 //! short term keeps neighbouring segments together. The sum of squares is brought down by Gauss-Newton steps with
 //! the exact gradients of the tape, within bounds of each slider.
 

@@ -1,4 +1,4 @@
-//! What building a body comes to: one that has the measures wanted, or why there is none.
+//! The result of building a body: a body with the wanted measures, or the reason for its absence.
 
 use super::reading::{Readings, Vocabulary, Wanted};
 use toile_base::body::Body;

@@ -1,4 +1,4 @@
-//! What can be read off a body, and the two vocabularies that name it: [`En`] (EN 13402-1, ISO 8559-1) and [`Ansur`].
+//! Measures that can be read off a body, and the two vocabularies that name them: [`En`] (EN 13402-1, ISO 8559-1) and [`Ansur`].
 //!
 //! The standards and the survey lay the tape at other places (neck, waist) or on another pose (sleeve), which moves a
 //! girth by more than its limit. So a set of wanted measures speaks one language or the other, and cannot mix them.

@@ -1,4 +1,4 @@
-//! How much of each vertex an arm, a leg and a clavicle carry: the parts of the body, softened across their borders.
+//! Shares of an arm, a leg and a clavicle in each vertex: the parts of the body, softened across their borders.
 
 use glam::Vec3;
 

@@ -1,4 +1,4 @@
-//! How a photographed garment is held against a body: the level at which it stays, two points of known distance, the girths that it
+//! Placing of a photographed garment on a body: the level at which it stays, two points of known distance, the girths that it
 //! stretches to (Ugur 2008, section 6.2).
 
 use glam::Vec2;

@@ -1,4 +1,4 @@
-//! Whether a font can be shown: read as the painter reads it, and every letter of it drawn once.
+//! Checks a font: reads it as the painter does and draws every letter once.
 
 use skrifa::instance::{LocationRef, Size};
 use skrifa::outline::{DrawSettings, OutlinePen};

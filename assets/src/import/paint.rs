@@ -1,4 +1,4 @@
-//! What the materials of a mesh show: a picture or a colour, from MTL, glTF and MakeHuman's material files.
+//! Materials of a mesh: a picture or a colour, from MTL, glTF and MakeHuman's material files.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! What can be wrong with a pattern, whichever format it came in: what, where, and the cure.
+//! Errors of a pattern in any format: the fault, its place, and the cure.
 
 use thiserror::Error;
 

@@ -1,4 +1,4 @@
-//! What the cloth of a scene meets: spheres, the capsules between them, planes, and their motion.
+//! Colliders of a scene: spheres, the capsules between them, planes, and their motion.
 
 use glam::{Vec3, Vec4};
 

@@ -1,4 +1,4 @@
-//! How pinned vertices move: the groups of pins of a scene, each by a track or by the benchmark's body.
+//! Motion of pinned vertices: the groups of pins of a scene, each moved by a track or by the benchmark's body.
 
 use glam::Affine3A;
 

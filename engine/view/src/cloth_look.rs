@@ -1,4 +1,4 @@
-//! How cloth shows beside its colour: its print, its seams and stitched hems, and how much is seen through it.
+//! Appearance of cloth beyond its colour: its print, its seams and stitched hems, and its transparency.
 
 use std::fmt::{self, Debug, Formatter};
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! What a picture is made from: borrowed surfaces, and the camera that looks at them.
+//! The scene of a picture: borrowed surfaces, and the camera that looks at them.
 
 use std::f32::consts::{FRAC_PI_2, PI};
 

@@ -1,4 +1,4 @@
-//! What a calibration says of one camera, and what cannot be one, each in words that name the mistake behind it.
+//! Parameters of one calibrated camera. Impossible values are refused, and the message names the mistake behind them.
 
 use glam::{DMat3, DVec3};
 

@@ -1,4 +1,4 @@
-//! Which pieces are people, and what else belongs to the shopper.
+//! Finds the pieces that are people, and the other pieces of the shopper.
 
 use glam::{Vec2, Vec3};
 use toile_base::numeric::statistics::quantile;

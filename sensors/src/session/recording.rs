@@ -1,4 +1,4 @@
-//! What a session holds, and what it promises.
+//! A recorded session and its rules.
 
 use crate::error::{FilePlace, ReaderFault, SourceError};
 use crate::limits::{MAX_DEPTH_BYTES, MAX_DEPTH_FRAMES, MAX_DURATION_NS, MAX_GAP_NS, MAX_JOINT_FRAMES};

@@ -1,4 +1,4 @@
-//! Which point of a tracker's skeleton is which of our joints: one table for all of them.
+//! Maps the points of trackers' skeletons to our joints: one table for all trackers.
 //!
 //! The table is data (`data/joint_map.csv`), a row a joint by its H-Anim name, a column a tracker. A cell is a point's
 //! number and name, `mid(a;b)` for the middle of two points, or a point with `(offset)` that lies beside the joint.

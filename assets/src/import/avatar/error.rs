@@ -1,4 +1,4 @@
-//! What can be wrong with an imported body: one sentence each, which names the element and the cure.
+//! Errors of an imported body: one sentence each, which names the element and the cure.
 
 use toile_base::limits::{MAX_BODY_BYTES, MAX_BODY_VERTICES};
 

@@ -1,4 +1,4 @@
-//! What an import gives: a body, and what was found in its file.
+//! The result of an import: a body, and a report on its file.
 
 use super::carry::PruningLoss;
 use toile_base::body::Body;

@@ -1,4 +1,4 @@
-//! Whether a surface is closed: vertices that lie in the same place are one (files repeat them along texture seams),
+//! Checks that a surface is closed: vertices that lie in the same place are one (files repeat them along texture seams),
 //! and an edge with a triangle on one side alone is a boundary.
 
 use std::collections::BTreeMap;

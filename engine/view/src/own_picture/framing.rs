@@ -1,4 +1,4 @@
-//! Which part of a camera's picture is shown, how large, and mirrored.
+//! The shown part of a camera's picture: its place, its scale, and mirrored.
 
 use glam::Vec2;
 

@@ -1,7 +1,7 @@
 //! Light as the picture shows it: how bright, of which colour, and from where.
 //!
-//! What a matte surface reflects is a function of its normal alone that the first spherical harmonics hold to 87 % and more (Basri and Jacobs
-//! 2003; Ramamoorthi and Hanrahan 2001): L(n) = e (1 + d . n). The shopper's body is fitted, so normals are known where it is seen; each
+//! A matte surface reflects light as a function of its normal alone; the first spherical harmonics hold 87 % and more of it (Basri and
+//! Jacobs 2003; Ramamoorthi and Hanrahan 2001): L(n) = e (1 + d . n). The shopper's body is fitted, so normals are known where it is seen; each
 //! part of it has a reflectance of its own, and I = A (1 + d . n) is fitted to each. Colour is that of the whole picture by shades of grey
 //! (Finlayson and Trezzi 2004, p = 6), and e makes the brightest twentieth of the picture as bright as a light wall that faces the light.
 

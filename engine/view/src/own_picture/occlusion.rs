@@ -1,4 +1,5 @@
-//! What of the shopper lies before the garment: by depth where it was measured, by the fitted body and the odds of a person elsewhere.
+//! Finds the parts of the shopper in front of the garment: by depth where it was measured, elsewhere by the fitted body and the
+//! odds of a person.
 
 use glam::{Affine3A, Vec2};
 use toile_base::frame::{DepthFrame, Intrinsics};

@@ -1,4 +1,4 @@
-//! What is drawn on whom, and on whom nothing is.
+//! Shoppers on whom the garment is drawn, and pictures that stay plain.
 
 use glam::{Affine3A, Mat3, Quat, Vec3};
 use toile_assets::scene::{SHOPPER, shopper};

@@ -1,5 +1,5 @@
-//! What a frame is worth: whole or half, new or the same again, of a clock that runs or one that jumped, of a room or of a hand
-//! on the lens; and how the camera stands, from frame to frame.
+//! Checks a frame: whole or half, new or repeated, of a running clock or of one that jumped, of a room or of a hand on the
+//! lens; and follows the state of the camera from frame to frame.
 
 use super::device_clock::DeviceClock;
 use super::live_camera::CameraFrame;

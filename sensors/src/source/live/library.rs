@@ -1,7 +1,7 @@
 //! Libraries of cameras, loaded at run time where they are installed: nothing is needed to build, and a machine without a
 //! camera needs none of them.
 //!
-//! What is loaded stays loaded until the program ends: these libraries have threads of their own, whose code must not go.
+//! A library stays loaded until the program ends, because the code of its own threads must not be unloaded.
 
 #![allow(unsafe_code, reason = "libraries are loaded and their functions looked up")]
 

@@ -1,4 +1,4 @@
-//! What a live camera is, whichever library it is seen through.
+//! The interface of a live camera, the same for every library.
 
 use std::path::PathBuf;
 use std::time::Duration;

@@ -1,4 +1,4 @@
-//! Which cameras there are, and how each is opened.
+//! The kinds of cameras, and the way to open each.
 
 use std::path::PathBuf;
 use std::str::FromStr;

@@ -1,4 +1,4 @@
-//! Which of the people that each camera sees are the same one, and which is the shopper.
+//! Matches the people seen by several cameras, and chooses the shopper.
 //!
 //! Any two people of two cameras are a guess; its points are triangulated, and every other camera adds the person whose
 //! keypoints lie nearest to where those points are seen, if near enough. The guess with the most keypoints that agree is
