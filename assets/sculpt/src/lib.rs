@@ -37,6 +37,6 @@ pub fn stored(drawings: [&str; 2]) -> Result<StoredBodies, toml::de::Error> {
         corners,
         charts,
         regions: woman.regions,
-        twins: woman.twins,
+        mirrors: woman.mirrors,
     })
 }

@@ -100,12 +100,12 @@ fn topology_does_not_depend_on_size_or_sex() {
 #[test]
 fn body_is_symmetric_with_its_weights() {
     for body in [average(Sex::Female), average(Sex::Male)] {
-        let twin = twins(&body);
+        let mirror = mirrors(&body);
         let share = |v: usize, bone: usize| -> f32 {
             let w = &body.weights[v];
             (0..4).filter(|&k| usize::from(w.bones[k]) == bone).map(|k| w.weights[k]).sum()
         };
-        for (v, &other) in twin.iter().enumerate() {
+        for (v, &other) in mirror.iter().enumerate() {
             for bone in 0..BONES {
                 let mirrored = share(other, bone_mirror(bone));
                 assert!((share(v, bone) - mirrored).abs() < 1e-3, "vertex {v} bone {bone}");
@@ -115,7 +115,7 @@ fn body_is_symmetric_with_its_weights() {
 }
 
 /// Each vertex's mirror image.
-fn twins(body: &Body) -> Vec<usize> {
+fn mirrors(body: &Body) -> Vec<usize> {
     let positions = &body.mesh.positions;
     let mut order: Vec<usize> = (0..positions.len()).collect();
     order.sort_by(|&a, &b| positions[a].y.total_cmp(&positions[b].y));

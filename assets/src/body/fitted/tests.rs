@@ -134,8 +134,8 @@ fn gradients_are_those_of_the_readings() {
 fn sides_are_mirror_images_to_the_bit() {
     for sex in SEXES {
         let body = somebody(sex, &mut SplitMix64::new(3)).body;
-        let twin = &model(sex).morphs.near.twin;
-        for (v, &other) in twin.iter().enumerate() {
+        let mirror = &model(sex).morphs.near.mirror;
+        for (v, &other) in mirror.iter().enumerate() {
             for values in [&body.mesh.positions, &body.normals] {
                 let (a, b) = (values[v], values[other as usize]);
                 assert!(a.x == -b.x && a.y == b.y && a.z == b.z, "vertex {v}: {a} {b}");
