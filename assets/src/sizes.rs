@@ -64,7 +64,7 @@ pub enum Population {
     Women,
     /// Men's bodies.
     Men,
-    /// Anybody: garments in unisex sizes, shoppers who did not say.
+    /// Both sexes: garments in unisex sizes, shoppers of unknown sex.
     Mixed,
 }
 

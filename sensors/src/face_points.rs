@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_of_a_sequence_may_show_nobody() {
+    fn frames_of_a_sequence_may_be_empty() {
         let frame = "{\"picture\": \"a.png\", \"points\": []}";
         let all = [frame; 20].join(",");
         let read = parse(&format!("{{\"sequence\": true, \"photographs\": [{all}]}}"), Path::new("")).unwrap();

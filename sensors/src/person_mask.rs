@@ -29,7 +29,7 @@ impl PersonMask {
         self.odds.clone_from(&other.odds);
     }
 
-    /// Forgets whoever was seen.
+    /// Forgets the person that was seen.
     pub fn wipe(&mut self) {
         self.side = 0;
         self.odds.fill(0.0);

@@ -124,7 +124,7 @@ impl BodyModel {
         std::array::from_fn(|i| (mean[i] + along(&factor[i], normal)) as f32)
     }
 
-    /// The same of one who has a reading (m): drawn as anybody, then moved by what the others follow from the one.
+    /// The same for a person with a known reading (m): drawn like any person, then moved by the regression of the others on that reading.
     pub(super) fn person_with(&self, normal: &[f64; READINGS], known: (MeshMeasure, f32)) -> [f32; READINGS] {
         let People { factor, .. } = &self.people;
         let drawn = self.person(normal);

@@ -79,7 +79,7 @@ macro_rules! vocabulary {
         pub enum $kind { $($(#[$of])* $measure,)* }
 
         impl Read for $kind {
-            #[expect(private_interfaces, reason = "the trait is sealed: nobody outside calls it")]
+            #[expect(private_interfaces, reason = "the trait is sealed: no code outside calls it")]
             fn reading(self) -> MeshMeasure {
                 match self { $(Self::$measure => MeshMeasure::$reading),* }
             }
@@ -198,7 +198,7 @@ use sealed::Read;
 mod sealed {
     /// Which reading of the mesh a measure is.
     pub trait Read {
-        #[expect(private_interfaces, reason = "the trait is sealed: nobody outside calls it")]
+        #[expect(private_interfaces, reason = "the trait is sealed: no code outside calls it")]
         fn reading(self) -> super::MeshMeasure;
     }
 }

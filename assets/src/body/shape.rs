@@ -22,7 +22,7 @@ pub const SHAPES: usize = PARAMETERS;
 /// metres or as a fraction of the base.
 pub const SCALE: usize = SLIDERS;
 
-/// Pivots below this are raised to it: directions in which nobody strays.
+/// Pivots below this are raised to it: directions in which no person varies.
 const LEAST_PIVOT: f64 = 1e-12;
 
 /// Number of independent numbers that a person of the survey is drawn by.

@@ -171,7 +171,7 @@ pub struct HungPattern {
 }
 
 impl PatternPackage {
-    /// A pattern that says how it is sewn, with the usual spacing and fabric, for nobody in particular.
+    /// A pattern that says how it is sewn, with the usual spacing and fabric, without sizes.
     pub fn new(name: String, pattern: String) -> Self {
         Self {
             schema: SCHEMA.into(),

@@ -20,11 +20,11 @@ pub enum Paint {
     Bytes(Vec<u8>),
 }
 
-/// Greys that programs write for a material that nobody coloured lie within this of one another (1).
+/// Greys that programs write for uncoloured materials lie within this of one another (1).
 const GREY: f32 = 0.02;
 
 impl Paint {
-    /// A colour, sRGB 0..1; nothing where it is the grey or white that programs write where nobody chose one.
+    /// A colour, sRGB 0..1; nothing if it is the grey or white that programs write by default.
     fn coloured(rgb: [f32; 3]) -> Self {
         let [least, most] = [rgb.iter().copied().fold(1.0, f32::min), rgb.iter().copied().fold(0.0, f32::max)];
         if most - least < GREY && least > 0.5 {

@@ -17,11 +17,11 @@ pub enum PatternFlaw {
     TooMany {
         /// What holds them: "the pattern", or a panel.
         place: String,
-        /// What there is too much of.
+        /// The kind of thing that is too many.
         what: &'static str,
-        /// How many there are.
+        /// Their number.
         count: usize,
-        /// How many are read.
+        /// The limit.
         most: usize,
         /// Name of the limit.
         limit: &'static str,

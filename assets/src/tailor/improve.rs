@@ -78,7 +78,7 @@ pub fn improve(points: &mut Points<'_>, filled: Filled, pitch: f64, effort: usiz
     best.filled
 }
 
-/// The least costly of some changes, if it is better than what there is; `tries` counts how many may still be tried.
+/// The least costly of some changes, if it is better than the present mesh; `tries` counts the attempts that are left.
 fn choose<'b>(
     points: &Points<'b>,
     best: &Judged,

@@ -290,9 +290,9 @@ impl BvhLeaf {
     /// The nearest of the triangles met.
     #[inline(always)]
     fn nearest(&self, probe: &RayLanes, limit: f32) -> Option<Hit> {
-        let meeting = self.meet(probe, limit);
-        let lane = lanes(meeting.mask).reduce(|a, b| if meeting.distance[b] < meeting.distance[a] { b } else { a })?;
-        let LeafHits { distance, u, v, .. } = meeting;
+        let hits = self.meet(probe, limit);
+        let lane = lanes(hits.mask).reduce(|a, b| if hits.distance[b] < hits.distance[a] { b } else { a })?;
+        let LeafHits { distance, u, v, .. } = hits;
         Some(Hit { distance: distance[lane], u: u[lane], v: v[lane], triangle: self.ids[lane] })
     }
 }
@@ -341,7 +341,7 @@ fn half_area(b: Corners) -> f32 {
     d.x * d.y + d.y * d.z + d.z * d.x
 }
 
-/// Cost of meeting this many triangles: leaves hold four.
+/// Cost of intersecting this many triangles: leaves hold four.
 fn leaf_cost(count: u32) -> f32 {
     count.div_ceil(WIDE as u32) as f32
 }

@@ -39,21 +39,21 @@ pub struct TileLevels {
 #[derive(PartialEq)]
 struct SharedLevels {
     levels: Vec<Texture>,
-    /// Whether somebody can be known by it: then it is overwritten when the last copy goes.
-    of_somebody: bool,
+    /// Whether it shows a recognisable person: then it is overwritten when the last copy goes.
+    of_person: bool,
 }
 
 impl SharedLevels {
     fn overwrite(&mut self) {
         self.levels.iter_mut().for_each(|level| level.texels.fill([0; 4]));
-        // Looked at, so that the writing is not left out as one that nobody sees.
+        // Looked at, so that the compiler does not leave the writing out as unused.
         std::hint::black_box(&self.levels);
     }
 }
 
 impl Drop for SharedLevels {
     fn drop(&mut self) {
-        if self.of_somebody {
+        if self.of_person {
             self.overwrite();
         }
     }
@@ -73,17 +73,17 @@ impl TileLevels {
         Self::new(texture.clone(), false)
     }
 
-    /// All levels of a picture by which somebody can be known: its memory is overwritten when the last copy goes.
-    pub fn of_somebody(texture: Texture) -> Self {
+    /// All levels of a picture of a recognisable person: its memory is overwritten when the last copy goes.
+    pub fn of_person(texture: Texture) -> Self {
         Self::new(texture, true)
     }
 
-    fn new(texture: Texture, of_somebody: bool) -> Self {
+    fn new(texture: Texture, of_person: bool) -> Self {
         let mut levels = vec![texture];
         while let Some(next) = coarser(&levels[levels.len() - 1]) {
             levels.push(next);
         }
-        Self { shared: Arc::new(SharedLevels { levels, of_somebody }) }
+        Self { shared: Arc::new(SharedLevels { levels, of_person }) }
     }
 
     /// The levels, the finest first.
@@ -316,10 +316,10 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_of_somebody_is_overwritten_on_every_level_and_in_no_debug_text() {
-        let TileLevels { shared } = TileLevels::of_somebody(checks(16));
+    fn pictures_of_persons_are_overwritten_and_never_printed() {
+        let TileLevels { shared } = TileLevels::of_person(checks(16));
         assert_eq!(format!("{:?}", TileLevels { shared: shared.clone() }), "TileLevels(16 x 16, 5 levels)");
-        assert!(shared.of_somebody && !TileLevels::of(&checks(2)).shared.of_somebody);
+        assert!(shared.of_person && !TileLevels::of(&checks(2)).shared.of_person);
         let mut levels = Arc::into_inner(shared).expect("copies share one, and the other is gone");
         levels.overwrite();
         assert!(levels.levels.iter().flat_map(|level| &level.texels).all(|texel| *texel == [0; 4]));

@@ -94,7 +94,7 @@ impl SurfacePoint {
     }
 }
 
-/// x^5, Schlick's approximation of Fresnel's law.
+/// x^5, Schlick's approximation of the Fresnel reflectance.
 fn fifth(x: f32) -> f32 {
     let square = x * x;
     square * square * x

@@ -23,7 +23,7 @@ use toile_base::frame::{Joints, TrackedJoint};
 
 pub use hold::HELD_CONFIDENCE;
 
-/// A silence after which nothing is smoothed across (s): somebody else may stand there.
+/// Longest gap across which joints are smoothed (s): after it another person may stand there.
 const LONGEST_SILENCE: f32 = 1.0;
 
 /// Shortest step between two frames (s); a frame that comes no later than the one before counts as this much later.

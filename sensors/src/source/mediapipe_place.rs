@@ -53,7 +53,7 @@ pub(super) fn in_space(people: &[LandmarkPerson], notes: &mut Vec<String>) -> Ve
         .collect()
 }
 
-/// Camera axes (x right, y down, z forward) to world axes of somebody who faces the camera.
+/// Camera axes (x right, y down, z forward) to world axes of a person who faces the camera.
 fn turned(camera: Vec3) -> Vec3 {
     Vec3::new(camera.x, -camera.y, -camera.z)
 }

@@ -154,7 +154,7 @@ fn recognise(bytes: &[u8], has_camera: bool) -> Result<RecordingKind, &'static s
     let text =
         if is_text(head) { recognise_text(head) } else { Err("binary of no known kind, and no camera is given") };
     match text {
-        // Whatever is none of these is depth to somebody who says which camera took it.
+        // A file of no other kind is depth if the caller says which camera took it.
         Err(_) if has_camera => Ok(RecordingKind::RawDepth),
         Err(_) if !is_text(head) && (bytes.len() as u64).is_multiple_of(raw_depth::KINECT_V1_BYTES) => {
             Ok(RecordingKind::RawDepth)

@@ -83,7 +83,7 @@ impl Canvas {
             if area == 0.0 || (area < 0.0 && faces == Faces::Outer) {
                 continue;
             }
-            // A triangle through the lens is left out: nobody stands in it.
+            // A triangle through the lens is left out: no shopper stands in it.
             if corners.iter().all(|c| c.z > 0.0 && c.is_finite()) {
                 self.fill(corners, area, number);
             }

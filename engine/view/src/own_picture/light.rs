@@ -132,7 +132,7 @@ impl LightMeter {
         now
     }
 
-    /// Somebody else may stand there.
+    /// Forgets the light, because another person may stand there.
     pub fn reset(&mut self) {
         self.now = None;
     }
@@ -165,7 +165,7 @@ impl LightMeter {
             if count < FEWEST {
                 continue;
             }
-            // A little of what a single direction would lack: nobody shows their back.
+            // A little of what a single direction would lack: shoppers do not show their backs.
             let ridge = Mat4::from_diagonal(Vec4::new(0.0, 0.005, 0.005, 0.005) * count);
             let [a, b, c, d] = part.square.0;
             let square = Mat4::from_cols(a, b, c, d) + ridge;

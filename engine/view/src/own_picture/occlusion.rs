@@ -160,7 +160,7 @@ mod tests {
         let at = Vec2::new(31.5, 23.5);
         let arm = |z| Some(BodyThere { z, is_covered: false });
         let trunk = |z| Some(BodyThere { z, is_covered: true });
-        // By the body alone; where nobody is, no arm is.
+        // By the body alone; without a body there is no arm.
         assert!(is_before(at, 2.0, arm(1.95), &depth, None));
         assert!(!is_before(at, 2.0, arm(2.05), &depth, None) && !is_before(at, 2.0, None, &depth, None));
         let mask =

@@ -68,7 +68,7 @@ pub enum Mark {
         size: [f64; 2],
         /// Colour of the rectangle.
         colour: Colour,
-        /// What a page shows where somebody points at it.
+        /// Text that a page shows under the pointer.
         hint: Option<String>,
     },
     /// One line of text, centred on a height.

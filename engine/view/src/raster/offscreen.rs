@@ -113,7 +113,7 @@ impl Offscreen {
         gpu.queue.submit([encoder.finish()]);
         let (sender, result_receiver) = mpsc::channel();
         self.buffer.map_async(wgpu::MapMode::Read, .., move |result| {
-            // Nobody listens any more where the wait below has failed.
+            // The receiver is gone if the wait below has failed.
             let _ = sender.send(result);
         });
         let lost = |e: &dyn std::fmt::Display| OffscreenError::Lost(e.to_string().replace('\n', " "));

@@ -34,7 +34,7 @@ pub(super) fn check_size(width: usize, height: usize) -> Result<(), String> {
     Ok(())
 }
 
-/// A picture that is emptied, so that whoever reads it sees that there is none.
+/// Empties a picture, so that a reader sees that there is none.
 pub(super) fn clear(to: &mut ColourImage) {
     (to.width, to.height) = (0, 0);
     to.rgb.clear();

@@ -44,7 +44,7 @@ impl CameraFault {
     }
 }
 
-/// One fault, on the clock of whoever injects it (ns).
+/// One fault, on the injector's clock (ns).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TimedFault {
     /// What is wrong.
@@ -70,7 +70,7 @@ impl FaultPlan {
     }
 }
 
-/// The time on the clock of whoever injects (ns).
+/// The time on the injector's clock (ns).
 pub type FaultClock = Arc<dyn Fn() -> u64 + Send + Sync>;
 
 /// A camera with faults.
@@ -193,7 +193,7 @@ impl LiveCamera for SimulatedCamera {
         if now < taken_ns + DELAY_NS {
             return Ok(Arrival::Nothing);
         }
-        // What nobody read is overwritten, as in any camera.
+        // An unread frame is overwritten, as in any camera.
         self.next = self.next.max((now - DELAY_NS) * SIMULATED_HZ / SECOND_NS) + 1;
         frame.device_ns = DEVICE_BEGIN_NS + taken_ns;
         let noise = SplitMix64::new(taken_ns).next_u64();

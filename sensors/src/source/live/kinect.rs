@@ -261,7 +261,7 @@ unsafe extern "C" fn take_depth(_: Device, image: *mut c_void, ticks: u32) {
     }
     // SAFETY: the mode that was set promises so many 16-bit words, which stay until this returns.
     let image = unsafe { std::slice::from_raw_parts(image.cast::<u16>(), WIDTH * HEIGHT) };
-    // Nobody else has it: the library is called without holding it. Were it so, a frame would be lost.
+    // No other owner has it: the library is called without holding it. Were it so, a frame would be lost.
     INBOX.with(|inbox| {
         let Ok(mut inbox) = inbox.try_borrow_mut() else { return };
         inbox.depth.clear();

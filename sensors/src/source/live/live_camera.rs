@@ -84,7 +84,7 @@ impl CameraInfo {
 
     /// Its colour camera, where the depth camera stands there in our world (m); none where it is not known how it sees.
     pub fn colour_camera(&self, depth_to_world: Affine3A) -> Option<ColourCamera> {
-        // Turned images would need a turned camera: nobody has tried one.
+        // Turned images would need a turned camera, which is untried.
         if self.camera.quarter_turns != 0 {
             return None;
         }
@@ -98,8 +98,8 @@ impl CameraInfo {
     }
 }
 
-/// Whether a colour image was taken in the moment of a depth image, both by the device's clock (ns): at most half a frame apart. Whoever
-/// walks at 1 m/s is 17 mm away by then.
+/// Whether a colour image was taken in the moment of a depth image, both by the device's clock (ns): at most half a frame apart. A person
+/// who walks at 1 m/s is 17 mm away by then.
 pub(super) fn is_of_moment(depth_ns: u64, colour_ns: u64, rate_hz: f32) -> bool {
     depth_ns.abs_diff(colour_ns) as f32 <= 0.5e9 / rate_hz.max(1.0) + SLACK_NS
 }
@@ -124,7 +124,7 @@ pub struct CameraFrame {
     pub depth: Vec<u16>,
     /// The colour image of about that time, where it is wanted and new.
     pub colour: ColourImage,
-    /// Joints of everybody that the camera itself tracks; empty where it tracks nobody.
+    /// Joints of all persons that the camera itself tracks; empty if it tracks none.
     pub people: Vec<Joints>,
 }
 

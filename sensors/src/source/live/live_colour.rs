@@ -23,7 +23,7 @@ pub struct ColourUpdate {
     pub taken_ns: Option<u64>,
     /// When a picture arrived, good or not (ns).
     pub arrived_ns: Option<u64>,
-    /// Whether there is no camera to wait for, so that whoever looks should wait.
+    /// Whether there is no camera to wait for, so that the caller should wait.
     pub is_closed: bool,
 }
 
@@ -76,7 +76,7 @@ impl LiveColour {
         &self.raw.colour
     }
 
-    /// Blackens the last picture: whoever was seen in it has left.
+    /// Blackens the last picture after the person in it has left.
     pub fn wipe(&mut self) {
         self.raw.colour.rgb.fill(0);
         self.sampled.depth.fill(0);

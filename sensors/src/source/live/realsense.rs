@@ -170,7 +170,7 @@ impl RealSense {
         let mut pipeline = Pipeline::new(api)?;
         pipeline.configure(which, recording, options.colour)?;
         if recording.is_none() && pipeline.devices()? == 0 {
-            // Asked first: a pipeline waits for a quarter of a minute until somebody plugs one in.
+            // Asked first: a pipeline waits for a quarter of a minute until a camera is plugged in.
             let cure = "plug it into a USB 3 port, and see that librealsense's rules for udev let your user use it";
             return Err(CameraError::NotConnected { camera: NAME, cure });
         }

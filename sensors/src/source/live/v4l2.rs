@@ -136,7 +136,7 @@ struct Mapped {
     length: usize,
 }
 
-// SAFETY: the memory belongs to whoever has this, whichever thread that is.
+// SAFETY: the memory belongs to the owner of this value, on any thread.
 unsafe impl Send for Mapped {}
 
 impl Drop for Mapped {

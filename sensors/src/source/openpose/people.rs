@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_and_one_view_are_nobody() {
+    fn no_view_and_one_view_give_no_person() {
         let rig = read(TWO.as_bytes()).unwrap();
         let one = view(&rig, 0, &[body(DVec3::ZERO)]);
         assert!(shopper(&rig, &[&one, &Vec::new()], None).is_none());
