@@ -67,7 +67,7 @@ pub enum FileError {
 }
 
 impl FileError {
-    /// What is wrong, without the path and the cure: for sentences that name both themselves.
+    /// The fault, without the path and the cure: for sentences that name both themselves.
     pub fn reason(&self) -> String {
         match self {
             Self::Refused { reason, .. } => reason.clone(),
@@ -83,7 +83,7 @@ impl FileError {
 /// Reads a whole file.
 ///
 /// # Errors
-/// Where it is absent, not a regular file, or larger than its kind may be.
+/// If it is absent, not a regular file, or larger than its kind may be.
 pub fn read(path: &Path, kind: &FileKind) -> Result<Vec<u8>, FileError> {
     let shown = || path.display().to_string();
     let refused = |e: io::Error| FileError::Refused { path: shown(), kind: *kind, reason: e.to_string() };

@@ -292,7 +292,7 @@ fn grading_meets_the_draft_that_it_has_not_seen() {
     }
 }
 
-/// Where the vertices of a garment's mesh lie (m), in their order.
+/// Positions of the vertices of a garment's mesh (m), in their order.
 fn in_mesh_order(garment: &Garment) -> Vec<Vec3> {
     let mut at = vec![Vec3::ZERO; garment.particles()];
     garment.source.iter().zip(&garment.start).for_each(|(v, p)| at[*v as usize] = *p);

@@ -75,7 +75,7 @@ impl ColourCamera {
         at.extend(1.0)
     }
 
-    /// What is wrong with this camera, or `None`.
+    /// The fault of this camera, or `None`.
     pub fn fault(&self) -> Option<String> {
         let sound = |lens: &BrownConrady| {
             lens.k.iter().chain(&lens.p).chain(&lens.centre).all(|k| k.is_finite()) && lens.widest >= NARROWEST

@@ -38,7 +38,7 @@ const OF_MESH: [usize; FACE_POINTS] = [
 /// The 68 points among all those of MediaPipe's face mesh.
 ///
 /// # Panics
-/// Where there are fewer than [`MESH_POINTS`].
+/// If there are fewer than [`MESH_POINTS`].
 pub fn of_mesh<T: Copy>(mesh: &[T]) -> [T; FACE_POINTS] {
     OF_MESH.map(|k| mesh[k])
 }
@@ -54,7 +54,7 @@ const FILE: FileKind = FileKind { name: "a file of points", max_bytes: 128 << 20
 const CURE: &str =
     "give 68 points in the order of Multi-PIE, 468 or 478 in MediaPipe's, or an object of names and points";
 
-/// What a file of points holds.
+/// Content of a file of points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MarkedPhotographs {
     /// The photographs of one moment, or the frames of a sequence.
@@ -72,7 +72,7 @@ pub struct MarkedPhotograph {
     pub camera: Option<String>,
     /// Its focal length (px), where no calibration has it.
     pub focal_px: Option<f64>,
-    /// Where the 68 points are (px); none where they are not seen.
+    /// The 68 points (px); none if they are not seen.
     pub points: [Option<DVec2>; FACE_POINTS],
     /// Curves along the head's outline (px) `[curves][points]`.
     pub outlines: Vec<Vec<DVec2>>,

@@ -44,7 +44,7 @@ pub struct BaseBody {
     pub skeleton: Skeleton,
     /// Bones that carry each vertex `[vertices]`.
     pub weights: Vec<SkinWeights>,
-    /// Where the tape is laid.
+    /// Landmarks at which the tape is laid.
     pub landmarks: Landmarks,
 }
 

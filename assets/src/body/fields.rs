@@ -47,7 +47,7 @@ enum ArmSegment {
     Wrist,
 }
 
-/// What the fields are made from.
+/// Inputs of the fields.
 struct FieldBuilder<'a> {
     base: &'a BaseBody,
     near: &'a Neighbourhood,

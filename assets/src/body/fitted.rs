@@ -40,7 +40,7 @@ pub fn wanted(measures: &Measures) -> Wanted<En> {
         .with(En::HipGirth, measures.hip_girth)
 }
 
-/// What the tape reads, of the five measures that a body keeps.
+/// Tape readings of the five measures that a body keeps.
 fn five(readings: &Readings) -> Measures {
     Measures {
         stature: readings.of(En::Stature),

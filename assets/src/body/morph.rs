@@ -24,9 +24,9 @@ pub(super) struct Morphs {
     /// The base, with its sides made each other's exact mirror image.
     pub base: BaseBody,
     pub near: Neighbourhood,
-    /// Where each vertex's moves start, and the end `[vertices + 1]`.
+    /// Start of each vertex's moves, and the end `[vertices + 1]`.
     start: Vec<u32>,
-    /// Which slider moves a vertex, and by how much a unit.
+    /// The slider that moves a vertex, and the move by a unit.
     moves: Vec<(u32, Vec3)>,
     /// How the joints move a unit of each slider.
     joints: [[Vec3; JOINTS]; SLIDERS],
@@ -65,7 +65,7 @@ impl Morphs {
         &self.moves[self.start[vertex] as usize..self.start[vertex + 1] as usize]
     }
 
-    /// Where a vertex lies on a body.
+    /// Position of a vertex on a body.
     pub(super) fn place(&self, vertex: usize, setting: &Setting) -> Vec3 {
         let moved = self
             .moves(vertex)

@@ -106,7 +106,7 @@ const OWN_ERROR: f64 = 6e-3;
 
 /// Mean and spread of a sex's readings.
 pub(super) struct People {
-    /// What the mean person's readings are (m).
+    /// Readings of the mean person (m).
     pub mean: [f64; READINGS],
     /// Lower Cholesky factor of their covariance (m).
     pub factor: [[f64; READINGS]; READINGS],

@@ -189,7 +189,7 @@ vocabulary! {
 pub trait Vocabulary: Copy + Read + 'static {
     /// Every measure that it has.
     const ALL: &'static [Self];
-    /// What a person would call the measure, without its unit.
+    /// Common name of the measure, without its unit.
     fn name(self) -> &'static str;
 }
 
@@ -229,7 +229,7 @@ impl<V: Vocabulary> Wanted<V> {
         self
     }
 
-    /// What has been asked for (m), in the order of asking.
+    /// Requested values (m), in the order of the requests.
     pub fn given(&self) -> &[(V, f32)] {
         &self.given
     }

@@ -15,7 +15,7 @@ const ROUNDS: usize = 12;
 
 /// The ways over a mesh: each vertex's neighbours along edges, and across each edge to the corner opposite.
 pub(super) struct Neighbourhood {
-    /// Where each vertex's list starts, and the end `[vertices + 1]`.
+    /// Start of each vertex's list, and the end `[vertices + 1]`.
     start: Vec<u32>,
     /// Neighbours and the way to them (m).
     near: Vec<(u32, f32)>,

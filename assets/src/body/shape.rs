@@ -113,7 +113,7 @@ impl Shapes {
         bounds(parameter)
     }
 
-    /// Where a vertex lies on a shape in the rest pose (m).
+    /// Position of a vertex on a shape in the rest pose (m).
     pub fn place(&self, vertex: usize, shape: &BodyShape) -> Vec3 {
         self.model.morphs.place(vertex, &setting(shape))
     }

@@ -20,7 +20,7 @@ struct Graded {
 pub struct GradedPattern {
     /// The table of its sizes.
     pub table: SizeTable,
-    /// What the garment is.
+    /// The kind of garment.
     pub kind: GarmentKind,
     /// The girth by which it is graded.
     pub girth: Girth,

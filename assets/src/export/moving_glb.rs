@@ -153,7 +153,7 @@ impl<W: Write + Seek> MovingGlb<W> {
     /// matrices of its bones (rest to world, rigid).
     ///
     /// # Errors
-    /// What the output says, and a frame that was not announced.
+    /// An error of the output, or a frame that was not announced.
     pub fn add(&mut self, palette: Option<&[Affine3A; BONES]>, positions: &[&[Vec3]]) -> io::Result<()> {
         if self.added == self.rate.frames || positions.len() != self.surfaces.len() {
             return Err(io::Error::other("it gets other frames than were announced"));
@@ -181,7 +181,7 @@ impl<W: Write + Seek> MovingGlb<W> {
     /// Ends the file.
     ///
     /// # Errors
-    /// What the output says, and frames that are missing.
+    /// An error of the output, or missing frames.
     pub fn finish(mut self) -> io::Result<W> {
         if self.added != self.rate.frames || self.added == 0 {
             return Err(io::Error::other("frames are missing"));

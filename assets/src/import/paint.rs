@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::gltf::file::{GltfFile, index};
 
-/// What a material shows.
+/// The picture or colour of a material.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub enum Paint {
     /// Nothing of its own: the fabric's colour.
@@ -75,7 +75,7 @@ fn encoded(linear: f32) -> f32 {
     if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// What a MakeHuman material file (`.mhmat`) shows.
+/// The picture or colour of a MakeHuman material file (`.mhmat`).
 pub fn parse_mhmat(text: &str) -> Paint {
     let after = |key: &str| text.lines().find_map(|l| l.trim().strip_prefix(key)).map(str::trim);
     if let Some(file) = after("diffuseTexture ").filter(|file| !file.is_empty()) {
@@ -89,7 +89,7 @@ pub fn parse_mhmat(text: &str) -> Paint {
     }
 }
 
-/// What a material of a glTF file shows.
+/// The picture or colour of a material of a glTF file.
 pub(super) fn of_gltf(file: &GltfFile, material: usize) -> Paint {
     let base = &file.json["materials"][material]["pbrMetallicRoughness"];
     let texture = index(&base["baseColorTexture"]["index"]).and_then(|t| index(&file.json["textures"][t]["source"]));

@@ -15,7 +15,7 @@ pub enum PatternFlaw {
         "{place} has {count} {what}, more than the {most} of {limit}; leave out what is not cloth, or split the pattern"
     )]
     TooMany {
-        /// What holds them: "the pattern", or a panel.
+        /// Their owner: "the pattern", or a panel.
         place: String,
         /// The kind of thing that is too many.
         what: &'static str,
@@ -113,7 +113,7 @@ pub enum PatternFlaw {
         seam: String,
         /// The name that it gives.
         name: String,
-        /// What may have been meant.
+        /// The name that may have been meant.
         cure: String,
     },
     /// A seam of an edge that is not there.

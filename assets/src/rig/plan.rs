@@ -16,7 +16,7 @@ pub(super) const PAIRS: usize = 24;
 pub(super) const MIDDLE: usize = 3;
 const _: () = assert!(toile_base::rig::SPHERES == 2 * PAIRS + MIDDLE);
 
-/// Where a sphere stands before the fit.
+/// Place of a sphere before the fit.
 pub(super) enum SpherePlace {
     /// In the trunk: its height between the levels (0 crotch, 1 hip, 2 waist, 3 underbust, 4 chest, 5 shoulder), its
     /// place across as a share of the section's half breadth, ahead of the section's middle and its radius as shares of

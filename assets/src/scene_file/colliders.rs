@@ -122,7 +122,7 @@ impl SceneColliders {
         self.spheres.len()
     }
 
-    /// Where a sphere is at a time (s): centre and radius (m).
+    /// A sphere at a time (s): centre and radius (m).
     pub fn sphere(&self, k: usize, time: f64) -> Vec4 {
         let (mover, place) = self.spheres[k];
         match &self.movers[mover] {

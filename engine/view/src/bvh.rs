@@ -40,7 +40,7 @@ const EDGE_SLACK: f32 = 1e-6;
 /// A ray: half of a line.
 #[derive(Debug, Clone, Copy)]
 pub struct Ray {
-    /// Where it starts (m).
+    /// Its start (m).
     pub origin: Vec3,
     /// Its unit direction.
     pub direction: Vec3,
@@ -53,7 +53,7 @@ impl Ray {
     }
 }
 
-/// Where a ray met a triangle.
+/// Hit of a ray on a triangle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hit {
     /// Distance along the ray (m).
@@ -250,7 +250,7 @@ impl BvhNode {
     }
 }
 
-/// Which triangles of a leaf were met, and where.
+/// Hits on the triangles of a leaf.
 struct LeafHits {
     mask: u32,
     distance: Vec4,

@@ -165,19 +165,19 @@ pub struct GarmentLook {
     pub tile: Option<TileLevels>,
     /// Texture points of the corners of each triangle `[triangles]`, or empty.
     pub corners: Vec<[Vec2; 3]>,
-    /// Where they lie on the cloth (m): weft along x, warp along y `[triangles]`, or empty.
+    /// Positions on the cloth (m): weft along x, warp along y `[triangles]`, or empty.
     pub cloth: Vec<[Vec2; 3]>,
     /// Distance of each corner from the nearest hem and seam (m) `[triangles]`, or empty.
     pub edges: Vec<[Vec2; 3]>,
-    /// What is put on it.
+    /// Its trims.
     pub trims: Vec<DrawnTrim>,
-    /// Which of them each triangle may show, a bit for each `[triangles]`, or empty.
+    /// Trims that each triangle may show, a bit for each `[triangles]`, or empty.
     pub near: Vec<u32>,
     /// Share of light that the cloth holds back (0..1).
     pub opacity: f32,
 }
 
-/// What is said of triangles, for those of them that are drawn.
+/// Attributes of the drawn triangles.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct DrawnLook {
     corners: Vec<[Vec2; 3]>,
@@ -214,7 +214,7 @@ impl GarmentLook {
         ClothLook { tile: tile.as_ref(), corners, cloth, edges, trims, near, opacity: *opacity }
     }
 
-    /// What is said of some of the triangles.
+    /// Attributes of some of the triangles.
     pub fn of_triangles(&self, kept: &[u32]) -> DrawnLook {
         fn pick<T: Copy>(all: &[T], kept: &[u32]) -> Vec<T> {
             if all.is_empty() { Vec::new() } else { kept.iter().map(|t| all[*t as usize]).collect() }
@@ -226,7 +226,7 @@ impl GarmentLook {
         DrawnLook { corners, cloth, edges, near: pick(&self.near, kept) }
     }
 
-    /// What is said of all triangles.
+    /// Attributes of all triangles.
     pub fn all(&self) -> DrawnLook {
         let Self { corners, cloth, edges, near, .. } = self.clone();
         DrawnLook { corners, cloth, edges, near }
@@ -246,13 +246,13 @@ pub struct ClothLook<'a> {
     pub tile: Option<&'a TileLevels>,
     /// Texture points of the corners of each triangle `[triangles]`, or empty.
     pub corners: &'a [[Vec2; 3]],
-    /// Where they lie on the cloth (m) `[triangles]`, or empty.
+    /// Positions on the cloth (m) `[triangles]`, or empty.
     pub cloth: &'a [[Vec2; 3]],
     /// Distance of each corner from the nearest hem and seam (m) `[triangles]`, or empty.
     pub edges: &'a [[Vec2; 3]],
-    /// What is put on it.
+    /// Its trims.
     pub trims: &'a [DrawnTrim],
-    /// Which of them each triangle may show, a bit for each `[triangles]`, or empty.
+    /// Trims that each triangle may show, a bit for each `[triangles]`, or empty.
     pub near: &'a [u32],
     /// Share of light that the cloth holds back (0..1).
     pub opacity: f32,

@@ -41,7 +41,7 @@ pub struct PictureSurface<'a> {
     pub colours: Colours<'a>,
     /// How the surface reflects light.
     pub material: Material,
-    /// What cloth shows beside its colour.
+    /// Print, seams and trims of the cloth.
     pub look: Option<ClothLook<'a>>,
 }
 

@@ -19,7 +19,7 @@ const NEAR_MIDDLE: f64 = 0.2;
 /// Fewest metres that would be plausible as millimetres: a camera nearer than that shows nothing of a person.
 const LEAST_MILLIMETRES: f64 = 200.0;
 
-/// What a calibration says of one camera.
+/// Calibration of one camera.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CameraParameters {
     /// Width and height of its pictures (px).

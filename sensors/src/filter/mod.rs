@@ -46,7 +46,7 @@ impl Default for FilterSettings {
     }
 }
 
-/// What is remembered of one joint.
+/// State of one joint.
 #[derive(Debug, Clone, Copy)]
 struct JointTrack {
     smooth: Smoother,
@@ -57,7 +57,7 @@ struct JointTrack {
     believed_ns: u64,
     /// Whether it was believed in the frame before.
     following: bool,
-    /// Where it was in the frame before, bone lengths not yet pulled (m).
+    /// Its position in the frame before, bone lengths not yet corrected (m).
     place: Vec3,
     /// How far the smoothed place moved in this frame (m); zero unless followed.
     moved: Vec3,

@@ -61,7 +61,7 @@ const SIZE_WEIGHT: f32 = 0.5;
 /// A shopper not seen for so long has left (ns).
 const FORGOTTEN_NS: u64 = toile_base::clock::SECOND_NS / 2;
 
-/// What a frame shows.
+/// Result of one frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Segmentation<'a> {
     /// 1 where a pixel shows the shopper, else 0 `[width * height]`.

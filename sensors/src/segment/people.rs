@@ -81,7 +81,7 @@ struct Band {
 /// One person as seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Person {
-    /// Where they stand (m): to the camera's right, ahead of it.
+    /// Their position (m): to the camera's right, ahead of it.
     pub place: Vec2,
     /// Their highest point above the floor, or above y = 0 where no floor is seen (m).
     pub top: f32,

@@ -117,7 +117,7 @@ pub fn read_bytes(path: &str, name: &str, bytes: &[u8], camera: Option<(&str, &[
 /// First bytes of an OpenNI recording.
 const ONI_MAGIC: &[u8] = b"NI10";
 
-/// What is said of an OpenNI recording that cannot be read.
+/// Message for an OpenNI recording that cannot be read.
 const OPENNI: &str = "an OpenNI recording, which is read from a file and not from memory";
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -67,7 +67,7 @@ struct OniFrame {
 type OniHandle = *mut c_void;
 
 functions! {
-    /// What is called of OpenNI.
+    /// The called functions of OpenNI.
     OniApi {
         fn oniInitialize(c_int) -> c_int;
         fn oniShutdown();

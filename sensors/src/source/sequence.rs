@@ -19,7 +19,7 @@ pub(super) const fn assumed_time(index: usize) -> u64 {
     index as u64 * SECOND_NS / ASSUMED_HZ
 }
 
-/// What is said of a recording whose images have no times.
+/// Note for a recording whose images have no times.
 pub(super) fn untimed(images: usize) -> String {
     format!("the file holds no times: its {images} images are taken at {ASSUMED_HZ} Hz")
 }
@@ -32,7 +32,7 @@ pub(super) struct Sequence {
     start_ns: Option<u64>,
     backwards: usize,
     frames: Vec<DepthFrame>,
-    /// What was assumed or repaired.
+    /// Assumptions and repairs.
     pub notes: Vec<String>,
 }
 

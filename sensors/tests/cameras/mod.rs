@@ -46,7 +46,7 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// What a camera shows live, placed in our world: so many images.
+/// Live images of a camera, placed in our world: so many.
 fn seen_live(name: &str, options: &CameraOptions, count: usize) -> Vec<DepthFrame> {
     let (name, options) = (name.parse().unwrap(), options.clone());
     let begun = Instant::now();

@@ -18,7 +18,7 @@ pub(crate) const HOLE_ROWS: usize = 3;
 /// Rows of the trunk above the armhole's upper edge, the base of the neck included.
 pub(crate) const ABOVE_HOLE: usize = 3;
 
-/// What a vertex of the cage belongs to.
+/// The part that a vertex of the cage belongs to.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Tag {
     pub region: Region,

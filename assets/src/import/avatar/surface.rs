@@ -8,7 +8,7 @@ use glam::Vec3;
 /// Places closer than this are one (m): a hundredth of a millimetre.
 const SAME_M: f32 = 1e-5;
 
-/// What a surface is made of.
+/// Parts of a surface.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SurfaceCheck {
     /// Places with a vertex that a triangle uses.

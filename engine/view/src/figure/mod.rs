@@ -50,7 +50,7 @@ pub struct Figure {
     pub look: GarmentLook,
     /// Linear RGB of the skin.
     pub colour: Vec3,
-    /// What brings the head along with a posed skin.
+    /// The placed head, which moves along with a posed skin.
     pub head: PlacedHead,
 }
 

@@ -38,7 +38,7 @@ impl Framing {
         Self::covering(picture, size, 0.5 * picture[0] as f32 - 0.5, [0.0, 1.0])
     }
 
-    /// Where a pixel of the picture lies in the mirror; whole numbers are centres of pixels.
+    /// Place of a picture's pixel in the mirror; whole numbers are centres of pixels.
     pub fn to_mirror(&self, pixel: Vec2) -> Vec2 {
         let off = (pixel + 0.5 - self.looks_at) * self.scale;
         self.middle + Vec2::new(-off.x, off.y) - 0.5

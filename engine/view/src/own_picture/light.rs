@@ -83,7 +83,7 @@ pub struct LightMeter {
     powers: Vec3,
     bright: [u32; STEPS],
     count: u32,
-    /// What is believed.
+    /// The accepted light.
     now: Option<LightEstimate>,
 }
 

@@ -48,13 +48,13 @@ const TRUNK: [(Joint, f32); 6] = {
     [(Pelvis, 0.0), (Spine, 0.35), (Chest, 0.8), (Neck, 1.0), (LeftClavicle, 1.0), (RightClavicle, 1.0)]
 };
 
-/// Where each bone goes.
+/// Transform of each bone.
 pub type BoneMoves = [Affine3A; BONES];
 
-/// What the joints of a picture make of a snapshot's.
+/// Change from a snapshot's joints to those of a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Repose {
-    /// Where each bone goes.
+    /// Transform of each bone.
     pub moves: BoneMoves,
     /// Least and greatest length of a limb against the body's.
     pub lengths: [f32; 2],

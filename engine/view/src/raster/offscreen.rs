@@ -19,7 +19,7 @@ pub enum OffscreenError {
     /// No side, or one longer than the adapter draws.
     #[error("a picture of {size} cannot be drawn by this adapter; choose sides of 1 to {most} pixels")]
     Size {
-        /// What was asked for.
+        /// The requested size.
         size: Size,
         /// The longest side that the adapter draws (pixels).
         most: u32,

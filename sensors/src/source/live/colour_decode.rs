@@ -49,7 +49,7 @@ fn sized(to: &mut ColourImage, width: usize, height: usize) -> &mut [u8] {
 /// A JPEG or a PNG; nothing is left in `to` where it is broken.
 ///
 /// # Errors
-/// What is wrong, without the file.
+/// The fault, without the file's name.
 pub(super) fn decode(bytes: &[u8], scratch: &mut Vec<u8>, to: &mut ColourImage) -> Result<(), String> {
     clear(to);
     let done = match bytes {

@@ -35,7 +35,7 @@ toile_base::named! {
     }
 }
 
-/// What one frame is worth.
+/// Verdict on one frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FrameVerdict {
     /// Good, and taken at this time on the loop's clock (ns).
@@ -48,7 +48,7 @@ pub enum FrameVerdict {
     Empty(u64),
 }
 
-/// What was counted of a camera's frames.
+/// Counts of a camera's frames.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct CameraCounts {
     /// Frames that came.
@@ -83,7 +83,7 @@ pub struct FrameCheck {
     repeated_ns: Option<u64>,
     covered: u32,
     state: CameraState,
-    /// What was counted.
+    /// The counts.
     pub counts: CameraCounts,
 }
 

@@ -70,7 +70,7 @@ struct TimeValue {
 }
 
 functions! {
-    /// What is called of libfreenect.
+    /// The called functions of libfreenect.
     Freenect {
         fn freenect_init(*mut Context, *mut c_void) -> c_int;
         fn freenect_shutdown(Context) -> c_int;
@@ -94,7 +94,7 @@ functions! {
     }
 }
 
-/// What the library's callbacks fill.
+/// The buffers that the library's callbacks fill.
 #[derive(Debug, Default)]
 struct Inbox {
     depth: Vec<u16>,

@@ -41,7 +41,7 @@ impl CameraOptions {
     }
 }
 
-/// What is known of a camera that is open.
+/// Properties of an open camera.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CameraInfo {
     /// Its name and number, as the library has them.
@@ -52,11 +52,11 @@ pub struct CameraInfo {
     pub rate_hz: f32,
     /// Its pose in our world (m), where that is known already: then no floor is looked for.
     pub placed: Option<Affine3A>,
-    /// Where its colour camera is.
+    /// Place of its colour camera.
     pub(in crate::source) colour: ColourPlace,
 }
 
-/// Where a colour camera is, against the depth camera of the same device.
+/// Pose of a colour camera, relative to the depth camera of the same device.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(in crate::source) enum ColourPlace {
     /// That is not known, or there is none.
@@ -146,7 +146,7 @@ impl CameraFrame {
     }
 }
 
-/// What came of waiting for a frame.
+/// Result of waiting for a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Arrival {
     /// A frame.
@@ -159,13 +159,13 @@ pub enum Arrival {
 
 /// A camera that is open. It is closed when dropped.
 pub trait LiveCamera: Send {
-    /// What is known of it.
+    /// Its properties.
     fn info(&self) -> &CameraInfo;
 
     /// Waits for its next frame for about so long, and fills it in.
     ///
     /// # Errors
-    /// Where the camera is gone and has to be opened again.
+    /// If the camera is gone and has to be opened again.
     fn read(&mut self, frame: &mut CameraFrame, patience: Duration) -> Result<Arrival, CameraError>;
 }
 

@@ -28,7 +28,7 @@ pub(super) const SILENT_NS: u64 = 2_000_000_000;
 /// Opens the camera, the first time and whenever it was gone.
 pub type CameraOpener = Box<dyn FnMut() -> Result<Box<dyn LiveCamera>, CameraError> + Send>;
 
-/// What came of a look.
+/// Result of a look at the camera.
 #[derive(Debug, Clone)]
 pub struct LiveUpdate {
     /// How the camera stands.
@@ -86,7 +86,7 @@ impl LiveDepth {
         })
     }
 
-    /// What is known of the camera.
+    /// Properties of the camera.
     pub fn info(&self) -> &CameraInfo {
         &self.info
     }
@@ -96,12 +96,12 @@ impl LiveDepth {
         self.converter.kept()
     }
 
-    /// What was assumed or repaired, one sentence each.
+    /// Assumptions and repairs, one sentence each.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
 
-    /// What was counted of its frames.
+    /// Counts of its frames.
     pub fn counts(&self) -> CameraCounts {
         self.check.counts
     }

@@ -56,7 +56,7 @@ type RsHandle = *mut c_void;
 type RsError = *mut c_void;
 
 functions! {
-    /// What is called of librealsense.
+    /// The called functions of librealsense.
     RealSenseApi {
         fn rs2_get_api_version(*mut RsError) -> c_int;
         fn rs2_create_context(c_int, *mut RsError) -> RsHandle;
@@ -123,7 +123,7 @@ struct Frames(RsHandle, RealSenseApi);
 // SAFETY: the library may be called from any thread; `&mut self` lets one at a time.
 unsafe impl Send for RealSense {}
 
-/// What one of a moment's frames is.
+/// Kind of one stream.
 struct StreamKind {
     stream: c_int,
     format: c_int,

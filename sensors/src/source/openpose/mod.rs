@@ -141,7 +141,7 @@ fn camera_folders(folder: &Path) -> Result<Vec<PathBuf>, SourceError> {
     Ok(found)
 }
 
-/// What a folder holds, by name.
+/// Files of a folder, sorted by name.
 fn list(folder: &Path) -> Result<Vec<PathBuf>, SourceError> {
     let refused = |error| SourceError::Io { path: shown(folder), action: "read", error };
     let mut all = Vec::new();
