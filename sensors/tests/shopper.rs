@@ -187,7 +187,7 @@ fn an_empty_room_shows_only_its_floor() {
 }
 
 #[test]
-fn a_person_outside_the_zone_is_not_the_shopper() {
+fn a_person_outside_the_zone_is_no_shopper() {
     let two = Two::new();
     let view = two.seen(&[(Vec3::new(1.0, 0.0, 0.0), 0.0)]);
     let mut segmenter = Segmenter::new(Zone { half_width: 0.5, ..Zone::default() });

@@ -1,8 +1,8 @@
 //! A session as an animated GLB, written while it is played: a body by skin animation, everything else by morph targets.
 //!
 //! For everything but the body the first frame is the mesh, and each later frame is a morph target: the displacement of every
-//! vertex and its normal since the first frame. One animation sets the target of each frame to 1 at its time and to 0 at its neighbours', so that a viewer
-//! shows positions that lie on a straight line between those of two frames.
+//! vertex and its normal since the first frame. One animation sets the target of each frame to 1 at its time and to 0 at its
+//! neighbours', so that a viewer shows positions that lie on a straight line between those of two frames.
 //!
 //! A body has its skeleton's rotations, and viewers skin it by linear blending. Where Toile blends dual quaternions, the two differ
 //! at bent joints by up to centimetres, so every frame has a target with what is missing there, before skinning: with `B` the

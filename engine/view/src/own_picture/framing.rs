@@ -68,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn a_shopper_at_the_side_is_cut_by_the_picture() {
+    fn a_shopper_at_the_side_is_cut_off() {
         let size = Size::new(608, 1080);
         for column in [-900.0, 0.0, 639.0, f32::NAN, 1e9] {
             let framing = Framing::covering([640, 480], size, column, [0.0, 0.5]);
