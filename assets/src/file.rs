@@ -1,6 +1,6 @@
 //! The one way to read a user's file: a regular file, of a bounded size, or one sentence that says what is wrong.
 //!
-//! What is not a regular file is refused before it is opened, because opening a FIFO waits for a writer and reading a
+//! Anything but a regular file is refused before it is opened, because opening a FIFO waits for a writer and reading a
 //! device may never end. The opened file is looked at again, in case it was exchanged in between, and the bytes are
 //! counted while they are read, because a file may grow and those of `/proc` say that they are empty.
 
@@ -67,7 +67,7 @@ pub enum FileError {
 }
 
 impl FileError {
-    /// What is wrong, without the path and the cure: for sentences that name both themselves.
+    /// The fault, without the path and the cure: for sentences that name both themselves.
     pub fn reason(&self) -> String {
         match self {
             Self::Refused { reason, .. } => reason.clone(),
@@ -83,7 +83,7 @@ impl FileError {
 /// Reads a whole file.
 ///
 /// # Errors
-/// Where it is absent, not a regular file, or larger than its kind may be.
+/// If it is absent, not a regular file, or larger than its kind may be.
 pub fn read(path: &Path, kind: &FileKind) -> Result<Vec<u8>, FileError> {
     let shown = || path.display().to_string();
     let refused = |e: io::Error| FileError::Refused { path: shown(), kind: *kind, reason: e.to_string() };

@@ -1,4 +1,4 @@
-//! What is baked and shared: limits, skeleton, body, rig, fabrics, sizes, patterns, garments.
+//! Assets, made at load and shared: limits, skeleton, body, rig, fabrics, sizes, patterns, garments.
 
 // Modules in the order of the data: each imports only from the groups above its own (tests/tests/layers.rs).
 #[macro_use]

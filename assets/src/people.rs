@@ -7,9 +7,9 @@ use toile_base::numeric::random::SplitMix64;
 /// One of them: what it is called, its sex, and stature, bust or chest, waist and hip girth (m).
 #[derive(Debug, Clone, PartialEq)]
 pub struct SizedPerson {
-    /// What it is called.
+    /// Its name.
     pub name: String,
-    /// Which drawing it is stretched from.
+    /// The drawing that it is stretched from.
     pub sex: Sex,
     /// Stature, bust or chest, waist and hip girth (m).
     pub size: [f32; 4],

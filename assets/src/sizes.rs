@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use toile_base::body::{Measures, Sex};
 
 toile_base::named! {
-    /// What a garment is, as far as sizing is concerned (EN 13402-2).
+    /// The kind of a garment for sizing (EN 13402-2).
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize, Serialize)]
     pub enum GarmentKind {
         /// A dress.
@@ -64,7 +64,7 @@ pub enum Population {
     Women,
     /// Men's bodies.
     Men,
-    /// Anybody: garments in unisex sizes, shoppers who did not say.
+    /// Both sexes: garments in unisex sizes, shoppers of unknown sex.
     Mixed,
 }
 
@@ -79,7 +79,7 @@ impl From<Option<Sex>> for Population {
     }
 }
 
-/// Which girths decide the size of one kind of garment (EN 13402-2).
+/// Girths that decide the size of one kind of garment (EN 13402-2).
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Designation {
@@ -151,9 +151,9 @@ pub struct SizeTable {
     pub name: String,
     /// Whose bodies it describes.
     pub population: Population,
-    /// Where the numbers come from.
+    /// Source of the numbers.
     pub source: String,
-    /// Which girths decide, by kind of garment.
+    /// Deciding girths, by kind of garment.
     pub designations: Vec<Designation>,
     /// The sizes, each range starting where or after the one before it starts.
     pub sizes: Vec<Size>,
@@ -275,7 +275,7 @@ impl SizeTable {
         Ok(table)
     }
 
-    /// Which girths decide the size of a garment; `None` if the table is not made for its kind.
+    /// Girths that decide the size of a garment; `None` if the table is not made for its kind.
     pub fn designation(&self, garment: GarmentKind) -> Option<&Designation> {
         self.designations.iter().find(|d| d.garment == garment)
     }

@@ -19,7 +19,7 @@ const MAX_DECODED_BYTES: u64 = 4 * (MAX_PIXELS as u64) * (MAX_PIXELS as u64);
 /// Reads a PNG or JPEG picture and brings it to sides that are powers of two, [`MOST_SIDE`] at most.
 ///
 /// # Errors
-/// What is wrong with it and the cure, to stand behind the file's name.
+/// The fault and its cure, to follow the file's name.
 pub fn decode(bytes: &[u8]) -> Result<Texture, String> {
     let unreadable = |e: &dyn std::fmt::Display| format!("it is no picture in PNG or JPEG ({e}); save it again");
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| unreadable(&e))?;

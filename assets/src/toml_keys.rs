@@ -5,7 +5,7 @@ use toml::de::DeTable;
 /// A key that is not known.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UnknownKey {
-    /// Where it stands (byte of the text).
+    /// Its place (byte of the text).
     pub at: usize,
     /// The sentence: the table, the key and the cure.
     pub message: String,

@@ -1,4 +1,4 @@
-//! Catalogues and packages that anybody may have made: what is read, what is left out, and that each fault is one sentence.
+//! Catalogues and packages from unknown authors: accepted files, files left out, and one sentence for each fault.
 
 use std::fs;
 use std::io::{Cursor, Write};

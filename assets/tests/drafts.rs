@@ -31,7 +31,7 @@ fn ends(draped: &DrapedPattern) -> [f32; 2] {
     [heights.clone().fold(f32::MIN, f32::max), heights.fold(f32::MAX, f32::min)]
 }
 
-/// Where the points of a panel are.
+/// Positions of a panel's points.
 fn of(package: &PatternPackage, draped: &DrapedPattern, panel: &str) -> Vec<Vec3> {
     let pattern = package.parse().unwrap();
     let index = pattern.panels().iter().position(|p| p.name == panel).unwrap();

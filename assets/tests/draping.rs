@@ -16,7 +16,7 @@ use toile_base::skeleton::Joint;
 
 use crate::recordings;
 
-/// Spacing at which the laws are looked at (m): coarse, so that a test takes seconds.
+/// Spacing at which the rules are checked (m): coarse, so that a test takes seconds.
 const SPACING: f64 = 0.03;
 
 fn women(size: &str) -> Body {
@@ -56,7 +56,7 @@ fn tube(width: f64, height: f64) -> String {
     )
 }
 
-fn laws(name: &str, pattern: &Pattern, body: &Body, draped: &DrapedPattern) {
+fn check_rules(name: &str, pattern: &Pattern, body: &Body, draped: &DrapedPattern) {
     let quality = draped.quality;
     assert!(draped.at.iter().all(|p| p.is_finite()), "{name}");
     assert_eq!(quality.penetration, 0.0, "{name}");
@@ -78,7 +78,7 @@ fn a_tube_hangs_around_the_waist_with_the_girth_that_it_was_cut_with() {
     let body = women("38");
     let pattern = parse("tube", &tube(53.0, 40.0), None).unwrap();
     let draped = drape(&pattern, &body, &lawn(), 0.02).unwrap();
-    laws("tube", &pattern, &body, &draped);
+    check_rules("tube", &pattern, &body, &draped);
     assert!(draped.quality.strain_p99 < 0.06 && draped.quality.crossings == 0, "{:?}", draped.quality);
     // Its ease is the pattern's own: twice 530 mm less the waist.
     let zones = ease(&pattern, &body).unwrap().zones;
@@ -112,7 +112,7 @@ fn shared_patterns_hang_where_they_belong() {
         let Some(path) = shared(file) else { return };
         let (pattern, body) = (read(&path, None).unwrap(), women(size));
         let draped = drape(&pattern, &body, &lawn(), SPACING).unwrap();
-        laws(file, &pattern, &body, &draped);
+        check_rules(file, &pattern, &body, &draped);
         let shape = draped.shape(&body, &SkinField::new(&body));
         bake(file, size, &shape, &lawn()).unwrap();
         assert!(shape.fixed.iter().any(|f| *f), "{file}: nothing holds it");
@@ -140,7 +140,7 @@ fn legs_stay_on_their_own_sides() {
 fn drafts_hang_by_the_sides_that_their_seam_file_names() {
     let Some(pattern) = aaron() else { return };
     let body = women("32");
-    laws("aaron", &pattern, &body, &drape(&pattern, &body, &lawn(), SPACING).unwrap());
+    check_rules("aaron", &pattern, &body, &drape(&pattern, &body, &lawn(), SPACING).unwrap());
 }
 
 #[test]
@@ -292,7 +292,7 @@ fn grading_meets_the_draft_that_it_has_not_seen() {
     }
 }
 
-/// Where the vertices of a garment's mesh lie (m), in their order.
+/// Positions of the vertices of a garment's mesh (m), in their order.
 fn in_mesh_order(garment: &Garment) -> Vec<Vec3> {
     let mut at = vec![Vec3::ZERO; garment.particles()];
     garment.source.iter().zip(&garment.start).for_each(|(v, p)| at[*v as usize] = *p);
@@ -307,7 +307,7 @@ fn what_hangs_on_the_body_of_its_size_comes_over_to_another() {
         let wearer = women(size);
         let carried = package.dress_from(&hung, &wearer).unwrap();
         let again = package.dress_from(&hung, &wearer).unwrap();
-        assert_eq!(carried.start, again.start, "the same bits whoever does it");
+        assert_eq!(carried.start, again.start, "the same bits in every run");
         let sewn = package.dress("38", &wearer).unwrap();
         let (one, other) = (in_mesh_order(&carried), in_mesh_order(&sewn));
         let apart: Vec<f32> = one.iter().zip(&other).map(|(a, b)| a.distance(*b)).collect();
@@ -318,7 +318,7 @@ fn what_hangs_on_the_body_of_its_size_comes_over_to_another() {
         assert!(mean < 0.015, "38 on {size}: {mean} m apart");
         assert!(deepest > -1e-4, "38 on {size}: {deepest} m in the skin");
     }
-    // A size of no table hangs on nobody.
+    // A size that is in no table fits no body.
     let drafted = draping::AS_DRAFTED;
     assert!(package.hang(None, drafted).unwrap().is_none());
 }

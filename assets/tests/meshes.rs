@@ -77,7 +77,7 @@ fn is_one_sentence(error: &AdaptError) {
     assert!(message.contains("; ") && !message.contains('\n'), "{message}");
 }
 
-/// What holds for every mesh that is not refused.
+/// Rules for every mesh that is not refused.
 fn holds(own: &OwnMesh, body: &Body) {
     let worn = own.wear(body);
     let shape = &worn.shape;

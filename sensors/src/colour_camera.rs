@@ -1,4 +1,4 @@
-//! How a colour camera sees the world: its lens, and where it stands. What is drawn on its picture is drawn through this.
+//! A colour camera: its lens and its pose. Everything drawn on its picture is projected through it.
 
 use glam::{Affine3A, Mat3, Vec2, Vec3};
 
@@ -75,7 +75,7 @@ impl ColourCamera {
         at.extend(1.0)
     }
 
-    /// What is wrong with this camera, or `None`.
+    /// The fault of this camera, or `None`.
     pub fn fault(&self) -> Option<String> {
         let sound = |lens: &BrownConrady| {
             lens.k.iter().chain(&lens.p).chain(&lens.centre).all(|k| k.is_finite()) && lens.widest >= NARROWEST

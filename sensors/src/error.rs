@@ -1,10 +1,10 @@
-//! What can be wrong with a recording: one sentence that says what, where, and the cure.
+//! Errors of a recording: one sentence with the fault, its place, and the cure.
 
 use std::fmt;
 
 use toile_assets::file::FileError;
 
-/// Where in a file something is wrong.
+/// Place of a fault in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FilePlace {
     /// A line of a text file, from 1.
@@ -41,7 +41,7 @@ pub enum SourceError {
         path: String,
         /// "read" or "written".
         action: &'static str,
-        /// What the system said.
+        /// The system's message.
         error: std::io::Error,
     },
     /// The content is of no known kind.
@@ -52,7 +52,7 @@ pub enum SourceError {
     UnknownKind {
         /// The file's path as the user gave it.
         path: String,
-        /// What it looks like.
+        /// The apparent kind of the file.
         what: &'static str,
     },
     /// The kind is known and its content is wrong.
@@ -62,9 +62,9 @@ pub enum SourceError {
         path: String,
         /// The line, frame or byte.
         place: FilePlace,
-        /// What is wrong there.
+        /// The fault there.
         problem: String,
-        /// What the user can do about it.
+        /// The cure.
         cure: &'static str,
     },
 }

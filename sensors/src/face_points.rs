@@ -7,7 +7,7 @@
 //!
 //! A point that is not seen is `null`. `camera` names one of a calibration; without it `focal_px`, where the lens is known. Names are
 //! the numbers of the 68 points: `"30"` is the tip of the nose. `outline` is a curve along the outline of the head, or several. With
-//! `"sequence": true` the photographs are frames of one camera in the order of time, of which some may show nobody.
+//! `"sequence": true` the photographs are frames of one camera in the order of time, and some may show no person.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -38,7 +38,7 @@ const OF_MESH: [usize; FACE_POINTS] = [
 /// The 68 points among all those of MediaPipe's face mesh.
 ///
 /// # Panics
-/// Where there are fewer than [`MESH_POINTS`].
+/// If there are fewer than [`MESH_POINTS`].
 pub fn of_mesh<T: Copy>(mesh: &[T]) -> [T; FACE_POINTS] {
     OF_MESH.map(|k| mesh[k])
 }
@@ -54,7 +54,7 @@ const FILE: FileKind = FileKind { name: "a file of points", max_bytes: 128 << 20
 const CURE: &str =
     "give 68 points in the order of Multi-PIE, 468 or 478 in MediaPipe's, or an object of names and points";
 
-/// What a file of points holds.
+/// Content of a file of points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MarkedPhotographs {
     /// The photographs of one moment, or the frames of a sequence.
@@ -72,7 +72,7 @@ pub struct MarkedPhotograph {
     pub camera: Option<String>,
     /// Its focal length (px), where no calibration has it.
     pub focal_px: Option<f64>,
-    /// Where the 68 points are (px); none where they are not seen.
+    /// The 68 points (px); none if they are not seen.
     pub points: [Option<DVec2>; FACE_POINTS],
     /// Curves along the head's outline (px) `[curves][points]`.
     pub outlines: Vec<Vec<DVec2>>,
@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_of_a_sequence_may_show_nobody() {
+    fn frames_of_a_sequence_may_be_empty() {
         let frame = "{\"picture\": \"a.png\", \"points\": []}";
         let all = [frame; 20].join(",");
         let read = parse(&format!("{{\"sequence\": true, \"photographs\": [{all}]}}"), Path::new("")).unwrap();

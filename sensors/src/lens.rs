@@ -34,7 +34,7 @@ impl BrownConrady {
         poly(k1, k2, k3) / poly(k4, k5, k6)
     }
 
-    /// Where a straight ray's image lies, bent.
+    /// Distorted image of a straight ray.
     pub fn bend(&self, [x, y]: [f32; 2]) -> [f32; 2] {
         let (x, y) = (x - self.centre[0], y - self.centre[1]);
         let [p1, p2] = self.p;

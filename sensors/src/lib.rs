@@ -1,7 +1,6 @@
-//! What is seen: depth frames and joints, recordings of them, and the filters that make them believable.
+//! Depth frames and joints of a sensor, recordings of them, and the filters that make them plausible.
 //!
-//! Budget: 33 ms a frame at 30 Hz; joints are filtered in under 50 us.
-//! Thread: the sensor thread.
+//! Runs on the sensor thread: at most 33 ms a frame at 30 Hz, of which filtering the joints takes less than 50 µs.
 
 // Modules in the order of the data: each imports only from the groups above its own (tests/tests/layers.rs).
 pub mod error;

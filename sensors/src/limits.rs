@@ -47,8 +47,8 @@ pub const MAX_BVH_DEPTH: usize = 64;
 /// simulated, so that a clock that was set within a recording must not become a month of steps.
 pub const MAX_DURATION_NS: u64 = 7_200 * toile_base::clock::SECOND_NS;
 
-/// Longest time between two frames of a recording (ns): a minute, after which somebody else may stand there, and during
-/// which the cloth is simulated although nobody is seen.
+/// Longest time between two frames of a recording (ns): a minute, after which another person may stand there, and during
+/// which the cloth is simulated although no person is seen.
 pub const MAX_GAP_NS: u64 = 60 * toile_base::clock::SECOND_NS;
 
 /// Largest chunk of a session, unpacked (bytes): writers make chunks of about a megabyte, and a depth image that does not

@@ -15,7 +15,7 @@ use crate::calibration::CalibratedCamera;
 use crate::error::{FilePlace, ReaderFault, SourceError};
 use crate::pictures::{PICTURE, decode_any};
 
-/// Differences from the background (of 255, the largest of three channels) that are nobody, and wholly the person.
+/// Differences from the background (of 255, the largest of three channels) at which a pixel is background, and wholly the person.
 const DIFFERS: [f32; 2] = [14.0, 42.0];
 
 /// Least and most of a picture that a person covers.
@@ -47,7 +47,7 @@ impl Mask {
 /// Reads the masks of a folder for these cameras.
 ///
 /// # Errors
-/// One sentence where there is not one picture a camera, a picture is not of its camera's size, or shows nobody or nothing else.
+/// One sentence if there is not one picture a camera, a picture is not of its camera's size, or it shows no person or nothing else.
 pub fn read_masks(
     folder: &Path,
     backgrounds: Option<&Path>,
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_and_nothing_but_somebody_are_refused() {
+    fn empty_and_full_masks_are_refused() {
         let of = |c: f32| check(&Mask { width: 10, height: 10, coverage: vec![c; 100] });
         assert!(of(0.0).unwrap_err().at("m.png").to_string().contains("0.00 % of it is a person's"));
         assert!(of(1.0).unwrap_err().at("m.png").to_string().contains("turn black and white round"));

@@ -1,4 +1,4 @@
-//! Which parts of a picture show a person: odds in a square of it that need not be upright.
+//! The odds of a person at each pixel of a square of the picture, which need not be upright.
 
 use glam::{Affine2, Vec2};
 
@@ -29,7 +29,7 @@ impl PersonMask {
         self.odds.clone_from(&other.odds);
     }
 
-    /// Forgets whoever was seen.
+    /// Forgets the person that was seen.
     pub fn wipe(&mut self) {
         self.side = 0;
         self.odds.fill(0.0);

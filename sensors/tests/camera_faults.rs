@@ -36,7 +36,7 @@ fn plan(faults: usize) -> FaultPlan {
     FaultPlan { faults: (0..faults).map(fault).collect() }
 }
 
-/// What became of each kind: the longest until it was noticed and until it was over (ns), and the fewest frames a second meanwhile.
+/// Result of each kind: the longest time until it was noticed and until it was over (ns), and the fewest frames a second meanwhile.
 #[derive(Debug, Clone, Copy)]
 struct Outcome {
     noticed_ns: u64,

@@ -105,7 +105,7 @@ fn wrong_folders_are_refused_in_one_sentence() {
         ("three", &format!("{rig}[c]\n{CAMERA}"), &person),
         ("short", &rig, "{\"people\":[{\"pose_keypoints_2d\":[1]}]}"),
         ("binary", &rig, "\u{0}\u{1}"),
-        ("nobody", &rig, "{\"people\":[]}"),
+        ("empty", &rig, "{\"people\":[]}"),
         // Two cameras at one place see no depth.
         ("same", &rig, &person),
     ] {

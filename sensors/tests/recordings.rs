@@ -65,7 +65,7 @@ fn time_begins_at_zero_and_increases() {
 }
 
 #[test]
-fn everybody_stands_on_the_floor_at_a_plausible_size() {
+fn all_people_stand_on_the_floor_in_plausible_size() {
     let Some(folder) = data() else { return };
     for s in all(&folder) {
         let y = |j: Joint| median(s.joints.iter().filter(|f| f.at(j).confidence > 0.0).map(|f| f.at(j).position.y));
@@ -93,7 +93,7 @@ fn everybody_stands_on_the_floor_at_a_plausible_size() {
 }
 
 #[test]
-fn everybody_faces_us_with_the_left_hand_on_the_left_and_toes_in_front() {
+fn all_people_face_us_with_correct_sides() {
     let Some(folder) = data() else { return };
     for s in all(&folder) {
         let begin = &s.joints[..s.joints.len().min(30)];

@@ -1,4 +1,4 @@
-//! The shopper is found among all that a depth camera sees, and nobody else ever is in the mask.
+//! The shopper is found in everything that a depth camera sees, and no other person is ever in the mask.
 
 use glam::{Quat, Vec3};
 use toile_base::body::{Body, Measures, Sex};
@@ -65,7 +65,7 @@ fn errors(view: &RoomView, frame: &DepthFrame, mask: &[u8]) -> (usize, f32) {
 }
 
 #[test]
-fn all_of_the_shopper_is_found_and_nobody_else() {
+fn only_the_shopper_is_found_and_completely() {
     let two = Two::new();
     let behind = |x: f32, z: f32| (Vec3::new(x, 0.0, z), 0.3);
     let shopper = (Vec3::ZERO, 0.0);
@@ -97,8 +97,8 @@ fn all_of_the_shopper_is_found_and_nobody_else() {
         assert_eq!(found.others, people.len() - 1, "{name}");
         // Known to fall short: where hands cross, a few pixels of the other's fingertips lie beyond what is given up.
         assert!(leaked <= if name == "hands crossing" { 20 } else { 0 }, "{name}: {leaked}");
-        // Turned, the far arm shows behind the chest and apart from it, as an arm of anybody who hides there would; and
-        // an arm that touches somebody else's is given up altogether. Beside each other, the two have their hands a few
+        // Turned, the far arm shows behind the chest and apart from it, as an arm of a person hidden there would; and
+        // an arm that touches another person's is given up altogether. Beside each other, the two have their hands a few
         // centimetres apart.
         let most = match name {
             "turned" => 0.09,
@@ -117,7 +117,7 @@ fn all_of_the_shopper_is_found_and_nobody_else() {
 #[test]
 fn a_forearm_before_the_hips_makes_no_two_people_of_one() {
     let two = Two::new();
-    // From the side, legs alone are too slim to be anybody's.
+    // From the side, legs alone are too slim to be a person.
     for turn in [0.0, 0.5 * std::f32::consts::PI] {
         both_halves_are_kept(noisy(&two.seen(&[(Vec3::ZERO, turn)]), 0));
     }
@@ -148,7 +148,7 @@ fn both_halves_are_kept(mut frame: DepthFrame) {
 }
 
 #[test]
-fn whoever_passes_does_not_take_the_shoppers_place() {
+fn a_passer_by_does_not_become_the_shopper() {
     let two = Two::new();
     for z in [-0.6, 0.9] {
         let mut segmenter = Segmenter::default();
@@ -174,7 +174,7 @@ fn whoever_passes_does_not_take_the_shoppers_place() {
 }
 
 #[test]
-fn an_empty_room_shows_nobody_and_its_floor() {
+fn an_empty_room_shows_only_its_floor() {
     let two = Two::new();
     let view = two.seen(&[]);
     let found_in = |zone: Zone| {
@@ -187,7 +187,7 @@ fn an_empty_room_shows_nobody_and_its_floor() {
 }
 
 #[test]
-fn somebody_outside_the_zone_is_not_the_shopper() {
+fn a_person_outside_the_zone_is_no_shopper() {
     let two = Two::new();
     let view = two.seen(&[(Vec3::new(1.0, 0.0, 0.0), 0.0)]);
     let mut segmenter = Segmenter::new(Zone { half_width: 0.5, ..Zone::default() });
@@ -276,7 +276,7 @@ fn real_frames_show_the_person_in_front_alone() {
             found.shopper
         );
         assert!(found.shopper.is_some() && found.floor.is_none(), "{}", session.name);
-        // The one behind stands beyond 1.9 m; everybody else is alone.
+        // The one behind stands beyond 1.9 m; all others are alone.
         let behind = session.name.contains("1399145206");
         assert!(far < 1_900 && if behind { share < 0.95 } else { share > 0.97 }, "{}: {far} {share}", session.name);
         seen += 1;
@@ -285,7 +285,7 @@ fn real_frames_show_the_person_in_front_alone() {
 }
 
 #[test]
-fn a_mug_is_nobody() {
+fn a_mug_is_not_a_person() {
     let Some(folder) = data() else { return };
     let session = open(&folder.join("depth/pyk4a-azure-mkv/recording.mkv"), &OpenOptions::default()).unwrap();
     let mut clean = Clean::default();

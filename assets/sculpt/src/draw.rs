@@ -22,7 +22,7 @@ pub struct Drawn {
     /// Part of the body `[vertices]`.
     pub regions: Vec<Region>,
     /// Mirror image of each vertex `[vertices]`.
-    pub twins: Vec<u32>,
+    pub mirrors: Vec<u32>,
     /// Joint centres in the rest pose (m).
     pub skeleton: Skeleton,
 }
@@ -38,26 +38,26 @@ pub fn draw(text: &str) -> Result<Drawn, toml::de::Error> {
     let coarse = Quads::new(lattice.points.len(), lattice.faces.clone());
     let slide: Vec<f32> = lattice.tags.iter().map(|t| t.slide).collect();
     let mut cage = lattice.points.clone();
-    Wrapping { form: &form, quads: &coarse, twins: &lattice.twins, slide: &slide }.lay(&mut cage, CAGE_ROUNDS);
+    Wrapping { form: &form, quads: &coarse, mirrors: &lattice.mirrors, slide: &slide }.lay(&mut cage, CAGE_ROUNDS);
 
     let fine = coarse.refined();
     let half = lattice.faces.len() as u32 / 2;
-    let twins = coarse.refined_twins(&lattice.twins, |f| (f + half) % (2 * half));
+    let mirrors = coarse.refined_mirrors(&lattice.mirrors, |f| (f + half) % (2 * half));
     let mut positions = coarse.refine(&cage);
     let slides: Vec<Vec3> = slide.iter().map(|&s| Vec3::splat(s)).collect();
     let slide: Vec<f32> = coarse.refine(&slides).iter().map(|s| s.x).collect();
     for v in 0..positions.len() {
-        let twin = twins[v] as usize;
+        let mirror = mirrors[v] as usize;
         if positions[v].x >= 0.0 {
-            positions[twin] = positions[v] * Vec3::new(-1.0, 1.0, 1.0);
+            positions[mirror] = positions[v] * Vec3::new(-1.0, 1.0, 1.0);
         }
     }
-    Wrapping { form: &form, quads: &fine, twins: &twins, slide: &slide }.lay(&mut positions, SURFACE_ROUNDS);
+    Wrapping { form: &form, quads: &fine, mirrors: &mirrors, slide: &slide }.lay(&mut positions, SURFACE_ROUNDS);
     let charts = lattice.charts.iter().flat_map(|&c| [c; 4]).collect();
     let regions = regions(&coarse, &lattice, &positions);
     positions.iter_mut().for_each(|p| *p *= 1e-3);
     let skeleton = form.skeleton();
-    Ok(Drawn { positions, quads: fine.faces().to_vec(), charts, regions, twins, skeleton })
+    Ok(Drawn { positions, quads: fine.faces().to_vec(), charts, regions, mirrors, skeleton })
 }
 
 /// The part of the body of each vertex: by majority of what the cage around it is.

@@ -22,7 +22,7 @@ use toile_assets::body::stored::StoredBodies;
 /// A drawing that is no TOML or lacks a part.
 ///
 /// # Panics
-/// Where the two drawings do not give the same grid.
+/// If the two drawings do not give the same grid.
 pub fn stored(drawings: [&str; 2]) -> Result<StoredBodies, toml::de::Error> {
     let bodies = [draw(drawings[0])?, draw(drawings[1])?];
     let (uvs, corners) = unwrap(&bodies);
@@ -37,6 +37,6 @@ pub fn stored(drawings: [&str; 2]) -> Result<StoredBodies, toml::de::Error> {
         corners,
         charts,
         regions: woman.regions,
-        twins: woman.twins,
+        mirrors: woman.mirrors,
     })
 }

@@ -65,14 +65,14 @@ impl Quads {
     }
 
     /// Each refined vertex's mirror image, from the mirror images of vertices and faces.
-    pub(super) fn refined_twins(&self, twins: &[u32], faces: impl Fn(u32) -> u32) -> Vec<u32> {
+    pub(super) fn refined_mirrors(&self, mirrors: &[u32], faces: impl Fn(u32) -> u32) -> Vec<u32> {
         let (first_edge, first_face) = (self.valence.len() as u32, (self.valence.len() + self.edges.len()) as u32);
         let edge = |e: &Edge| {
-            let [a, b] = e.ends.map(|v| twins[v as usize]);
+            let [a, b] = e.ends.map(|v| mirrors[v as usize]);
             let ends = [a.min(b), a.max(b)];
             first_edge + self.edges.binary_search_by(|o| o.ends.cmp(&ends)).expect("a mirrored edge") as u32
         };
-        let own = twins.iter().copied();
+        let own = mirrors.iter().copied();
         own.chain(self.edges.iter().map(edge))
             .chain((0..self.faces.len() as u32).map(|f| first_face + faces(f)))
             .collect()

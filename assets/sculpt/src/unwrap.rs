@@ -32,7 +32,7 @@ pub fn unwrap(bodies: &[Drawn; 2]) -> (Vec<Vec2>, Vec<[u32; 4]>) {
         let mirrored = chart >= 4 && chart % 2 == 1;
         let sheet = ChartLayout::new(&drawn.quads, faces);
         sheets.push(if mirrored {
-            sheet.like(&sheets[usize::from(chart) - 1], &drawn.twins)
+            sheet.like(&sheets[usize::from(chart) - 1], &drawn.mirrors)
         } else {
             sheet.flattened(&mean)
         });
@@ -70,9 +70,9 @@ impl ChartLayout {
     }
 
     /// The mirror image of another sheet's layout.
-    fn like(mut self, other: &Self, twins: &[u32]) -> Self {
-        let twin = |v: &u32| other.vertices.binary_search(&twins[*v as usize]).expect("a mirrored chart");
-        self.points = self.vertices.iter().map(|v| other.points[twin(v)] * Vec2::new(-1.0, 1.0)).collect();
+    fn like(mut self, other: &Self, mirrors: &[u32]) -> Self {
+        let mirror = |v: &u32| other.vertices.binary_search(&mirrors[*v as usize]).expect("a mirrored chart");
+        self.points = self.vertices.iter().map(|v| other.points[mirror(v)] * Vec2::new(-1.0, 1.0)).collect();
         self
     }
 

@@ -9,7 +9,7 @@ use crate::subdivide::Quads;
 pub(super) struct Wrapping<'a> {
     pub form: &'a Form,
     pub quads: &'a Quads,
-    pub twins: &'a [u32],
+    pub mirrors: &'a [u32],
     /// How far each vertex may slide, 0 to 1.
     pub slide: &'a [f32],
 }
@@ -40,17 +40,17 @@ impl Wrapping<'_> {
     }
 
     fn is_left(&self, v: usize, points: &[Vec3]) -> bool {
-        self.twins[v] as usize == v || points[v].x > 0.0
+        self.mirrors[v] as usize == v || points[v].x > 0.0
     }
 
     fn place(&self, points: &mut [Vec3], v: usize, mut p: Vec3) {
-        let twin = self.twins[v] as usize;
-        if twin == v {
+        let mirror = self.mirrors[v] as usize;
+        if mirror == v {
             p.x = 0.0;
         }
         points[v] = p;
-        points[twin] = Vec3::new(-p.x, p.y, p.z);
-        if twin == v {
+        points[mirror] = Vec3::new(-p.x, p.y, p.z);
+        if mirror == v {
             points[v].x = 0.0;
         }
     }
@@ -66,7 +66,7 @@ impl Wrapping<'_> {
     }
 
     fn neighbours(&self) -> Vec<Vec<u32>> {
-        let mut around = vec![Vec::new(); self.twins.len()];
+        let mut around = vec![Vec::new(); self.mirrors.len()];
         for [a, b] in self.quads.edges() {
             around[a as usize].push(b);
             around[b as usize].push(a);

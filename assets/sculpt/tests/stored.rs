@@ -1,4 +1,4 @@
-//! What `toile-assets` ships is what the drawings give.
+//! The bodies that `toile-assets` ships equal those of the drawings.
 
 use toile_assets::body::stored::StoredBodies;
 
@@ -15,7 +15,7 @@ fn shipped_bodies_are_those_of_the_drawings() {
     assert_eq!(drawn.quads, shipped.quads);
     assert_eq!(drawn.charts, shipped.charts);
     assert_eq!(drawn.regions, shipped.regions);
-    assert_eq!(drawn.twins, shipped.twins);
+    assert_eq!(drawn.mirrors, shipped.mirrors);
     assert_eq!(drawn.corners, shipped.corners);
     for (drawn, shipped) in drawn.positions.iter().zip(&shipped.positions) {
         let off = drawn.iter().zip(shipped).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);

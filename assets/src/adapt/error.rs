@@ -7,7 +7,7 @@ use crate::file::FileError;
 use crate::import::avatar::AvatarError;
 use crate::sizes::SizeError;
 
-/// What can be wrong with a mesh of the user's own, or with a file beside it.
+/// Error of the user's mesh, or of a file beside it.
 #[derive(Debug, Error)]
 pub enum AdaptError {
     /// A file cannot be read, or is too large.
@@ -18,7 +18,7 @@ pub enum AdaptError {
     Mesh {
         /// The file's path as the user gave it.
         path: String,
-        /// What is wrong with it, and the cure.
+        /// The fault and its cure.
         flaw: String,
     },
     /// The TOML file of its measures.
@@ -28,7 +28,7 @@ pub enum AdaptError {
         path: String,
         /// Line of the text, from 1.
         line: usize,
-        /// What is wrong.
+        /// The fault.
         reason: String,
     },
     /// The clothes file or the base mesh.

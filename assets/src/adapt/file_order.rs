@@ -6,7 +6,7 @@ use super::mesh::ForeignMesh;
 use toile_bake::check::corners;
 use toile_bake::shape::{Face, NO_VERTEX};
 
-/// What became of the vertices of a file.
+/// The file's vertices in the mesh.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct FileOrder {
     /// Where the file has each vertex (m), placed as the mesh is `[file's vertices]`.

@@ -1,4 +1,4 @@
-//! What is held: of each piece, what lies on the skin and what carries it, as tailors' garments hang; the rest moves.
+//! Chooses the held vertices of each piece: those on the skin and those that carry it, as tailors' garments hang. The rest moves.
 
 use std::collections::VecDeque;
 

@@ -1,4 +1,4 @@
-//! What becomes of each piece: cloth where it can be simulated well, else skin; small ones ride along without bending.
+//! Decides the use of each piece: cloth if it can be simulated well, else skin; small pieces ride along without bending.
 
 use glam::Vec3;
 
@@ -34,7 +34,7 @@ pub const MOST_MOVING: usize = 12_000;
 /// Share of a piece that has to move for it to be cloth.
 const LEAST_MOVING: f32 = 0.05;
 
-/// What is known of a piece before anything is decided.
+/// Properties of a piece before any decision.
 pub struct PieceMeasures {
     extent: f32,
     edge: f32,
@@ -97,7 +97,7 @@ impl PieceMeasures {
         self.extent < TRIM_M
     }
 
-    /// What is reported of a piece.
+    /// The report on a piece.
     pub fn report(
         &self,
         vertex: u32,

@@ -34,7 +34,7 @@ const SMOOTHINGS: usize = 8;
 /// A mesh on a shopper; all but the order a value a vertex.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LaidMesh {
-    /// Where each vertex starts (m).
+    /// Start position of each vertex (m).
     pub worn: Vec<Vec3>,
     /// How far from the skin that is (m).
     pub clearance: Vec<f32>,
@@ -42,11 +42,11 @@ pub struct LaidMesh {
     pub weights: Vec<SkinWeights>,
     /// The part of the body that it lies on.
     pub parts: Vec<Part>,
-    /// Which pieces lie over which.
+    /// Pairs of pieces that lie over each other.
     pub order: PieceOrder,
 }
 
-/// What is known of a mesh before it is laid, a value a vertex.
+/// Properties of a mesh before it is laid, a value a vertex.
 pub struct LayInput<'a> {
     /// Skin weights of the body that it is made for.
     pub weights: &'a [SkinWeights],

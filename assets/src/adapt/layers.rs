@@ -1,4 +1,4 @@
-//! Which pieces of a mesh lie over which others on the body that it is made for: a shirt over trousers.
+//! The order of a mesh's pieces on the body that it is made for: a shirt over trousers.
 
 use super::mesh::ForeignMesh;
 

@@ -88,7 +88,7 @@ impl MadeFor {
         (LEAST_TURN..=MOST_TURN).contains(&angle).then_some(turn)
     }
 
-    /// What is reported of it.
+    /// Its report.
     pub fn report(&self) -> MadeForReport {
         let Measures { stature, chest_girth, waist_girth, hip_girth, .. } = self.body.measures;
         let [stature_mm, chest_girth_mm, waist_girth_mm, hip_girth_mm] =

@@ -18,11 +18,11 @@ pub struct GarmentMeasures {
     pub name: Option<String>,
     /// Name of a fabric that is built in.
     pub fabric: Option<String>,
-    /// Which layer it is worn in, as garments of the wardrobe have it.
+    /// Its layer, as garments of the wardrobe have it.
     pub layer: Option<u8>,
     /// Unit of the mesh's numbers.
     pub unit: Option<String>,
-    /// What it is; decides its primary measures.
+    /// Its kind; decides its primary measures.
     pub kind: Option<GarmentKind>,
     /// Name of the size table.
     pub table: Option<String>,
@@ -140,7 +140,7 @@ impl MadeForMeasures {
 pub struct MeshSizes {
     /// The size table.
     pub table: SizeTable,
-    /// What the garment is.
+    /// The kind of garment.
     pub kind: GarmentKind,
     /// The size in which the mesh is made.
     pub made_in: String,

@@ -1,4 +1,4 @@
-//! A mesh by somebody else, while it becomes a garment: every vertex and face remembers what it was in the file.
+//! A foreign mesh while it becomes a garment: every vertex and face remembers what it was in the file.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use toile_bake::check::corners;
 use toile_bake::shape::{Face, NO_VERTEX};
 use toile_base::texture::Texture;
 
-/// What the material of a face says.
+/// Material of a face.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct FaceMaterial {
     /// Whether it moves, by the material's name; never where no name ends in `Free`.

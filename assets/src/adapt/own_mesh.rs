@@ -48,9 +48,9 @@ pub struct OwnMesh {
     pub sizes: Option<MeshSizes>,
     /// How the numbers of the file were read.
     pub axes: FileAxes,
-    /// What was repaired.
+    /// The repairs.
     pub repairs: Vec<Repair>,
-    /// What the user ought to know, one sentence each.
+    /// Notes for the user, one sentence each.
     pub notes: Vec<String>,
     /// Skin weights of the body that it is made for, at each vertex.
     pub weights: Vec<SkinWeights>,
@@ -62,7 +62,7 @@ impl OwnMesh {
     /// Reads a mesh and what lies beside it, recognises its unit and its body, and repairs it.
     ///
     /// # Errors
-    /// What is wrong with which file, in one sentence.
+    /// One sentence: the file and its fault.
     pub fn read(path: &Path) -> Result<Self, AdaptError> {
         let files = source::read(path)?;
         let sizes = files.measures.sizes()?;

@@ -10,16 +10,16 @@ use crate::import::paint::{Paint, parse_mhmat, parse_mtl};
 use crate::import::plain::PlainMesh;
 use toile_base::texture::Texture;
 
-/// What is read as a picture.
+/// Limits of a picture file.
 const PICTURE: FileKind = FileKind { name: "a picture", max_bytes: 64 << 20, cure: "make it smaller" };
 
-/// What is read as materials.
+/// Limits of a material file.
 const MATERIALS: FileKind = FileKind { name: "a material file", max_bytes: 1 << 20, cure: "export the mesh again" };
 
 /// Most pictures of one mesh.
 const MOST_PICTURES: usize = 64;
 
-/// What the materials of a mesh show, by the files of its folder.
+/// Reader of a mesh's materials, from the files of its folder.
 #[derive(Debug, Default)]
 pub struct MeshPaint {
     /// The file's materials, or one for all faces.
@@ -28,7 +28,7 @@ pub struct MeshPaint {
     of_face: Vec<Option<usize>>,
     /// Files of the folder that say so.
     libraries: Vec<String>,
-    /// What could not be read.
+    /// Notes on unreadable files.
     notes: Vec<String>,
 }
 

@@ -119,7 +119,7 @@ mod tests {
 
     const SOUND: &str = "v 0 0 0\nv .2 0 0\nv .2 1 0\nv 0 1 0\nf 1 2 3 4\n";
 
-    /// What was repaired, how often, and the file's vertices.
+    /// The repairs, their number, and the file's vertices.
     type Done = (&'static str, usize, Vec<u32>);
 
     fn repaired(text: &str) -> (ForeignMesh, Vec<Done>) {

@@ -1,4 +1,4 @@
-//! What was found in a mesh by others, what was repaired, and what became of each of its pieces.
+//! Report on a foreign mesh: findings, repairs, and the use of each piece.
 
 use serde::Serialize;
 
@@ -8,7 +8,7 @@ const NAMED: usize = 8;
 /// One kind of repair.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Repair {
-    /// What was wrong and what was done.
+    /// The fault and the repair.
     pub what: &'static str,
     /// How often.
     pub count: usize,
@@ -32,7 +32,7 @@ impl Repair {
     }
 }
 
-/// What becomes of a piece of the mesh.
+/// Use of a piece of the mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Behaviour {
@@ -64,7 +64,7 @@ pub struct PieceReport {
     pub vertices: usize,
     /// Those of them that move as cloth.
     pub moving: usize,
-    /// What becomes of it.
+    /// Its use.
     pub behaviour: Behaviour,
     /// Why, in a few words.
     pub why: String,
@@ -89,7 +89,7 @@ pub struct MadeForReport {
     pub hip_girth_mm: f32,
 }
 
-/// What became of a mesh by others.
+/// Report on a foreign mesh.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MeshReport {
     /// The file, as the user gave it.
@@ -98,11 +98,11 @@ pub struct MeshReport {
     pub unit: String,
     /// The body that it is made for.
     pub made_for: MadeForReport,
-    /// What was repaired, in the order in which it was done.
+    /// The repairs, in the order in which they were made.
     pub repairs: Vec<Repair>,
     /// Its pieces, the largest first.
     pub pieces: Vec<PieceReport>,
-    /// What the user ought to know, one sentence each.
+    /// Notes for the user, one sentence each.
     pub notes: Vec<String>,
 }
 

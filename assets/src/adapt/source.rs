@@ -13,7 +13,7 @@ use crate::import::obj::MAX_BYTES;
 use crate::import::plain::{PlainMesh, parse_obj};
 use toile_bake::check::{MAX_VERTICES, MeshError};
 
-/// What is read as a garment's mesh.
+/// Limits of a mesh file of a garment.
 const MESH_FILE: FileKind =
     FileKind { name: "an OBJ, glTF or GLB file", max_bytes: MAX_BYTES, cure: "reduce the mesh before exporting" };
 
@@ -24,7 +24,7 @@ const MEASURES_FILE: FileKind =
 /// Coordinates beyond this are no garment's in any unit, and their products have no room in single precision.
 const FARTHEST: f32 = 1e6;
 
-/// What the files of a mesh say.
+/// Content of a mesh's files.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeshFiles {
     /// The file, as the user gave it.
@@ -55,7 +55,7 @@ pub fn is_mesh(name: &str) -> bool {
 /// Reads a mesh and what lies beside it.
 ///
 /// # Errors
-/// What is wrong with which file, in one sentence.
+/// One sentence: the file and its fault.
 pub fn read(path: &Path) -> Result<MeshFiles, AdaptError> {
     let shown = path.display().to_string();
     let plain = read_plain(path)?;
@@ -97,7 +97,7 @@ fn read_plain(path: &Path) -> Result<PlainMesh, AdaptError> {
     parse_gltf(&file::read(path, &MESH_FILE)?, &beside).map_err(wrong)
 }
 
-/// What no repair can help.
+/// Refuses a mesh with errors that cannot be repaired.
 fn check(mesh: &PlainMesh) -> Result<(), String> {
     let flaw = |error: MeshError| Err(mesh.flaw(&error, |v| v as usize, |f| f));
     if mesh.faces.is_empty() {

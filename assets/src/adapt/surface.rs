@@ -10,7 +10,7 @@ use super::sets::DisjointSets;
 use toile_bake::check::corners;
 use toile_bake::shape::{Face, NO_VERTEX};
 
-/// Which faces continue each other, and across which edge.
+/// Faces that continue each other, and the edges between them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FaceLink {
     /// The two faces.

@@ -34,7 +34,7 @@ const ASKED: usize = 240;
 const TRUNK_M: f32 = 0.2;
 const FEWEST_OF: usize = 4;
 
-/// Share of them that may lie in the body, and how deep counts as in it (m): what is made for somebody slimmer does.
+/// Share of them that may lie in the body, and how deep counts as in it (m): a mesh made for a slimmer person does.
 const MOST_INSIDE: f32 = 0.4;
 const INSIDE_M: f32 = 0.02;
 
@@ -120,7 +120,7 @@ pub fn recognise(mesh: &ForeignMesh, body: &Body, unit: Option<(f32, &'static st
     found.iter_mut().filter(|(_, axes)| axes.z_up).for_each(|(off, _)| *off *= SELDOM);
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     match found[..] {
-        [] => Err(nobody(low, high)),
+        [] => Err(no_person_inside(low, high)),
         [(best, axes), ..] => match found.iter().find(|(f, a)| *f < best * SURER && a.unit != axes.unit) {
             Some((_, other)) => Err(format!(
                 "its numbers may be {} or {}; name the unit in a TOML file beside it, unit = \"{}\", or export it in metres",
@@ -174,10 +174,10 @@ fn fit(skin: &SkinByHeight<'_>, asked: &[Vec3], axes: &FileAxes) -> Option<f32> 
     stands.then_some(mean / size)
 }
 
-fn nobody(low: Vec3, high: Vec3) -> String {
+fn no_person_inside(low: Vec3, high: Vec3) -> String {
     let [x, y, z] = (high - low).to_array();
     format!(
-        "nobody stands in it: it is {x:.4} by {y:.4} by {z:.4} large and from {:.4} to {:.4} high, which is no garment on a \
+        "no person stands in it: it is {x:.4} by {y:.4} by {z:.4} large and from {:.4} to {:.4} high, which is no garment on a \
          body in any unit; export it in metres, y up, around a person who stands on y = 0",
         low.y, high.y
     )

@@ -26,12 +26,12 @@ const LEG_BESIDE_M: f32 = 0.04;
 /// Cloth within this distance of a trim (m) is held with it, so that it stays where it is sewn on.
 const SEWN_M: f32 = 0.02;
 
-/// What each face of a mesh shows.
+/// The picture or colour of each face of a mesh.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Painted {
     /// The pictures of all materials.
     pub pictures: Vec<Arc<Texture>>,
-    /// Which of them each face shows, counted from 1; 0 is none `[faces]`.
+    /// Picture of each face, counted from 1; 0 is none `[faces]`.
     pub of_face: Vec<u8>,
 }
 
@@ -40,11 +40,11 @@ pub struct Painted {
 pub struct WornMesh {
     /// All of it as one shape, without a picture.
     pub shape: Shape,
-    /// What its faces show.
+    /// The pictures of its faces.
     pub painted: Option<Painted>,
     /// Vertices of what is worn in one layer, sorted; the innermost layer first.
     pub layers: Vec<Vec<u32>>,
-    /// What became of it.
+    /// Its report.
     pub report: MeshReport,
 }
 
@@ -170,7 +170,7 @@ fn numbers(pieces: &[Vec<u32>], vertices: usize) -> Vec<u32> {
     of
 }
 
-/// What is known of each piece.
+/// Properties of each piece.
 fn measured(cut: &ForeignMesh, laid: &LaidMesh, pieces: &[Vec<u32>]) -> Vec<PieceMeasures> {
     let of = numbers(pieces, cut.positions.len());
     let mut faces: Vec<Vec<usize>> = vec![Vec::new(); pieces.len()];
@@ -178,7 +178,7 @@ fn measured(cut: &ForeignMesh, laid: &LaidMesh, pieces: &[Vec<u32>]) -> Vec<Piec
     pieces.iter().zip(&faces).map(|(piece, faces)| PieceMeasures::of(cut, laid, piece, faces)).collect()
 }
 
-/// Which pieces are trims: small ones, of a mesh that has a larger one.
+/// The pieces that are trims: small ones, of a mesh that has a larger one.
 fn trims(measured: &[PieceMeasures]) -> Vec<bool> {
     let found: Vec<bool> = measured.iter().map(PieceMeasures::is_trim).collect();
     if found.iter().all(|trim| *trim) { vec![false; found.len()] } else { found }

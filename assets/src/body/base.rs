@@ -37,14 +37,14 @@ pub struct BaseBody {
     /// Piece of the atlas of each face, by number `[quads]`.
     pub charts: Vec<u8>,
     /// Mirror image of each vertex `[vertices]`.
-    pub twins: Vec<u32>,
+    pub mirrors: Vec<u32>,
     /// Part of the body `[vertices]`.
     pub regions: Vec<Region>,
     /// Joint centres (m).
     pub skeleton: Skeleton,
     /// Bones that carry each vertex `[vertices]`.
     pub weights: Vec<SkinWeights>,
-    /// Where the tape is laid.
+    /// Landmarks at which the tape is laid.
     pub landmarks: Landmarks,
 }
 
@@ -61,7 +61,7 @@ impl BaseBody {
         let skeleton = all.skeletons[StoredBodies::index(sex)].clone();
         let triangles: Vec<[u32; 3]> = split(&all.quads);
         let left = shares::left(&positions, &all.quads, &all.regions, &skeleton);
-        let right = shares::right(&left, &all.twins);
+        let right = shares::right(&left, &all.mirrors);
         let stature = positions.iter().map(|p| p.y).fold(0.0, f32::max);
         let skinning = skin::Skinning::new(&skeleton, stature);
         let sides = left.iter().zip(&right);
@@ -75,7 +75,7 @@ impl BaseBody {
             uvs: all.uvs.clone(),
             corners: all.corners.clone(),
             charts: all.charts.clone(),
-            twins: all.twins.clone(),
+            mirrors: all.mirrors.clone(),
             regions: all.regions.clone(),
             skeleton,
             weights,

@@ -1,7 +1,7 @@
 //! Calibration: the sliders at which a body has the given measures, all at once.
 //!
-//! What is given is met; what is not is expected as people have it: the readings of a body are held against a normal
-//! distribution of people ([`People`]), so that what is unmeasured follows from what is measured by regression, and a
+//! Given measures are met; the others take the values that people have. The readings of a body are held against a normal
+//! distribution of people ([`People`]), so that unmeasured values follow from measured ones by regression, and a
 //! short term keeps neighbouring segments together. The sum of squares is brought down by Gauss-Newton steps with
 //! the exact gradients of the tape, within bounds of each slider.
 
@@ -124,7 +124,7 @@ impl BodyModel {
         std::array::from_fn(|i| (mean[i] + along(&factor[i], normal)) as f32)
     }
 
-    /// The same of one who has a reading (m): drawn as anybody, then moved by what the others follow from the one.
+    /// The same for a person with a known reading (m): drawn like any person, then moved by the regression of the others on that reading.
     pub(super) fn person_with(&self, normal: &[f64; READINGS], known: (MeshMeasure, f32)) -> [f32; READINGS] {
         let People { factor, .. } = &self.people;
         let drawn = self.person(normal);

@@ -47,7 +47,7 @@ enum ArmSegment {
     Wrist,
 }
 
-/// What the fields are made from.
+/// Inputs of the fields.
 struct FieldBuilder<'a> {
     base: &'a BaseBody,
     near: &'a Neighbourhood,
@@ -84,7 +84,7 @@ impl<'a> FieldBuilder<'a> {
             .filter(|&v| near.ring(v as usize).any(|w| !arm(w as u32)))
             .collect();
         let both = |core: &[(u32, f32)]| -> Vec<(u32, f32)> {
-            core.iter().flat_map(|&(v, lead)| [(v, lead), (near.twin[v as usize], lead)]).collect()
+            core.iter().flat_map(|&(v, lead)| [(v, lead), (near.mirror[v as usize], lead)]).collect()
         };
         let rim: Vec<(u32, f32)> = armhole.iter().map(|&v| (v, 0.0)).collect();
         let into = near.distances(&both(&rim));

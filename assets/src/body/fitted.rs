@@ -40,7 +40,7 @@ pub fn wanted(measures: &Measures) -> Wanted<En> {
         .with(En::HipGirth, measures.hip_girth)
 }
 
-/// What the tape reads, of the five measures that a body keeps.
+/// Tape readings of the five measures that a body keeps.
 fn five(readings: &Readings) -> Measures {
     Measures {
         stature: readings.of(En::Stature),
@@ -116,9 +116,9 @@ impl BodyModel {
         let mut normals = vec![Vec3::ZERO; positions.len()];
         vertex_normals(&positions, &base.triangles, &mut normals);
         // Triangles meet a vertex and its mirror image in another order, which rounding shows.
-        for (v, &twin) in self.morphs.near.twin.iter().enumerate() {
-            let other = normals[twin as usize];
-            if twin as usize == v {
+        for (v, &mirror) in self.morphs.near.mirror.iter().enumerate() {
+            let other = normals[mirror as usize];
+            if mirror as usize == v {
                 normals[v].x = 0.0;
                 normals[v] = normals[v].normalize_or_zero();
             } else if positions[v].x < 0.0 {

@@ -24,9 +24,9 @@ pub(super) struct Morphs {
     /// The base, with its sides made each other's exact mirror image.
     pub base: BaseBody,
     pub near: Neighbourhood,
-    /// Where each vertex's moves start, and the end `[vertices + 1]`.
+    /// Start of each vertex's moves, and the end `[vertices + 1]`.
     start: Vec<u32>,
-    /// Which slider moves a vertex, and by how much a unit.
+    /// The slider that moves a vertex, and the move by a unit.
     moves: Vec<(u32, Vec3)>,
     /// How the joints move a unit of each slider.
     joints: [[Vec3; JOINTS]; SLIDERS],
@@ -39,11 +39,11 @@ impl Morphs {
     /// Works out the fields of a base body.
     pub(super) fn new(mut base: BaseBody) -> Self {
         let near = Neighbourhood::new(&base.positions, &base.triangles);
-        mirror_exactly(&mut base, &near.twin);
+        mirror_exactly(&mut base, &near.mirror);
         let mut all = fields::displacements(&base, &near);
         for field in &mut all {
-            for (v, &twin) in near.twin.iter().enumerate() {
-                match (base.positions[v].x, twin as usize) {
+            for (v, &mirror) in near.mirror.iter().enumerate() {
+                match (base.positions[v].x, mirror as usize) {
                     (0.0, _) => field[v].x = 0.0,
                     (x, other) if x < 0.0 => field[v] = mirrored(field[other]),
                     _ => {}
@@ -65,7 +65,7 @@ impl Morphs {
         &self.moves[self.start[vertex] as usize..self.start[vertex + 1] as usize]
     }
 
-    /// Where a vertex lies on a body.
+    /// Position of a vertex on a body.
     pub(super) fn place(&self, vertex: usize, setting: &Setting) -> Vec3 {
         let moved = self
             .moves(vertex)
@@ -99,8 +99,8 @@ fn mirrored(p: Vec3) -> Vec3 {
     Vec3::new(-p.x, p.y, p.z)
 }
 
-fn mirror_exactly(base: &mut BaseBody, twin: &[u32]) {
-    for (v, &other) in twin.iter().enumerate() {
+fn mirror_exactly(base: &mut BaseBody, mirror: &[u32]) {
+    for (v, &other) in mirror.iter().enumerate() {
         if other as usize == v {
             base.positions[v].x = 0.0;
         } else if base.positions[v].x < 0.0 {

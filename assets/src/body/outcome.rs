@@ -1,4 +1,4 @@
-//! What building a body comes to: one that has the measures wanted, or why there is none.
+//! The result of building a body: a body with the wanted measures, or the reason for its absence.
 
 use super::reading::{Readings, Vocabulary, Wanted};
 use toile_base::body::Body;
@@ -74,7 +74,7 @@ fn cure(value: f32, [least, most]: [f32; 2]) -> String {
     }
 }
 
-/// What a measure cannot be had together with.
+/// Names the other measures that conflict with a measure.
 fn beside(other: Option<&(&'static str, f32)>) -> String {
     other.map_or_else(|| "the other measures".to_owned(), |(name, value)| format!("a {name} of {value} m"))
 }

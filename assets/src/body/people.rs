@@ -1,8 +1,8 @@
-//! How the measures of people are correlated: what to expect of measures that were not taken.
+//! Correlations of people's measures, which predict measures that were not taken.
 //!
 //! Means, deviations and correlations of 1,986 women and 4,082 men of ANSUR II (US Army Natick TR-15/007, 2014, public
-//! domain), worked out from its files by `cargo run --release -p toile-perf --example people`. What the survey did not
-//! take follows the measure next to it, in the proportion that the drawn body has, with a deviation of its own.
+//! domain), worked out from its files by `cargo run --release -p toile-perf --example people`. A measure that the survey did
+//! not take follows the measure next to it, in the proportion that the drawn body has, with a deviation of its own.
 
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -106,7 +106,7 @@ const OWN_ERROR: f64 = 6e-3;
 
 /// Mean and spread of a sex's readings.
 pub(super) struct People {
-    /// What the mean person's readings are (m).
+    /// Readings of the mean person (m).
     pub mean: [f64; READINGS],
     /// Lower Cholesky factor of their covariance (m).
     pub factor: [[f64; READINGS]; READINGS],

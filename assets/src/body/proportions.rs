@@ -1,4 +1,4 @@
-//! Where the landmarks of our own bodies lie between their joints and extremes: how an imported body is measured.
+//! Positions of our own bodies' landmarks between joints and extremes, used to measure an imported body.
 
 use super::base::BaseBody;
 use super::landmarks::Landmark;

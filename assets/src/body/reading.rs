@@ -1,4 +1,4 @@
-//! What can be read off a body, and the two vocabularies that name it: [`En`] (EN 13402-1, ISO 8559-1) and [`Ansur`].
+//! Measures that can be read off a body, and the two vocabularies that name them: [`En`] (EN 13402-1, ISO 8559-1) and [`Ansur`].
 //!
 //! The standards and the survey lay the tape at other places (neck, waist) or on another pose (sleeve), which moves a
 //! girth by more than its limit. So a set of wanted measures speaks one language or the other, and cannot mix them.
@@ -79,7 +79,7 @@ macro_rules! vocabulary {
         pub enum $kind { $($(#[$of])* $measure,)* }
 
         impl Read for $kind {
-            #[expect(private_interfaces, reason = "the trait is sealed: nobody outside calls it")]
+            #[expect(private_interfaces, reason = "the trait is sealed: no code outside calls it")]
             fn reading(self) -> MeshMeasure {
                 match self { $(Self::$measure => MeshMeasure::$reading),* }
             }
@@ -189,7 +189,7 @@ vocabulary! {
 pub trait Vocabulary: Copy + Read + 'static {
     /// Every measure that it has.
     const ALL: &'static [Self];
-    /// What a person would call the measure, without its unit.
+    /// Common name of the measure, without its unit.
     fn name(self) -> &'static str;
 }
 
@@ -198,7 +198,7 @@ use sealed::Read;
 mod sealed {
     /// Which reading of the mesh a measure is.
     pub trait Read {
-        #[expect(private_interfaces, reason = "the trait is sealed: nobody outside calls it")]
+        #[expect(private_interfaces, reason = "the trait is sealed: no code outside calls it")]
         fn reading(self) -> super::MeshMeasure;
     }
 }
@@ -229,7 +229,7 @@ impl<V: Vocabulary> Wanted<V> {
         self
     }
 
-    /// What has been asked for (m), in the order of asking.
+    /// Requested values (m), in the order of the requests.
     pub fn given(&self) -> &[(V, f32)] {
         &self.given
     }

@@ -15,14 +15,14 @@ const ROUNDS: usize = 12;
 
 /// The ways over a mesh: each vertex's neighbours along edges, and across each edge to the corner opposite.
 pub(super) struct Neighbourhood {
-    /// Where each vertex's list starts, and the end `[vertices + 1]`.
+    /// Start of each vertex's list, and the end `[vertices + 1]`.
     start: Vec<u32>,
     /// Neighbours and the way to them (m).
     near: Vec<(u32, f32)>,
     /// Number of each vertex's neighbours along edges: they come first in its list.
     ring: Vec<u32>,
     /// Mirror image `[vertices]`.
-    pub twin: Vec<u32>,
+    pub mirror: Vec<u32>,
 }
 
 impl Neighbourhood {
@@ -45,7 +45,7 @@ impl Neighbourhood {
                 lists[q as usize].push(p);
             }
         }
-        let mut all = Self { start: vec![0], near: Vec::new(), ring: Vec::new(), twin: twins(positions) };
+        let mut all = Self { start: vec![0], near: Vec::new(), ring: Vec::new(), mirror: mirrors(positions) };
         for (v, (ring, beyond)) in along.iter().zip(&across).enumerate() {
             let way = |&w: &u32| (w, positions[v].distance(positions[w as usize]));
             all.near.extend(ring.iter().map(way));
@@ -64,7 +64,7 @@ impl Neighbourhood {
 
     /// The way along the mesh from a core to every vertex (m): Dijkstra from vertices that start with a lead.
     pub(super) fn distances(&self, core: &[(u32, f32)]) -> Vec<f32> {
-        let mut distance = vec![f32::MAX; self.twin.len()];
+        let mut distance = vec![f32::MAX; self.mirror.len()];
         // Lengths are positive, so their bits sort as they do; equal ones in the order of the vertices.
         let mut queue: BinaryHeap<Reverse<(u32, u32)>> = BinaryHeap::new();
         for &(v, lead) in core {
@@ -100,8 +100,8 @@ impl Neighbourhood {
             }
             values.copy_from_slice(&next);
         }
-        for (v, &twin) in self.twin.iter().enumerate() {
-            values[v] = 0.5 * (next[v] + next[twin as usize]);
+        for (v, &mirror) in self.mirror.iter().enumerate() {
+            values[v] = 0.5 * (next[v] + next[mirror as usize]);
         }
     }
 
@@ -109,7 +109,7 @@ impl Neighbourhood {
     /// `[segments][vertices]`, summing to 1 at each vertex.
     pub(super) fn shares(&self, chain: &[(Vec<f32>, f32)]) -> Vec<Vec<f32>> {
         let mut shares: Vec<Vec<f32>> = chain.iter().map(|(d, _)| vec![0.0; d.len()]).collect();
-        for v in 0..self.twin.len() {
+        for v in 0..self.mirror.len() {
             let power = |(d, sigma): &(Vec<f32>, f32)| -0.5 * (f64::from(d[v]) / f64::from(*sigma)).powi(2);
             // Far from every core all of them underflow: only their ratios count.
             let most = chain.iter().map(power).fold(f64::MIN, f64::max);
@@ -124,7 +124,7 @@ impl Neighbourhood {
 }
 
 /// Each vertex's mirror image. Panics when it has none: the base bodies are our own data.
-fn twins(positions: &[Vec3]) -> Vec<u32> {
+fn mirrors(positions: &[Vec3]) -> Vec<u32> {
     const NEAR: f32 = 2e-5;
     let mut order: Vec<u32> = (0..positions.len() as u32).collect();
     let height = |v: u32| positions[v as usize].y;
@@ -134,8 +134,8 @@ fn twins(positions: &[Vec3]) -> Vec<u32> {
         let from = order.partition_point(|&v| height(v) < p.y - NEAR);
         let near = order[from..].iter().copied().take_while(|&v| height(v) < p.y + NEAR);
         let off = |v: &u32| positions[*v as usize].distance(wanted);
-        let twin = near.min_by(|a, b| off(a).total_cmp(&off(b))).filter(|v| off(v) < NEAR);
-        twin.expect("the base body is symmetric")
+        let mirror = near.min_by(|a, b| off(a).total_cmp(&off(b))).filter(|v| off(v) < NEAR);
+        mirror.expect("the base body is symmetric")
     };
     positions.iter().map(find).collect()
 }
@@ -185,7 +185,7 @@ mod tests {
         let shares = near.shares(&[(ring(5), 0.1), (ring(20), 0.1)]);
         for v in 0..positions.len() {
             assert!((shares[0][v] + shares[1][v] - 1.0).abs() < 1e-5);
-            assert_eq!(shares[0][v].to_bits(), shares[0][near.twin[v] as usize].to_bits());
+            assert_eq!(shares[0][v].to_bits(), shares[0][near.mirror[v] as usize].to_bits());
         }
         let at = |r: usize| shares[0][24 * r];
         assert!(at(5) > 0.95 && at(20) < 0.05 && (6..20).all(|r| at(r) < at(r - 1)));

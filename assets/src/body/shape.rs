@@ -22,7 +22,7 @@ pub const SHAPES: usize = PARAMETERS;
 /// metres or as a fraction of the base.
 pub const SCALE: usize = SLIDERS;
 
-/// Pivots below this are raised to it: directions in which nobody strays.
+/// Pivots below this are raised to it: directions in which no person varies.
 const LEAST_PIVOT: f64 = 1e-12;
 
 /// Number of independent numbers that a person of the survey is drawn by.
@@ -113,7 +113,7 @@ impl Shapes {
         bounds(parameter)
     }
 
-    /// Where a vertex lies on a shape in the rest pose (m).
+    /// Position of a vertex on a shape in the rest pose (m).
     pub fn place(&self, vertex: usize, shape: &BodyShape) -> Vec3 {
         self.model.morphs.place(vertex, &setting(shape))
     }

@@ -1,4 +1,4 @@
-//! How much of each vertex an arm, a leg and a clavicle carry: the parts of the body, softened across their borders.
+//! Shares of an arm, a leg and a clavicle in each vertex: the parts of the body, softened across their borders.
 
 use glam::Vec3;
 
@@ -28,8 +28,8 @@ pub(super) fn left(positions: &[Vec3], quads: &[[u32; 4]], regions: &[Region], s
 }
 
 /// The same for the right side: the left one's mirror image.
-pub(super) fn right(left: &[Vec3], twins: &[u32]) -> Vec<Vec3> {
-    twins.iter().map(|&t| left[t as usize]).collect()
+pub(super) fn right(left: &[Vec3], mirrors: &[u32]) -> Vec<Vec3> {
+    mirrors.iter().map(|&t| left[t as usize]).collect()
 }
 
 /// Each value half way to the mean of its face neighbours.

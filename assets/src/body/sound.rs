@@ -115,7 +115,7 @@ struct TriangleGrid {
     low: Vec3,
     cell: f32,
     count: [usize; 3],
-    /// Where each cell's triangles start, and the end `[cells + 1]`.
+    /// Start of each cell's triangles, and the end `[cells + 1]`.
     start: Vec<u32>,
     triangles: Vec<u32>,
 }

@@ -32,7 +32,7 @@ pub struct StoredBodies {
     /// Part of the body `[vertices]`.
     pub regions: Vec<Region>,
     /// Mirror image of each vertex `[vertices]`.
-    pub twins: Vec<u32>,
+    pub mirrors: Vec<u32>,
 }
 
 /// Why stored bodies cannot be read.
@@ -74,7 +74,7 @@ impl StoredBodies {
         }
         out.extend(&self.charts);
         out.extend(self.regions.iter().map(|r| REGIONS.iter().position(|o| o == r).expect("a known part") as u8));
-        self.twins.iter().for_each(|&v| out.extend(small(v)));
+        self.mirrors.iter().for_each(|&v| out.extend(small(v)));
         for uv in &self.uvs {
             [uv.x, uv.y].iter().for_each(|x| out.extend(small((x * 65_535.0).round() as u32)));
         }
@@ -147,7 +147,7 @@ impl ByteReader<'_> {
         let corners = self.many(quads, |r| r.quad(points))?;
         let charts = self.many(quads, |r| r.take::<1>().map(|b| b[0]))?;
         let regions = self.many(vertices, |r| REGIONS.get(usize::from(r.take::<1>()?[0])).copied())?;
-        let twins = self.many(vertices, |r| r.index(vertices))?;
+        let mirrors = self.many(vertices, |r| r.index(vertices))?;
         let share = |r: &mut Self| r.small().map(|x| x as f32 / 65_535.0);
         let uvs = self.many(points, |r| Some(Vec2::new(share(r)?, share(r)?)))?;
         self.0.is_empty().then_some(StoredBodies {
@@ -158,7 +158,7 @@ impl ByteReader<'_> {
             corners,
             charts,
             regions,
-            twins,
+            mirrors,
         })
     }
 }

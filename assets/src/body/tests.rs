@@ -11,8 +11,8 @@ use toile_base::mesh::Mesh;
 use toile_base::numeric::random::SplitMix64;
 use toile_base::skeleton::{BONES, Joint, TWISTS, bone_joint, bone_mirror};
 
-/// Somebody like the people of ANSUR II: girths that follow one another, by its deviations.
-fn somebody(sex: Sex, random: &mut SplitMix64) -> Measures {
+/// A person like those of ANSUR II: girths that follow one another, by its deviations.
+fn random_person(sex: Sex, random: &mut SplitMix64) -> Measures {
     let mean = Measures::average(sex);
     let [stature, shoulder, chest, waist, hip] = match sex {
         Sex::Female => [0.0642, 0.0183, 0.0827, 0.0999, 0.0759],
@@ -100,12 +100,12 @@ fn topology_does_not_depend_on_size_or_sex() {
 #[test]
 fn body_is_symmetric_with_its_weights() {
     for body in [average(Sex::Female), average(Sex::Male)] {
-        let twin = twins(&body);
+        let mirror = mirrors(&body);
         let share = |v: usize, bone: usize| -> f32 {
             let w = &body.weights[v];
             (0..4).filter(|&k| usize::from(w.bones[k]) == bone).map(|k| w.weights[k]).sum()
         };
-        for (v, &other) in twin.iter().enumerate() {
+        for (v, &other) in mirror.iter().enumerate() {
             for bone in 0..BONES {
                 let mirrored = share(other, bone_mirror(bone));
                 assert!((share(v, bone) - mirrored).abs() < 1e-3, "vertex {v} bone {bone}");
@@ -115,7 +115,7 @@ fn body_is_symmetric_with_its_weights() {
 }
 
 /// Each vertex's mirror image.
-fn twins(body: &Body) -> Vec<usize> {
+fn mirrors(body: &Body) -> Vec<usize> {
     let positions = &body.mesh.positions;
     let mut order: Vec<usize> = (0..positions.len()).collect();
     order.sort_by(|&a, &b| positions[a].y.total_cmp(&positions[b].y));
@@ -155,11 +155,11 @@ fn tape_reads_the_measures_wanted_on_a_grid() {
 }
 
 #[test]
-fn anybody_like_ansurs_people_is_met() {
+fn measures_like_those_of_ansur_are_met() {
     let mut random = SplitMix64::new(2012);
     for sex in [Sex::Female, Sex::Male] {
         for _ in 0..50 {
-            let wanted = somebody(sex, &mut random);
+            let wanted = random_person(sex, &mut random);
             let body = build(sex, &wanted).unwrap();
             assert!(worst(&wanted, &body.measures) < TOLERANCE, "{wanted:?} {:?}", body.measures);
         }

@@ -59,13 +59,13 @@ pub struct CollageView {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CollageGarment {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// The layer in which it is worn.
     pub layer: WearingLayer,
-    /// What stays where the body has it.
+    /// Level at which it stays in place on the body.
     pub level: FittingLevel,
-    /// Who can wear it.
+    /// Limits of stretch, which decide who can wear it.
     #[serde(default)]
     pub stretches: StretchLimits,
     /// From the front.
@@ -93,7 +93,7 @@ impl CollageGarment {
     /// Reads and checks a garment's file.
     ///
     /// # Errors
-    /// What is wrong, and the cure.
+    /// The fault and its cure.
     pub fn parse(text: &str) -> Result<Self, String> {
         let garment: Self = toml::from_str(text).map_err(|e| {
             let line = crate::toml_keys::place(text, e.span().map_or(0, |s| s.start)).0;

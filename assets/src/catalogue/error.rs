@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use crate::file::FileError;
 
-/// What is wrong with a catalogue or a package; each message says what, where, and the cure.
+/// Error of a catalogue or a package; each message says the fault, its place, and the cure.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum CatalogueError {
     /// A file that cannot be read.
@@ -15,7 +15,7 @@ pub enum CatalogueError {
     Archive {
         /// The package as the user named it.
         package: String,
-        /// What the reader says.
+        /// The reader's message.
         reason: String,
     },
     /// A file that a package lacks, or holds though it must not.
@@ -25,7 +25,7 @@ pub enum CatalogueError {
         package: String,
         /// The file within it.
         file: String,
-        /// What is wrong with it, and the cure.
+        /// The fault and its cure.
         reason: String,
     },
     /// A folder that is no catalogue.
@@ -33,7 +33,7 @@ pub enum CatalogueError {
     Folder {
         /// The folder as the user named it.
         folder: String,
-        /// What is wrong with it.
+        /// The fault.
         reason: String,
     },
 }

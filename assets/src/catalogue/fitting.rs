@@ -1,4 +1,4 @@
-//! How a photographed garment is held against a body: the level at which it stays, two points of known distance, the girths that it
+//! Placing of a photographed garment on a body: the level at which it stays, two points of known distance, the girths that it
 //! stretches to (Ugur 2008, section 6.2).
 
 use glam::Vec2;
@@ -62,7 +62,7 @@ const LEAST_PIXELS: f32 = 16.0;
 /// Checks two points of a picture at its level and how far apart they are (mm); `table` is where they stand.
 ///
 /// # Errors
-/// What is wrong, and the cure.
+/// The fault and its cure.
 pub(super) fn check_registration(points: &[[f32; 2]; 2], distance_mm: f32, table: &str) -> Result<(), String> {
     let apart = Vec2::from(points[0]).distance(Vec2::from(points[1]));
     if !points.as_flattened().iter().all(|p| p.is_finite() && *p >= 0.0) || apart.is_nan() || apart < LEAST_PIXELS {
@@ -83,7 +83,7 @@ impl StretchLimits {
     /// Checks the girths; `table` is where they stand.
     ///
     /// # Errors
-    /// What is wrong, and the cure.
+    /// The fault and its cure.
     pub(super) fn check(&self, table: &str) -> Result<(), String> {
         for (name, limits) in [("chest", self.chest), ("waist", self.waist), ("hip", self.hip)] {
             if limits.is_some_and(|[from, to]| !(from > 0.0 && to >= from && to < 4_000.0)) {

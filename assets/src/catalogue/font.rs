@@ -1,4 +1,4 @@
-//! Whether a font can be shown: read as the painter reads it, and every letter of it drawn once.
+//! Checks a font: reads it as the painter does and draws every letter once.
 
 use skrifa::instance::{LocationRef, Size};
 use skrifa::outline::{DrawSettings, OutlinePen};
@@ -59,7 +59,7 @@ impl OutlinePen for Reach {
 /// Whether a TrueType or OpenType font can be shown.
 ///
 /// # Errors
-/// What is wrong with it and the cure, to stand behind the file's name.
+/// The fault and its cure, to follow the file's name.
 pub(super) fn check(bytes: &[u8]) -> Result<(), String> {
     let none = "it is no font in TrueType or OpenType (.ttf, .otf); convert it";
     // The painter takes the first font of a file, and collections are not asked which one is meant.

@@ -1,4 +1,4 @@
-//! What a catalogue may hold: bounds of time and memory for files that anybody may have made.
+//! Limits of a catalogue: bounds of time and memory for files from unknown authors.
 
 /// Most bytes of a package: a garment with a dozen photographs.
 pub const MAX_PACKAGE_BYTES: u64 = 32 << 20;

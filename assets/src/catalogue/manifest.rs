@@ -15,7 +15,7 @@ use crate::wardrobe;
 /// Words by the tag of their language, `en` or `de`.
 pub type Words = BTreeMap<String, String>;
 
-/// What a shop says of a garment.
+/// A shop's entry for a garment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GarmentManifest {
     /// Article number, unlike that of any other garment of the catalogue.
@@ -26,7 +26,7 @@ pub struct GarmentManifest {
     pub seams: Option<String>,
     /// Its name in each language.
     pub names: Words,
-    /// What it costs.
+    /// Its price.
     pub price: Option<Price>,
     /// A fabric that is built in, or the package's fabric file.
     pub fabric: Option<String>,
@@ -74,7 +74,7 @@ impl GarmentManifest {
     /// Reads and checks a manifest.
     ///
     /// # Errors
-    /// What is wrong, and the cure.
+    /// The fault and its cure.
     pub fn parse(text: &str) -> Result<Self, String> {
         let raw: RawManifest = toml::from_str(text).map_err(|e| {
             let line = place(text, e.span().map_or(0, |s| s.start)).0;

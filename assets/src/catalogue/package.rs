@@ -23,11 +23,11 @@ pub const ENDING: &str = ".toile";
 /// The manifest's name within a package.
 const MANIFEST: &str = "garment.toml";
 
-/// What is read as a manifest.
+/// Limits of a manifest file.
 const MANIFEST_FILE: FileKind =
     FileKind { name: "a garment's manifest", max_bytes: MAX_TOML_BYTES, cure: "see docs/catalogue.md" };
 
-/// What is read as a package.
+/// Limits of a package file.
 const PACKAGE: FileKind =
     FileKind { name: "a garment package", max_bytes: MAX_PACKAGE_BYTES, cure: "make its photographs smaller" };
 
@@ -234,7 +234,7 @@ pub(super) fn is_plain(name: &str) -> bool {
 
 /// A folder of unpacked files, removed when it is dropped.
 pub struct UnpackedFolder {
-    /// Where it is.
+    /// Its path.
     pub path: PathBuf,
 }
 

@@ -15,7 +15,7 @@ use toile_base::garment::look::MeshPicture;
 use toile_base::numeric::statistics;
 use toile_base::texture::Texture;
 
-/// What a manifest says of a garment's photographs.
+/// A manifest's entry for a garment's photographs.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PhotographedGarment {
@@ -29,7 +29,7 @@ pub struct PhotographedGarment {
     pub distance_mm: f32,
     /// The level.
     pub level: FittingLevel,
-    /// Who can wear it.
+    /// Limits of stretch, which decide who can wear it.
     #[serde(default)]
     pub stretches: StretchLimits,
 }
@@ -51,7 +51,7 @@ impl PhotographedGarment {
     /// Checks what can be checked without the pictures.
     ///
     /// # Errors
-    /// What is wrong, and the cure.
+    /// The fault and its cure.
     pub fn check(&self) -> Result<(), String> {
         check_registration(&self.points, self.distance_mm, "image")?;
         self.stretches.check("image")
@@ -161,12 +161,12 @@ pub struct GarmentPhotographs {
     anchor: Vec2,
     /// Height of the whole picture on the garment (m).
     high_m: f32,
-    /// What the manifest says.
+    /// The manifest.
     own: PhotographedGarment,
 }
 
 impl GarmentPhotographs {
-    /// What the manifest says of them.
+    /// The manifest's entry for them.
     pub fn manifest(&self) -> &PhotographedGarment {
         &self.own
     }

@@ -29,7 +29,7 @@ impl Picture {
     /// Reads a PNG or JPEG picture, turns it as its camera says, and makes its longer side so many pixels at most.
     ///
     /// # Errors
-    /// What is wrong with it and the cure, to stand behind the file's name.
+    /// The fault and its cure, to follow the file's name.
     pub fn decode(bytes: &[u8], most: u32) -> Result<Self, String> {
         let unreadable = |e: &dyn Display| format!("it is no picture in PNG or JPEG ({e}); save it again");
         let refused = |e: ImageError| match e {

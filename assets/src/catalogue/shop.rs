@@ -14,13 +14,13 @@ use super::theme::{ShopTheme, ThemeFile};
 use crate::file::{self, FileKind, FileStamp};
 use crate::toml_keys::place;
 
-/// What is read as a catalogue.
+/// Limits of a catalogue file.
 const CATALOGUE: FileKind = FileKind { name: "a catalogue", max_bytes: MAX_TOML_BYTES, cure: "name each package once" };
 
 /// The catalogue's own file.
 pub const FILE: &str = "catalogue.toml";
 
-/// What `catalogue.toml` says.
+/// Content of `catalogue.toml`.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ShopFile {
@@ -35,9 +35,9 @@ pub struct ShopFile {
 /// A garment of a catalogue.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CatalogueItem {
-    /// Where its package is.
+    /// Path of its package.
     pub path: PathBuf,
-    /// What the shop says of it.
+    /// The shop's entry for it.
     pub manifest: GarmentManifest,
     /// Its package as it was read: one of another stamp is another package.
     pub stamp: FileStamp,

@@ -14,22 +14,22 @@ use super::picture::{self, Picture};
 use crate::export::linear;
 use crate::file::{self, FileKind};
 
-/// What is read as a logo.
+/// Limits of a logo file.
 const LOGO: FileKind = FileKind { name: "a shop's logo", max_bytes: MAX_LOGO_BYTES, cure: "save it smaller" };
 
-/// What is read as a font.
+/// Limits of a font file.
 const FONT: FileKind =
     FileKind { name: "a shop's font", max_bytes: MAX_FONT_BYTES, cure: "take one with fewer characters" };
 
-/// What `catalogue.toml` says of the screens, as it is written.
+/// The screens' part of `catalogue.toml`, as written.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ThemeFile {
     /// The logo's file.
     pub logo: Option<String>,
-    /// What most will press next, sRGB, 0 .. 1.
+    /// Colour of the main button, sRGB, 0 .. 1.
     pub accent: Option<[f32; 3]>,
-    /// What words stand on.
+    /// Colour of the ground behind words.
     pub ground: Option<[f32; 3]>,
     /// The words.
     pub text: Option<[f32; 3]>,
@@ -40,9 +40,9 @@ pub struct ThemeFile {
 /// Colours of the screens, sRGB, 0 .. 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ThemeColours {
-    /// What most will press next.
+    /// Colour of the main button.
     pub accent: [f32; 3],
-    /// What words stand on.
+    /// Colour of the ground behind words.
     pub ground: [f32; 3],
     /// The words: their contrast with the ground is [`MIN_CONTRAST`] at least.
     pub text: [f32; 3],

@@ -47,7 +47,7 @@ pub struct DraftBlock {
 /// How far below the waist [`DraftBlock::below_waist`] is taken (m): a waistband's breadth.
 pub const BAND_M: f64 = 0.035;
 
-/// What differs between women's and men's proportions.
+/// Differences between women's and men's proportions.
 struct BlockRules {
     /// Height of the waist: part of stature, less part of the waist's girth.
     waist: [f64; 2],

@@ -11,7 +11,7 @@ use toile_base::body::Sex;
 /// How a bodice is cut.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodiceStyle {
-    /// What the garment is wider than the body at the chest (m).
+    /// Ease at the chest (m).
     pub chest_ease: f64,
     /// The same at the hip (m); what does not reach it takes its width there from the line to it.
     pub hip_ease: f64,

@@ -13,7 +13,7 @@ use super::{skirt, tops, trims};
 pub struct DressStyle {
     /// Its bodice; that ends at the waist.
     pub bodice: BodiceStyle,
-    /// What the waist's seam is wider than the body (m).
+    /// Ease at the waist's seam (m).
     pub waist_ease: f64,
     /// Length of the skirt (part of the way from the waist to the knee).
     pub length: f64,

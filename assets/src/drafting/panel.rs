@@ -33,11 +33,11 @@ pub struct DraftEdge {
 pub struct DraftPanel {
     /// Unlike that of the garment's other panels.
     pub name: &'static str,
-    /// Where it is laid.
+    /// The place where it is laid.
     pub side: DraftSide,
     /// The outline.
     pub edges: Vec<DraftEdge>,
-    /// What is put on it.
+    /// Its trims.
     pub trims: Vec<Trim>,
 }
 

@@ -35,7 +35,7 @@ pub struct DraftStyle {
 /// Whose sizes a garment is made in.
 const WOMEN: (&str, [&str; 3]) = ("women", ["32", "44", "54"]);
 const MEN: (&str, [&str; 3]) = ("men", ["XXS", "M", "3XL"]);
-const ANYBODY: (&str, [&str; 3]) = ("unisex", ["XXS", "M", "3XL"]);
+const UNISEX: (&str, [&str; 3]) = ("unisex", ["XXS", "M", "3XL"]);
 const MEN_TROUSERS: (&str, [&str; 3]) = ("men-trousers", ["60", "92", "132"]);
 
 const fn style(
@@ -101,7 +101,7 @@ pub const STYLES: [DraftStyle; 24] = [
         tops::jacket(b, &to_the_knee(COAT, b, 0.95), &COAT_SLEEVE.of(b), 3)
     }),
     style("poncho", WOMEN, GarmentKind::Jacket, (WINDOWPANE, 20.0, 5), poncho::poncho),
-    style("scarf", ANYBODY, GarmentKind::Jacket, (SCARF, 16.0, 6), scarf::scarf),
+    style("scarf", UNISEX, GarmentKind::Jacket, (SCARF, 16.0, 6), scarf::scarf),
 ];
 
 /// A style with a hem at a part of the way from the waist to the knee.

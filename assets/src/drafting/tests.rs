@@ -1,4 +1,4 @@
-//! What every draft keeps, in every size of its table.
+//! Rules that every draft keeps, in every size of its table.
 
 use super::{STYLES, names, style};
 use crate::draping::PatternPackage;

@@ -1,4 +1,4 @@
-//! What hangs from the shoulders: tees, jumpers, shirts, dresses, jackets, coats.
+//! Garments that hang from the shoulders: tees, jumpers, shirts, dresses, jackets, coats.
 
 use super::block::DraftBlock;
 use super::bodice::BodiceStyle;

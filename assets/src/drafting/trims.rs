@@ -1,4 +1,4 @@
-//! What is put on drafted panels: plackets and buttons, lapels, pockets, flies, zips, belt loops, cuffs.
+//! Trims of drafted panels: plackets and buttons, lapels, pockets, flies, zips, belt loops, cuffs.
 
 use glam::DVec2;
 

@@ -20,7 +20,7 @@ struct Graded {
 pub struct GradedPattern {
     /// The table of its sizes.
     pub table: SizeTable,
-    /// What the garment is.
+    /// The kind of garment.
     pub kind: GarmentKind,
     /// The girth by which it is graded.
     pub girth: Girth,
@@ -28,7 +28,7 @@ pub struct GradedPattern {
 }
 
 impl PatternPackage {
-    /// The pattern in its sizes; none where it is drafted for nobody in particular.
+    /// The pattern in its sizes; none for a draft without sizes.
     ///
     /// # Errors
     /// A draft that cannot be read, a size or kind that the table does not have.

@@ -1,4 +1,4 @@
-//! What draping asks for and gives, each figure with its unit and its reason.
+//! Limits of draping and its targets, each with its unit and its reason.
 
 /// Spacings of the first levels (m), before the final one: as INRIA MIRAGES 2006 has them. Seams are closed on the first.
 pub const LEVELS_M: [f64; 2] = [0.05, 0.025];

@@ -1,4 +1,4 @@
-//! A garment package: a pattern with its seams, spacing and fabric in one file, to be draped on whoever wears it.
+//! A garment package: a pattern with its seams, spacing and fabric in one file, to be draped on its wearer.
 
 use std::path::Path;
 
@@ -38,14 +38,14 @@ const LAYER: u8 = 3;
 /// From this layer on a garment lies on others by its weight, and the skin carries nothing of it.
 const SCARVES: u8 = 6;
 
-/// What is read as a package or a pattern.
+/// Limits of a package or pattern file.
 const PACKAGE: FileKind = FileKind {
     name: "a pattern or a garment package",
     max_bytes: 4 * MAX_PATTERN_BYTES,
     cure: "export one garment, without pictures",
 };
 
-/// What is read as the seams of a pattern.
+/// Limits of a seam file of a pattern.
 const SEAMS: FileKind = FileKind { name: "a seam file", max_bytes: MAX_PATTERN_BYTES, cure: "name each seam once" };
 
 /// A pattern and how it is to be made.
@@ -84,7 +84,7 @@ pub enum PackageError {
     Content {
         /// The file as the user named it.
         file: String,
-        /// What is wrong with it.
+        /// The fault.
         reason: String,
     },
     /// A pattern that cannot be read.
@@ -171,7 +171,7 @@ pub struct HungPattern {
 }
 
 impl PatternPackage {
-    /// A pattern that says how it is sewn, with the usual spacing and fabric, for nobody in particular.
+    /// A pattern that says how it is sewn, with the usual spacing and fabric, without sizes.
     pub fn new(name: String, pattern: String) -> Self {
         Self {
             schema: SCHEMA.into(),

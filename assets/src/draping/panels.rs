@@ -1,4 +1,4 @@
-//! Where each panel belongs: the part of the body that it goes around, at which angle, and its coordinates there.
+//! The place of each panel: its part of the body, its angle around that part, and its coordinates there.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 

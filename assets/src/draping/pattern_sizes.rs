@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::sizes::{GarmentKind, Girth};
 
-/// The size of a pattern of which there is one draft for nobody in particular.
+/// The size of a pattern with one draft and no size table.
 pub const AS_DRAFTED: &str = "as drafted";
 
 /// The size of a pattern that is graded for the wearer's own measures.

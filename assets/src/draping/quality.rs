@@ -1,4 +1,4 @@
-//! How well a pattern was draped: strain, open seams, what crosses the skin and how deep.
+//! Quality of a draped pattern: strain, open seams, crossings with the skin, and penetration.
 
 use glam::Vec3;
 

@@ -1,4 +1,4 @@
-//! How far every place is from the skin of a body at rest: a grid of signed distances, and the nearest triangle by a walk.
+//! Distance from the skin of a body at rest: a grid of signed distances, and the nearest triangle by a walk.
 
 use glam::Vec3;
 

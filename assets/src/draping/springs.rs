@@ -1,4 +1,4 @@
-//! What holds a draping mesh together: threads, shear and bending from its flat faces, and the springs of open seams.
+//! Constraints of a draping mesh: threads, shear and bending from its flat faces, and the springs of open seams.
 
 use glam::Vec3;
 

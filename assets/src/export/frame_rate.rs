@@ -1,4 +1,4 @@
-//! How many frames there are, and when each is.
+//! Number and times of the exported frames.
 
 /// The frames of a motion, evenly spaced from time 0.
 #[derive(Debug, Clone, Copy, PartialEq)]

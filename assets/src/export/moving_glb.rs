@@ -1,8 +1,8 @@
 //! A session as an animated GLB, written while it is played: a body by skin animation, everything else by morph targets.
 //!
-//! Of what is no body the first frame is the mesh, and each later frame a morph target: the way that every vertex and its normal
-//! have gone since. One animation sets the target of each frame to 1 at its time and to 0 at its neighbours', so that a viewer
-//! shows positions that lie on a straight line between those of two frames.
+//! For everything but the body the first frame is the mesh, and each later frame is a morph target: the displacement of every
+//! vertex and its normal since the first frame. One animation sets the target of each frame to 1 at its time and to 0 at its
+//! neighbours', so that a viewer shows positions that lie on a straight line between those of two frames.
 //!
 //! A body has its skeleton's rotations, and viewers skin it by linear blending. Where Toile blends dual quaternions, the two differ
 //! at bent joints by up to centimetres, so every frame has a target with what is missing there, before skinning: with `B` the
@@ -153,7 +153,7 @@ impl<W: Write + Seek> MovingGlb<W> {
     /// matrices of its bones (rest to world, rigid).
     ///
     /// # Errors
-    /// What the output says, and a frame that was not announced.
+    /// An error of the output, or a frame that was not announced.
     pub fn add(&mut self, palette: Option<&[Affine3A; BONES]>, positions: &[&[Vec3]]) -> io::Result<()> {
         if self.added == self.rate.frames || positions.len() != self.surfaces.len() {
             return Err(io::Error::other("it gets other frames than were announced"));
@@ -181,7 +181,7 @@ impl<W: Write + Seek> MovingGlb<W> {
     /// Ends the file.
     ///
     /// # Errors
-    /// What the output says, and frames that are missing.
+    /// An error of the output, or missing frames.
     pub fn finish(mut self) -> io::Result<W> {
         if self.added != self.rate.frames || self.added == 0 {
             return Err(io::Error::other("frames are missing"));

@@ -14,7 +14,7 @@ use toile_base::garment::Garment;
 /// A surface whose vertices move.
 #[derive(Debug, Clone)]
 pub struct MovingPart {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// How many vertices it has.
     pub vertices: usize,

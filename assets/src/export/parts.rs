@@ -168,7 +168,7 @@ impl GlbBuffer {
     /// Hands what was filled in since the last time to an output, and forgets it.
     ///
     /// # Errors
-    /// What the output says.
+    /// An error of the output.
     pub fn hand_on(&mut self, out: &mut impl Write) -> io::Result<()> {
         out.write_all(&self.bytes)?;
         self.gone += self.bytes.len();

@@ -33,7 +33,7 @@ impl<W: Write> PointCache<W> {
     /// Writes the header of a cache of so many points in each of `rate.frames` frames.
     ///
     /// # Errors
-    /// What the output says.
+    /// An error of the output.
     pub fn begin(mut out: W, format: CacheFormat, points: usize, rate: FrameRate) -> io::Result<Self> {
         let count = |n: usize| u32::try_from(n).map_err(|_| io::Error::other("it has more than 2^32 points or frames"));
         let (frames, number) = (count(rate.frames)?, count(points)?);
@@ -77,7 +77,7 @@ impl<W: Write> PointCache<W> {
     /// Ends the cache.
     ///
     /// # Errors
-    /// What the output says, and frames that are missing.
+    /// An error of the output, or missing frames.
     pub fn finish(mut self) -> io::Result<()> {
         if self.left > 0 {
             return Err(io::Error::other(format!("{} frames are missing", self.left)));

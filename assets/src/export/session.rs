@@ -50,7 +50,7 @@ pub struct ExportPlan {
 pub struct ExportError {
     /// Name of the file that was being written.
     pub file: String,
-    /// What the system says.
+    /// The system's message.
     pub reason: io::Error,
 }
 

@@ -1,4 +1,4 @@
-//! What an exported surface looks like: its colour, its picture, how rough it is and how much is seen through it.
+//! Appearance of an exported surface: its colour, its picture, how rough it is and how much is seen through it.
 
 use std::io::Cursor;
 use std::sync::Arc;

@@ -60,7 +60,7 @@ impl<W: Write> UsdMesh<W> {
     /// Begins a mesh; `picture` is the file of its picture.
     ///
     /// # Errors
-    /// What the output says.
+    /// An error of the output.
     pub fn begin(mut out: W, part: &MovingPart, picture: Option<&str>, rate: FrameRate) -> io::Result<Self> {
         let prim = identifier(&part.name);
         let mut text = head(&prim, rate);
@@ -82,7 +82,7 @@ impl<W: Write> UsdMesh<W> {
     /// Writes the next frame: positions (m) `[vertices]`.
     ///
     /// # Errors
-    /// What the output says, and a frame that was not announced.
+    /// An error of the output, or a frame that was not announced.
     pub fn add(&mut self, positions: &[Vec3]) -> io::Result<()> {
         let frame = self.extents.len();
         if positions.len() != self.vertices || frame == self.rate.frames {
@@ -104,7 +104,7 @@ impl<W: Write> UsdMesh<W> {
     /// Ends the file.
     ///
     /// # Errors
-    /// What the output says, and frames that are missing.
+    /// An error of the output, or missing frames.
     pub fn finish(mut self) -> io::Result<()> {
         if self.extents.len() != self.rate.frames {
             return Err(io::Error::other("frames are missing"));

@@ -1,4 +1,4 @@
-//! What is woven into a fabric or printed on it: one repeat, drawn once at load.
+//! The woven or printed picture of a fabric: one repeat, drawn once at load.
 
 use std::sync::Arc;
 

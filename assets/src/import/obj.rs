@@ -22,7 +22,7 @@ pub(crate) const FREE: &str = "Free";
 /// Share of the height from the top that is fixed when no material says what moves.
 const FIXED_TOP_SHARE: f32 = 0.06;
 
-/// What can be wrong with an OBJ file.
+/// Error of an OBJ file.
 #[derive(Debug, Error)]
 pub enum ObjError {
     /// The file cannot be read, or is too large.
@@ -33,7 +33,7 @@ pub enum ObjError {
     Syntax {
         /// The file's path as the user gave it.
         path: String,
-        /// What is wrong with the text, and where.
+        /// The fault of the text, and its place.
         reason: String,
     },
     /// A face with more than four corners.
@@ -51,7 +51,7 @@ pub enum ObjError {
     Mesh {
         /// The file's path as the user gave it.
         path: String,
-        /// What is wrong with which of its vertices or faces, and the cure.
+        /// The vertex or face, its fault, and the cure.
         flaw: String,
     },
     /// Not a garment's size.
@@ -64,7 +64,7 @@ pub enum ObjError {
     },
 }
 
-/// What is read as a garment's mesh.
+/// Limits of a mesh file of a garment.
 const OBJ_FILE: FileKind =
     FileKind { name: "an OBJ file", max_bytes: MAX_BYTES, cure: "reduce the mesh before exporting" };
 

@@ -1,4 +1,4 @@
-//! What the materials of a mesh show: a picture or a colour, from MTL, glTF and MakeHuman's material files.
+//! Materials of a mesh: a picture or a colour, from MTL, glTF and MakeHuman's material files.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::gltf::file::{GltfFile, index};
 
-/// What a material shows.
+/// The picture or colour of a material.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub enum Paint {
     /// Nothing of its own: the fabric's colour.
@@ -20,11 +20,11 @@ pub enum Paint {
     Bytes(Vec<u8>),
 }
 
-/// Greys that programs write for a material that nobody coloured lie within this of one another (1).
+/// Greys that programs write for uncoloured materials lie within this of one another (1).
 const GREY: f32 = 0.02;
 
 impl Paint {
-    /// A colour, sRGB 0..1; nothing where it is the grey or white that programs write where nobody chose one.
+    /// A colour, sRGB 0..1; nothing if it is the grey or white that programs write by default.
     fn coloured(rgb: [f32; 3]) -> Self {
         let [least, most] = [rgb.iter().copied().fold(1.0, f32::min), rgb.iter().copied().fold(0.0, f32::max)];
         if most - least < GREY && least > 0.5 {
@@ -75,7 +75,7 @@ fn encoded(linear: f32) -> f32 {
     if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// What a MakeHuman material file (`.mhmat`) shows.
+/// The picture or colour of a MakeHuman material file (`.mhmat`).
 pub fn parse_mhmat(text: &str) -> Paint {
     let after = |key: &str| text.lines().find_map(|l| l.trim().strip_prefix(key)).map(str::trim);
     if let Some(file) = after("diffuseTexture ").filter(|file| !file.is_empty()) {
@@ -89,7 +89,7 @@ pub fn parse_mhmat(text: &str) -> Paint {
     }
 }
 
-/// What a material of a glTF file shows.
+/// The picture or colour of a material of a glTF file.
 pub(super) fn of_gltf(file: &GltfFile, material: usize) -> Paint {
     let base = &file.json["materials"][material]["pbrMetallicRoughness"];
     let texture = index(&base["baseColorTexture"]["index"]).and_then(|t| index(&file.json["textures"][t]["source"]));

@@ -23,7 +23,7 @@ pub struct PlainMesh {
     pub face_materials: Vec<Option<usize>>,
     /// Names of the materials in the order of their first use.
     pub materials: Vec<String>,
-    /// What each of them shows `[materials]`.
+    /// The picture or colour of each `[materials]`.
     pub paints: Vec<Paint>,
     /// Files that say what materials show, as OBJ names them.
     pub libraries: Vec<String>,

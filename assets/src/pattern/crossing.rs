@@ -1,4 +1,4 @@
-//! Whether a closed polygon crosses or touches itself.
+//! Tests if a closed polygon crosses or touches itself.
 
 use glam::DVec2;
 

@@ -53,7 +53,7 @@ impl Curve {
         Some(Self::Arc { ends, centre, sweep: if counter_clockwise { angle } else { -angle } })
     }
 
-    /// Where it starts (m).
+    /// Its start (m).
     pub fn start(&self) -> DVec2 {
         match self {
             Self::Line(p) => p[0],
@@ -63,7 +63,7 @@ impl Curve {
         }
     }
 
-    /// Where it ends (m).
+    /// Its end (m).
     pub fn end(&self) -> DVec2 {
         match self {
             Self::Line(p) => p[1],

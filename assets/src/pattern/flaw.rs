@@ -1,4 +1,4 @@
-//! What can be wrong with a pattern, whichever format it came in: what, where, and the cure.
+//! Errors of a pattern in any format: the fault, its place, and the cure.
 
 use thiserror::Error;
 
@@ -15,13 +15,13 @@ pub enum PatternFlaw {
         "{place} has {count} {what}, more than the {most} of {limit}; leave out what is not cloth, or split the pattern"
     )]
     TooMany {
-        /// What holds them: "the pattern", or a panel.
+        /// Their owner: "the pattern", or a panel.
         place: String,
-        /// What there is too much of.
+        /// The kind of thing that is too many.
         what: &'static str,
-        /// How many there are.
+        /// Their number.
         count: usize,
-        /// How many are read.
+        /// The limit.
         most: usize,
         /// Name of the limit.
         limit: &'static str,
@@ -113,7 +113,7 @@ pub enum PatternFlaw {
         seam: String,
         /// The name that it gives.
         name: String,
-        /// What may have been meant.
+        /// The name that may have been meant.
         cure: String,
     },
     /// A seam of an edge that is not there.

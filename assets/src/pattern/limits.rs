@@ -1,4 +1,4 @@
-//! What a pattern may hold at most: each limit with its unit and its reason.
+//! Upper limits of a pattern, each with its unit and its reason.
 
 /// Panels of one pattern: a tailored coat with its lining has some sixty.
 pub const MAX_PANELS: usize = 128;

@@ -18,8 +18,8 @@ pub use panel::{Panel, PanelEdge, PanelPlacement};
 pub use seam::{Seam, SeamSide};
 pub use trim::Trim;
 
-/// A pattern: its panels and how they are sewn. Made by [`Pattern::checked`], so whoever holds one knows that every seam
-/// names edges that are there, every outline is a closed loop that does not cross itself, and no edge is sewn twice.
+/// A pattern: its panels and how they are sewn. Made by [`Pattern::checked`], which guarantees that every seam names
+/// existing edges, every outline is a closed loop that does not cross itself, and no edge is sewn twice.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pattern {
     /// The panels, in the order of their file.

@@ -12,7 +12,7 @@ pub struct PanelEdge {
     pub curve: Curve,
     /// Its number in the source, from 0; an edge that was divided keeps the number in all of its parts.
     pub number: usize,
-    /// What the source calls it.
+    /// Its name in the source.
     pub label: Option<String>,
 }
 
@@ -41,7 +41,7 @@ pub struct Panel {
     pub behind: bool,
     /// Where the source places it, if it does.
     pub placement: Option<PanelPlacement>,
-    /// What is put on it.
+    /// Its trims.
     pub trims: Vec<Trim>,
 }
 

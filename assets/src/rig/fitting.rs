@@ -181,7 +181,7 @@ fn samples(body: &Body) -> Vec<SurfaceSample> {
     skin.chain(over).collect()
 }
 
-/// Where the plan has the spheres on this body.
+/// Places of the plan's spheres on this body.
 fn start(body: &Body) -> SphereVector {
     let mut x = [0.0; UNKNOWNS];
     for (k, planned) in PLAN.iter().enumerate() {

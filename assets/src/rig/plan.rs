@@ -1,11 +1,11 @@
-//! The plan of the collision body: which spheres there are, what carries them, where the fit begins, and which pairs of
-//! them span a capsule.
+//! The plan of the collision body: its spheres, the bones that carry them, the start of the fit, and the pairs of spheres
+//! that span a capsule.
 //!
 //! Chosen by a search: from 129 capsules over the same spheres, one after the other was dropped whose loss cost the fit
 //! least, and then exchanged while that helped, on bodies of both sexes and all sizes. Contact pays by the capsule and
 //! hardly by the sphere, so that 28 capsules with ends of their own follow a trunk far closer than 28 that share 16. Head,
 //! hands and feet were then given theirs, in place of one across the shoulder blades.
-//! Where the fit begins is the middle of what it found on twelve bodies.
+//! The start of the fit is the mean of its results on twelve bodies.
 
 use toile_base::limits::MAX_CAPSULES;
 use toile_base::skeleton::Joint;
@@ -16,7 +16,7 @@ pub(super) const PAIRS: usize = 24;
 pub(super) const MIDDLE: usize = 3;
 const _: () = assert!(toile_base::rig::SPHERES == 2 * PAIRS + MIDDLE);
 
-/// Where a sphere stands before the fit.
+/// Place of a sphere before the fit.
 pub(super) enum SpherePlace {
     /// In the trunk: its height between the levels (0 crotch, 1 hip, 2 waist, 3 underbust, 4 chest, 5 shoulder), its
     /// place across as a share of the section's half breadth, ahead of the section's middle and its radius as shares of

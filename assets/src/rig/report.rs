@@ -1,4 +1,4 @@
-//! How closely the union of the capsules follows the skin, zone by zone, measured both ways.
+//! Distance between the union of the capsules and the skin, by zone, measured both ways.
 
 use std::f32::consts::{PI, TAU};
 

@@ -19,7 +19,7 @@ pub(crate) struct SkinByHeight<'a> {
     body: &'a Body,
     /// Vertices, lowest first.
     order: Vec<u32>,
-    /// Where each vertex's triangles start in `around`, and the end `[vertices + 1]`.
+    /// Start of each vertex's triangles in `around`, and the end `[vertices + 1]`.
     start: Vec<u32>,
     around: Vec<u32>,
 }

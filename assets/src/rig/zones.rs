@@ -41,7 +41,7 @@ impl Zone {
     /// most [`P95_GOAL_MM`](super::P95_GOAL_MM).
     pub const HELD: [Self; 4] = [Self::Chest, Self::Waist, Self::Hips, Self::Thigh];
 
-    /// Where a vertex lies.
+    /// Zone of a vertex.
     pub fn of(body: &Body, vertex: usize) -> Self {
         let p = body.mesh.positions[vertex];
         match body.regions[vertex] {

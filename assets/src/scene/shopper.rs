@@ -73,7 +73,7 @@ impl PoseBlend<'_> {
         self.bend(Joint::Chest, Quat::from_rotation_x(0.01 * self.breath));
     }
 
-    /// Arms down to the sides, as nobody keeps them away for long.
+    /// Lowers the arms to the sides, since people do not keep them away for long.
     fn lower_arms(&mut self, strength: f32) {
         self.bend_both(Joint::LeftShoulder, Quat::from_rotation_z(-0.24 * strength));
     }

@@ -1,4 +1,4 @@
-//! What the cloth of a scene meets: spheres, the capsules between them, planes, and their motion.
+//! Colliders of a scene: spheres, the capsules between them, planes, and their motion.
 
 use glam::{Vec3, Vec4};
 
@@ -122,7 +122,7 @@ impl SceneColliders {
         self.spheres.len()
     }
 
-    /// Where a sphere is at a time (s): centre and radius (m).
+    /// A sphere at a time (s): centre and radius (m).
     pub fn sphere(&self, k: usize, time: f64) -> Vec4 {
         let (mover, place) = self.spheres[k];
         match &self.movers[mover] {

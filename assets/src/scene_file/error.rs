@@ -1,4 +1,4 @@
-//! What is wrong with a scene, in one sentence: the file, the line, the key and the cure.
+//! Errors of a scene, in one sentence: the file, the line, the key and the cure.
 
 use std::path::PathBuf;
 

@@ -24,7 +24,7 @@ const EXTENT_M: [f32; 2] = [0.005, 200.0];
 /// The mesh as the user gave it, after it was placed: what dumps are written by.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct UserMesh {
-    /// Where each vertex starts, in the user's order (m) `[user's vertices]`.
+    /// Start position of each vertex, in the user's order (m) `[user's vertices]`.
     pub start: Vec<Vec3>,
     /// Faces in the user's order, by the user's vertices.
     pub faces: Vec<Face>,
@@ -35,7 +35,7 @@ pub struct UserMesh {
 /// One piece of cloth, ready to be baked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneGarment {
-    /// What reports and dumped files call it.
+    /// Its name in reports and dumped files.
     pub name: String,
     /// The shape; fixed vertices have one bone, the number of their pin group.
     pub shape: Shape,

@@ -1,4 +1,4 @@
-//! How pinned vertices move: the groups of pins of a scene, each by a track or by the benchmark's body.
+//! Motion of pinned vertices: the groups of pins of a scene, each moved by a track or by the benchmark's body.
 
 use glam::Affine3A;
 
@@ -32,7 +32,7 @@ impl PinMotion {
     }
 }
 
-/// What a pin table says about its motion.
+/// Motion of a pin table.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum PinSource<'a> {
     /// The name of a track.
@@ -41,7 +41,7 @@ pub(crate) enum PinSource<'a> {
     Motion(usize),
 }
 
-/// What is shared while the parts of a scene are read.
+/// Data shared while the parts of a scene are read.
 pub(crate) struct SceneLoader<'a> {
     pub(super) source: SceneSource<'a>,
     pub(super) pass: bool,

@@ -1,7 +1,7 @@
 //! Every key of a scene file: what it takes, its unit, its default and its range. The reader checks by this list, and
 //! `docs/scene.md` prints it.
 
-/// What a key takes.
+/// Kind of value that a key takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum KeyKind {
     /// A number between two bounds.
@@ -43,7 +43,7 @@ pub struct SceneKey {
     pub unit: &'static str,
     /// What holds where it is left out; `required` where it may not be.
     pub default: &'static str,
-    /// What the key sets, in a sentence for users.
+    /// Meaning of the key, in a sentence for users.
     pub help: &'static str,
 }
 
@@ -313,7 +313,7 @@ impl SceneKey {
         if self.table.is_empty() { self.name.into() } else { format!("{}.{}", self.table, self.name) }
     }
 
-    /// What it takes, for messages and the reference.
+    /// Kind of its value, for messages and the reference.
     pub fn takes(&self) -> String {
         let unit = if ["", "1"].contains(&self.unit) { String::new() } else { format!(" ({})", self.unit) };
         match self.kind {

@@ -1,4 +1,4 @@
-//! Where the files that a scene names come from: its own folder, or the program itself.
+//! Source of the files that a scene names: its own folder, or the program itself.
 
 use std::path::Path;
 

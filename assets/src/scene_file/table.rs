@@ -17,7 +17,7 @@ pub(super) struct SceneTable<'t> {
     entries: &'t DeTable<'t>,
     /// Name of the table in the schema.
     name: &'static str,
-    /// Where the table begins in the text (byte).
+    /// Start of the table in the text (byte).
     at: usize,
 }
 

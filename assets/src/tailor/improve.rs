@@ -25,7 +25,7 @@ const SHARP_DEG: f64 = AIM_DEG + 4.0;
 /// What giving up a point of the lattice costs, in squared degrees of sharpness: about one angle 2.5 degrees short.
 const LATTICE_WORTH: f64 = 6.0;
 
-/// What a free point costs.
+/// Cost of a free point.
 const FREE_COST: f64 = 2.0;
 
 /// How far a point is moved, in parts of the pitch.
@@ -78,7 +78,7 @@ pub fn improve(points: &mut Points<'_>, filled: Filled, pitch: f64, effort: usiz
     best.filled
 }
 
-/// The least costly of some changes, if it is better than what there is; `tries` counts how many may still be tried.
+/// The least costly of some changes, if it is better than the present mesh; `tries` counts the attempts that are left.
 fn choose<'b>(
     points: &Points<'b>,
     best: &Judged,

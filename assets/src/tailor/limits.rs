@@ -1,4 +1,4 @@
-//! What the mesher asks for and gives, each figure with its unit and its reason.
+//! Limits of the mesher and its targets, each with its unit and its reason.
 
 use std::ops::RangeInclusive;
 

@@ -17,7 +17,7 @@ use toile_bake::shape::{Face, NO_VERTEX};
 pub struct PanelMesh {
     /// Vertices in the panel's drawing (m) `[vertices]`: those of the outline first, in its order.
     pub points: Vec<DVec2>,
-    /// Where each edge's points start among those of the outline `[edges + 1]`.
+    /// Start of each edge's points among those of the outline `[edges + 1]`.
     pub boundary: Boundary,
     /// Faces, counter-clockwise in the drawing; a quad's first side runs along the weft.
     pub faces: Vec<Face>,
@@ -45,7 +45,7 @@ pub struct PanelQuality {
     pub area_error: f64,
 }
 
-/// What meshing a panel may take.
+/// Limits of meshing a panel.
 #[derive(Debug, Clone, Copy)]
 pub struct MeshBudget {
     /// Particles that the pattern may still have.

@@ -51,7 +51,7 @@ pub enum WardrobeError {
     Style {
         /// Name of the garment.
         name: String,
-        /// What is wrong with the file.
+        /// The fault of the file.
         reason: String,
     },
     /// A size given for a mesh that has none.
@@ -67,7 +67,7 @@ pub enum WardrobeError {
     Mesh {
         /// The garment or file.
         name: String,
-        /// What is wrong with the mesh.
+        /// The fault of the mesh.
         source: MeshError,
     },
     /// A mesh of the user's own, or a file beside it, that cannot be used.

@@ -27,11 +27,11 @@ pub struct DressedMesh {
     pub garments: Vec<Garment>,
     /// The vertex of the repaired mesh that each vertex of a garment's shape is `[garments][vertices]`.
     pub vertices: Vec<Vec<u32>>,
-    /// What was repaired and what became of each piece.
+    /// The repairs, and the use of each piece.
     pub report: MeshReport,
 }
 
-/// What a mesh becomes on a shopper before it is baked, with its fabric.
+/// A mesh on a shopper before baking, with its fabric.
 pub struct DraftedMesh {
     /// The mesh on the shopper.
     pub worn: WornMesh,

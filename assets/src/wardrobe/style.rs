@@ -13,7 +13,7 @@ pub struct Style {
     pub name: String,
     /// Name for shoppers.
     pub title: String,
-    /// What it is; decides its primary measures.
+    /// Its kind; decides its primary measures.
     pub kind: GarmentKind,
     /// Name of the size table.
     pub table: String,
@@ -27,7 +27,7 @@ pub struct Style {
     pub spacing_mm: f32,
     /// Particles around the body.
     pub columns: usize,
-    /// What the garment adds to the body of its size (mm).
+    /// Ease over the body of its size (mm).
     pub ease_mm: Ease,
     /// The ease that a wearer finds good, least and most (mm): outside of it a zone is tight or loose.
     pub comfort_mm: Comfort,
@@ -110,7 +110,7 @@ pub enum Cut {
         below_waist_mm: f32,
         /// Length of the sleeve from the shoulder point.
         sleeve_mm: f32,
-        /// What the sleeve adds to the arm.
+        /// Ease of the sleeve over the arm.
         sleeve_ease_mm: f32,
         /// Half the width of the neck opening.
         neck_mm: f32,
@@ -123,7 +123,7 @@ pub enum Cut {
         below_waist_mm: f32,
         /// Length of the sleeve from the shoulder point.
         sleeve_mm: f32,
-        /// What the sleeve adds to the wrist at its hem.
+        /// Ease of the sleeve's hem over the wrist.
         sleeve_ease_mm: f32,
         /// Half the width of the neck opening.
         neck_mm: f32,

@@ -27,14 +27,14 @@ const FREE_COLUMNS: usize = 3;
 /// Rows from the armhole's seam that lie in the hollow of the armpit.
 const HOLLOW_ROWS: usize = 3;
 
-/// What tells one garment of the upper body from another, all lengths in metres.
+/// Parameters of a garment of the upper body, all lengths in metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UpperBodyCut {
     /// Length from waist to hem (m).
     pub below_waist: f32,
     /// Length of the sleeve from the shoulder point (m).
     pub sleeve: f32,
-    /// What the sleeve adds to the arm at its hem (m).
+    /// Ease of the sleeve's hem over the arm (m).
     pub sleeve_ease: f32,
     /// Half the width of the neck opening (m).
     pub neck: f32,

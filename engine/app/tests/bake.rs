@@ -59,7 +59,7 @@ fn bake_tells_what_is_wrong_with_a_mesh_of_the_users() {
     let refused: [(&[&str], &str); 7] = [
         (&["bake", "crinoline"], "sun-dress"),
         (&["bake", "absent.obj"], "absent.obj"),
-        (&["bake", "line.obj"], "nobody stands in it"),
+        (&["bake", "line.obj"], "no person stands in it"),
         (&["bake", "sun-dress", "--size", "999"], "999"),
         (&["bake", "strips.obj", "--size", "40"], "leave the size out"),
         (&["bake", "sun-dress", "--fabric", "tin"], "toile fabric list"),

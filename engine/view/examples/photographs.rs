@@ -162,7 +162,7 @@ fn png(path: &Path, colour: png::ColorType, bytes: &[u8]) -> Result<(), Box<dyn 
     Ok(())
 }
 
-/// What covers each pixel.
+/// The cover of each pixel.
 struct Seen {
     /// Share of the garment.
     cover: Vec<f32>,

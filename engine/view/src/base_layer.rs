@@ -1,4 +1,4 @@
-//! The mannequin's base layer: briefs, and a bandeau on a woman, painted on the skin, so that nobody stands naked under a T-shirt.
+//! The mannequin's base layer: briefs, and a bandeau on a woman, painted on the skin, so that no mannequin stands naked under a T-shirt.
 //!
 //! It is no garment: it costs no step, and follows the skin wherever that goes.
 

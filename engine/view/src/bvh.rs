@@ -40,7 +40,7 @@ const EDGE_SLACK: f32 = 1e-6;
 /// A ray: half of a line.
 #[derive(Debug, Clone, Copy)]
 pub struct Ray {
-    /// Where it starts (m).
+    /// Its start (m).
     pub origin: Vec3,
     /// Its unit direction.
     pub direction: Vec3,
@@ -53,7 +53,7 @@ impl Ray {
     }
 }
 
-/// Where a ray met a triangle.
+/// Hit of a ray on a triangle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hit {
     /// Distance along the ray (m).
@@ -250,7 +250,7 @@ impl BvhNode {
     }
 }
 
-/// Which triangles of a leaf were met, and where.
+/// Hits on the triangles of a leaf.
 struct LeafHits {
     mask: u32,
     distance: Vec4,
@@ -290,9 +290,9 @@ impl BvhLeaf {
     /// The nearest of the triangles met.
     #[inline(always)]
     fn nearest(&self, probe: &RayLanes, limit: f32) -> Option<Hit> {
-        let meeting = self.meet(probe, limit);
-        let lane = lanes(meeting.mask).reduce(|a, b| if meeting.distance[b] < meeting.distance[a] { b } else { a })?;
-        let LeafHits { distance, u, v, .. } = meeting;
+        let hits = self.meet(probe, limit);
+        let lane = lanes(hits.mask).reduce(|a, b| if hits.distance[b] < hits.distance[a] { b } else { a })?;
+        let LeafHits { distance, u, v, .. } = hits;
         Some(Hit { distance: distance[lane], u: u[lane], v: v[lane], triangle: self.ids[lane] })
     }
 }
@@ -341,7 +341,7 @@ fn half_area(b: Corners) -> f32 {
     d.x * d.y + d.y * d.z + d.z * d.x
 }
 
-/// Cost of meeting this many triangles: leaves hold four.
+/// Cost of intersecting this many triangles: leaves hold four.
 fn leaf_cost(count: u32) -> f32 {
     count.div_ceil(WIDE as u32) as f32
 }

@@ -1,4 +1,4 @@
-//! How cloth shows beside its colour: its print, its seams and stitched hems, and how much is seen through it.
+//! Appearance of cloth beyond its colour: its print, its seams and stitched hems, and its transparency.
 
 use std::fmt::{self, Debug, Formatter};
 use std::sync::Arc;
@@ -39,21 +39,21 @@ pub struct TileLevels {
 #[derive(PartialEq)]
 struct SharedLevels {
     levels: Vec<Texture>,
-    /// Whether somebody can be known by it: then it is overwritten when the last copy goes.
-    of_somebody: bool,
+    /// Whether it shows a recognisable person: then it is overwritten when the last copy goes.
+    of_person: bool,
 }
 
 impl SharedLevels {
     fn overwrite(&mut self) {
         self.levels.iter_mut().for_each(|level| level.texels.fill([0; 4]));
-        // Looked at, so that the writing is not left out as one that nobody sees.
+        // Looked at, so that the compiler does not leave the writing out as unused.
         std::hint::black_box(&self.levels);
     }
 }
 
 impl Drop for SharedLevels {
     fn drop(&mut self) {
-        if self.of_somebody {
+        if self.of_person {
             self.overwrite();
         }
     }
@@ -73,17 +73,17 @@ impl TileLevels {
         Self::new(texture.clone(), false)
     }
 
-    /// All levels of a picture by which somebody can be known: its memory is overwritten when the last copy goes.
-    pub fn of_somebody(texture: Texture) -> Self {
+    /// All levels of a picture of a recognisable person: its memory is overwritten when the last copy goes.
+    pub fn of_person(texture: Texture) -> Self {
         Self::new(texture, true)
     }
 
-    fn new(texture: Texture, of_somebody: bool) -> Self {
+    fn new(texture: Texture, of_person: bool) -> Self {
         let mut levels = vec![texture];
         while let Some(next) = coarser(&levels[levels.len() - 1]) {
             levels.push(next);
         }
-        Self { shared: Arc::new(SharedLevels { levels, of_somebody }) }
+        Self { shared: Arc::new(SharedLevels { levels, of_person }) }
     }
 
     /// The levels, the finest first.
@@ -165,19 +165,19 @@ pub struct GarmentLook {
     pub tile: Option<TileLevels>,
     /// Texture points of the corners of each triangle `[triangles]`, or empty.
     pub corners: Vec<[Vec2; 3]>,
-    /// Where they lie on the cloth (m): weft along x, warp along y `[triangles]`, or empty.
+    /// Positions on the cloth (m): weft along x, warp along y `[triangles]`, or empty.
     pub cloth: Vec<[Vec2; 3]>,
     /// Distance of each corner from the nearest hem and seam (m) `[triangles]`, or empty.
     pub edges: Vec<[Vec2; 3]>,
-    /// What is put on it.
+    /// Its trims.
     pub trims: Vec<DrawnTrim>,
-    /// Which of them each triangle may show, a bit for each `[triangles]`, or empty.
+    /// Trims that each triangle may show, a bit for each `[triangles]`, or empty.
     pub near: Vec<u32>,
     /// Share of light that the cloth holds back (0..1).
     pub opacity: f32,
 }
 
-/// What is said of triangles, for those of them that are drawn.
+/// Attributes of the drawn triangles.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct DrawnLook {
     corners: Vec<[Vec2; 3]>,
@@ -214,7 +214,7 @@ impl GarmentLook {
         ClothLook { tile: tile.as_ref(), corners, cloth, edges, trims, near, opacity: *opacity }
     }
 
-    /// What is said of some of the triangles.
+    /// Attributes of some of the triangles.
     pub fn of_triangles(&self, kept: &[u32]) -> DrawnLook {
         fn pick<T: Copy>(all: &[T], kept: &[u32]) -> Vec<T> {
             if all.is_empty() { Vec::new() } else { kept.iter().map(|t| all[*t as usize]).collect() }
@@ -226,7 +226,7 @@ impl GarmentLook {
         DrawnLook { corners, cloth, edges, near: pick(&self.near, kept) }
     }
 
-    /// What is said of all triangles.
+    /// Attributes of all triangles.
     pub fn all(&self) -> DrawnLook {
         let Self { corners, cloth, edges, near, .. } = self.clone();
         DrawnLook { corners, cloth, edges, near }
@@ -246,13 +246,13 @@ pub struct ClothLook<'a> {
     pub tile: Option<&'a TileLevels>,
     /// Texture points of the corners of each triangle `[triangles]`, or empty.
     pub corners: &'a [[Vec2; 3]],
-    /// Where they lie on the cloth (m) `[triangles]`, or empty.
+    /// Positions on the cloth (m) `[triangles]`, or empty.
     pub cloth: &'a [[Vec2; 3]],
     /// Distance of each corner from the nearest hem and seam (m) `[triangles]`, or empty.
     pub edges: &'a [[Vec2; 3]],
-    /// What is put on it.
+    /// Its trims.
     pub trims: &'a [DrawnTrim],
-    /// Which of them each triangle may show, a bit for each `[triangles]`, or empty.
+    /// Trims that each triangle may show, a bit for each `[triangles]`, or empty.
     pub near: &'a [u32],
     /// Share of light that the cloth holds back (0..1).
     pub opacity: f32,
@@ -316,10 +316,10 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_of_somebody_is_overwritten_on_every_level_and_in_no_debug_text() {
-        let TileLevels { shared } = TileLevels::of_somebody(checks(16));
+    fn pictures_of_persons_are_overwritten_and_never_printed() {
+        let TileLevels { shared } = TileLevels::of_person(checks(16));
         assert_eq!(format!("{:?}", TileLevels { shared: shared.clone() }), "TileLevels(16 x 16, 5 levels)");
-        assert!(shared.of_somebody && !TileLevels::of(&checks(2)).shared.of_somebody);
+        assert!(shared.of_person && !TileLevels::of(&checks(2)).shared.of_person);
         let mut levels = Arc::into_inner(shared).expect("copies share one, and the other is gone");
         levels.overwrite();
         assert!(levels.levels.iter().flat_map(|level| &level.texels).all(|texel| *texel == [0; 4]));

@@ -42,11 +42,11 @@ pub struct DrawnFrame {
     /// Body vertices under a garment.
     dressed: Vec<bool>,
     cloths: Vec<DrawnGarment>,
-    /// Where the camera looks.
+    /// Target of the camera.
     middle: Option<Vec3>,
     /// The shopper's height (m).
     stature: f32,
-    /// What was hidden so far at most (m).
+    /// Largest depth hidden so far (m).
     hidden_m: f32,
 }
 

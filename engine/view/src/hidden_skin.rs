@@ -126,7 +126,7 @@ pub struct DrawnSkin {
     pub hidden_m: f32,
 }
 
-/// What lies over a vertex of skin.
+/// The cover over a vertex of skin.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum ClothOver {
     /// No cloth near.

@@ -78,7 +78,7 @@ const MOST_LAYERS: usize = 8;
 /// Fraction of the golden section.
 const GOLDEN: f32 = 0.618_034;
 
-/// What all pixels of one picture share.
+/// Data shared by all pixels of one picture.
 pub struct RayTracer<'a> {
     scene: &'a TracedScene<'a>,
     lighting: Lighting,

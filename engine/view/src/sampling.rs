@@ -14,7 +14,7 @@ pub const MOST_SAMPLES: u32 = 64;
 #[derive(Debug, Clone, Copy)]
 pub struct PixelSample(u32);
 
-/// What a pair of numbers is drawn for: each use has its own, independent sequence.
+/// Use of a pair of random numbers: each use has its own, independent sequence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
 pub enum SampleDimension {

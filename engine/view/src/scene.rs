@@ -1,4 +1,4 @@
-//! What a picture is made from: borrowed surfaces, and the camera that looks at them.
+//! The scene of a picture: borrowed surfaces, and the camera that looks at them.
 
 use std::f32::consts::{FRAC_PI_2, PI};
 
@@ -41,7 +41,7 @@ pub struct PictureSurface<'a> {
     pub colours: Colours<'a>,
     /// How the surface reflects light.
     pub material: Material,
-    /// What cloth shows beside its colour.
+    /// Print, seams and trims of the cloth.
     pub look: Option<ClothLook<'a>>,
 }
 

@@ -22,7 +22,7 @@ pub const BOUNCE: f32 = 0.45;
 /// A visible point on a surface.
 #[derive(Debug, Clone, Copy)]
 pub struct SurfacePoint {
-    /// Where shadow and occlusion rays start (m).
+    /// Start of shadow and occlusion rays (m).
     pub position: Vec3,
     /// Unit normal to shade with, facing the camera.
     pub normal: Vec3,
@@ -94,7 +94,7 @@ impl SurfacePoint {
     }
 }
 
-/// x^5, Schlick's approximation of Fresnel's law.
+/// x^5, Schlick's approximation of the Fresnel reflectance.
 fn fifth(x: f32) -> f32 {
     let square = x * x;
     square * square * x

@@ -1,4 +1,4 @@
-//! How trims show on the cloth: buttons, stitches, edges of what lies on it, strips, zips.
+//! Trims as drawn on the cloth: buttons, stitches, edges of pieces that lie on it, strips, zips.
 
 use glam::{Vec2, Vec3};
 use toile_base::garment::look::TRIM_SHADOW_M;

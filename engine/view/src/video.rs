@@ -21,7 +21,7 @@ pub enum VideoError {
     Write {
         /// Path of the video.
         path: PathBuf,
-        /// What the system says.
+        /// The system's message.
         source: io::Error,
     },
     /// ffmpeg ended badly.

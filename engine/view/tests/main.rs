@@ -1,5 +1,5 @@
 //! All integration tests of the crate, linked once.
 
-mod laws;
+mod pictures;
 #[cfg(feature = "view")]
 mod raster;

@@ -1,5 +1,5 @@
 //! The mirror that shows the shopper's own picture allocates nothing once it has drawn a picture of a size: every allocation of the thread is
-//! counted while somebody moves, goes out of the picture, and comes back.
+//! counted while a shopper moves, leaves the picture, and comes back.
 
 #![expect(unsafe_code, reason = "a counting allocator has to implement an unsafe trait")]
 
@@ -62,7 +62,7 @@ struct Moment {
     snapshot: Snapshot,
 }
 
-/// Somebody who lifts her arms, dressed.
+/// A dressed woman who lifts her arms.
 fn moments(world: &mut World, latest: &mut dyn FnMut() -> Snapshot) -> Vec<Moment> {
     let skeleton = world.body().skeleton.clone();
     let joints = |tick: u64| {
@@ -123,7 +123,7 @@ fn a_picture_costs_no_allocation_once_one_was_drawn() {
         }
         let before = COUNT.with(Cell::get);
         for (number, moment) in seen.iter().enumerate().skip(3) {
-            // For a while nobody is seen.
+            // For a while no person is seen.
             let joints = if (20..25).contains(&number) { &absent } else { &moment.joints };
             match mirror.draw(&model, &moment.snapshot, &input(joints), &options) {
                 Ok(()) => drawn += 1,

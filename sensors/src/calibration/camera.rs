@@ -37,7 +37,7 @@ impl CalibratedCamera {
     /// A camera of these parameters.
     ///
     /// # Errors
-    /// What is wrong with them, to stand behind the camera's name.
+    /// Their fault, to follow the camera's name.
     pub fn new(name: &str, given: &CameraParameters) -> Result<Self, String> {
         given.check()?;
         let [[fx, _, cx], [_, fy, cy], _] = given.matrix;
@@ -75,7 +75,7 @@ impl CalibratedCamera {
         self.centre
     }
 
-    /// Where the camera stands (m, world).
+    /// Position of the camera (m, world).
     pub fn position(&self) -> DVec3 {
         -(self.rotation.transpose() * self.translation)
     }
@@ -116,12 +116,12 @@ impl CalibratedCamera {
         flat
     }
 
-    /// Where a ray (x/z, y/z without distortion) is seen (px).
+    /// Pixel of a ray (x/z, y/z without distortion) (px).
     pub fn pixel_of_ray(&self, ray: DVec2) -> DVec2 {
         self.distorted(ray) * self.focal + self.centre
     }
 
-    /// Where a point (m, world) is seen, as x/z and y/z without distortion; `None` behind the camera.
+    /// Projection of a point (m, world), as x/z and y/z without distortion; `None` behind the camera.
     pub fn project(&self, point: DVec3) -> Option<DVec2> {
         let p = self.to_camera(point);
         (p.z > NEAREST).then(|| p.truncate() / p.z)

@@ -1,4 +1,4 @@
-//! What a calibration says of one camera, and what cannot be one, each in words that name the mistake behind it.
+//! Parameters of one calibrated camera. Impossible values are refused, and the message names the mistake behind them.
 
 use glam::{DMat3, DVec3};
 
@@ -19,7 +19,7 @@ const NEAR_MIDDLE: f64 = 0.2;
 /// Fewest metres that would be plausible as millimetres: a camera nearer than that shows nothing of a person.
 const LEAST_MILLIMETRES: f64 = 200.0;
 
-/// What a calibration says of one camera.
+/// Calibration of one camera.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CameraParameters {
     /// Width and height of its pictures (px).

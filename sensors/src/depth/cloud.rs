@@ -6,7 +6,7 @@ use super::fill::Validity;
 use crate::segment::same_surface;
 use toile_base::frame::{DepthFrame, Intrinsics};
 
-/// What the camera sees of the shopper, clean.
+/// The shopper's cleaned surface as the camera sees it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Cloud {
     /// When it was seen (ns since the session began).
@@ -15,12 +15,12 @@ pub struct Cloud {
     pub intrinsics: Option<Intrinsics>,
     /// Camera to world (m).
     pub camera_to_world: Affine3A,
-    /// Where each pixel lies, world (m); meaningless where nothing is known `[width * height]`.
+    /// Position of each pixel, world (m); meaningless where the state is unknown `[width * height]`.
     pub points: Vec<Vec3>,
     /// Which way its surface faces, world, unit length, towards the camera; zero where no neighbour shows it
     /// `[width * height]`.
     pub normals: Vec<Vec3>,
-    /// What is known of each pixel `[width * height]`.
+    /// State of each pixel `[width * height]`.
     pub validity: Vec<Validity>,
     /// Columns and rows within which all known pixels lie: first, and one beyond the last.
     pub columns: [u32; 2],

@@ -10,7 +10,7 @@ use toile_base::frame::DepthFrame;
 /// Widest hole that is filled (mm): a crease, a button, a lock of hair.
 const WIDEST_MM: f32 = 60.0;
 
-/// What is known of a pixel.
+/// State of a pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[repr(u8)]
 pub enum Validity {
@@ -44,7 +44,7 @@ impl Fill {
         &self.depth_mm
     }
 
-    /// What is known of each pixel `[width * height]`.
+    /// State of each pixel `[width * height]`.
     pub fn validity(&self) -> &[Validity] {
         &self.validity
     }

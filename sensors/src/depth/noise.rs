@@ -1,4 +1,4 @@
-//! How far a depth sensor's readings scatter.
+//! Standard deviation of a depth sensor's readings.
 
 /// Standard deviation of a reading at depth z (m) of a surface that faces the camera: `least + growth (z - from)^2` (m).
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,7 +2,7 @@
 //! (Gultepe 2013, section 4.4.2, eq. 4.6), its length kept as seen.
 //!
 //! The published fraction is a constant a frame; here it is `1 - exp(-dt / tau)`, so that it means the same at any rate.
-//! Where the body is posed the same is done to joint rotations; this is its form for positions.
+//! The posed body does the same to joint rotations; this is the form for positions.
 
 use glam::{Quat, Vec3};
 use toile_base::skeleton::{JOINTS, Joint};

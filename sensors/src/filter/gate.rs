@@ -1,4 +1,4 @@
-//! Which joints are believed: the confidence gate of the live filter, and confidence derived where a format has none.
+//! The confidence gate of the live filter, and a confidence for formats that have none.
 
 use glam::Vec3;
 use toile_base::numeric::statistics::quantile_of;

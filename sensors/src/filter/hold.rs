@@ -12,7 +12,7 @@ pub const BLEND_SECONDS: f32 = 0.2;
 /// restless to be followed and too good to be ignored for a whole session: Kinect infers legs behind a table well.
 const INFERENCE_SECONDS: f32 = 0.7;
 
-/// Confidence of a joint that is held: below the gate, for nobody has seen it.
+/// Confidence of a joint that is held: below the gate, for no sensor has seen it.
 pub const HELD_CONFIDENCE: f32 = 0.25;
 
 /// State of one joint.

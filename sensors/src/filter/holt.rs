@@ -92,7 +92,7 @@ impl Holt {
         self.trend * settings.damping.powf(periods)
     }
 
-    /// Where the joint is drawn (m).
+    /// Drawn position of the joint (m).
     pub fn output(&self, settings: &HoltSettings) -> Vec3 {
         self.level + self.trend * settings.prediction
     }

@@ -1,7 +1,6 @@
 //! Joints made believable, frame by frame: gate, smooth, hold what is lost, keep the bones' lengths.
 //!
-//! Budget: under 50 us a frame, no allocation, fixed state.
-//! Thread: the sensor thread.
+//! Runs on the sensor thread in less than 50 µs a frame, with a fixed state and no allocation.
 
 pub mod angles;
 pub mod bones;
@@ -24,7 +23,7 @@ use toile_base::frame::{Joints, TrackedJoint};
 
 pub use hold::HELD_CONFIDENCE;
 
-/// A silence after which nothing is smoothed across (s): somebody else may stand there.
+/// Longest gap across which joints are smoothed (s): after it another person may stand there.
 const LONGEST_SILENCE: f32 = 1.0;
 
 /// Shortest step between two frames (s); a frame that comes no later than the one before counts as this much later.
@@ -47,7 +46,7 @@ impl Default for FilterSettings {
     }
 }
 
-/// What is remembered of one joint.
+/// State of one joint.
 #[derive(Debug, Clone, Copy)]
 struct JointTrack {
     smooth: Smoother,
@@ -58,7 +57,7 @@ struct JointTrack {
     believed_ns: u64,
     /// Whether it was believed in the frame before.
     following: bool,
-    /// Where it was in the frame before, bone lengths not yet pulled (m).
+    /// Its position in the frame before, bone lengths not yet corrected (m).
     place: Vec3,
     /// How far the smoothed place moved in this frame (m); zero unless followed.
     moved: Vec3,

@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::holt::{Holt, HoltSettings};
 use super::one_euro::{OneEuro, OneEuroSettings};
 
-/// Which smoothing, and how much.
+/// Kind and strength of the smoothing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Smoothing {
     /// Positions as they are seen.
@@ -64,7 +64,7 @@ impl Smoother {
         }
     }
 
-    /// Where the joint is drawn (m).
+    /// Drawn position of the joint (m).
     pub fn output(&self, smoothing: &Smoothing) -> Vec3 {
         match smoothing {
             Smoothing::Holt(settings) => self.holt().output(settings),

@@ -9,7 +9,7 @@ use crate::calibration::CalibratedCamera;
 use crate::error::SourceError;
 use crate::pictures::PictureSequence;
 
-/// The masks of somebody who moves.
+/// The masks of a moving person.
 #[derive(Debug, Clone)]
 pub struct MaskSequence {
     pictures: PictureSequence,
@@ -54,7 +54,7 @@ impl MaskSequence {
     /// The masks of the first frame, in which every camera has to see the person.
     ///
     /// # Errors
-    /// One sentence where a picture cannot be read, or shows nobody or nothing else.
+    /// One sentence if a picture cannot be read, or shows no person or nothing else.
     pub fn begin(&self) -> Result<Vec<Mask>, SourceError> {
         let all = (0..self.cameras.len()).map(|camera| {
             let mask = self.mask(camera, 0)?;
@@ -64,7 +64,7 @@ impl MaskSequence {
         all.collect()
     }
 
-    /// The masks of a frame; none of a camera that sees nobody, or nothing else.
+    /// The masks of a frame; none of a camera that sees no person, or nothing else.
     ///
     /// # Errors
     /// One sentence where a picture cannot be read.

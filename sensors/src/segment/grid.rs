@@ -95,12 +95,12 @@ impl Grid {
         k.unproject(u, v, 1.0)
     }
 
-    /// Where a cell lies, camera axes (m).
+    /// Position of a cell, camera axes (m).
     pub fn point(&self, cell: usize) -> Vec3 {
         self.ray(cell) * self.depth[cell]
     }
 
-    /// Where a cell lies along the floor (m): to the camera's right, ahead of it.
+    /// Position of a cell along the floor (m): to the camera's right, ahead of it.
     pub fn place(&self, cell: usize) -> Vec2 {
         let p = self.point(cell);
         Vec2::new(p.dot(self.axes.right), p.dot(self.axes.ahead))

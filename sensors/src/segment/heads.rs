@@ -10,19 +10,19 @@ use super::grid::Grid;
 /// How far a peak stands out of what it is part of (m).
 const STANDS_OUT: f32 = 0.12;
 
-/// What lies so near the border between two people, over the surface, is nobody's (m): a forearm with
+/// Cells so near the border between two people, over the surface, are given to neither (m): a forearm with
 /// its hand.
 const TOUCHING: f32 = 0.4;
 
 /// Most peaks of a piece: two people with raised hands have six.
 pub(super) const MAX_PEAKS: usize = 8;
 
-const NOBODY: u32 = u32::MAX;
+const NO_PERSON: u32 = u32::MAX;
 
 /// Owner of a cell outside the piece, of one not reached yet, and of one near a border.
 const OUTSIDE: u8 = u8::MAX - 2;
 const FREE: u8 = u8::MAX;
-const NOBODYS: u8 = u8::MAX - 1;
+const AT_BORDER: u8 = u8::MAX - 1;
 
 /// Finds peaks and parts pieces; its arrays are as large as the grid.
 #[derive(Debug, Clone, Default)]
@@ -39,7 +39,7 @@ pub(super) struct Heads {
 impl Heads {
     /// The peaks of a piece, the highest first, at most [`MAX_PEAKS`].
     pub fn peaks(&mut self, grid: &Grid, cells: &[u32]) -> Vec<u32> {
-        self.hill.resize(grid.depth.len(), NOBODY);
+        self.hill.resize(grid.depth.len(), NO_PERSON);
         self.order.clear();
         self.order.extend_from_slice(cells);
         self.order
@@ -49,7 +49,7 @@ impl Heads {
             let cell = self.order[i];
             self.hill[cell as usize] = cell;
             for other in grid.neighbours(cell as usize) {
-                if self.hill[other] == NOBODY || !grid.joined(cell as usize, other) {
+                if self.hill[other] == NO_PERSON || !grid.joined(cell as usize, other) {
                     continue;
                 }
                 let (a, b) = (self.root(cell), self.root(other as u32));
@@ -67,7 +67,7 @@ impl Heads {
         // What never met a higher hill is a peak; within one piece that is the highest cell.
         peaks.extend(self.order.iter().copied().filter(|c| self.hill[*c as usize] == *c));
         for cell in cells {
-            self.hill[*cell as usize] = NOBODY;
+            self.hill[*cell as usize] = NO_PERSON;
         }
         peaks.sort_unstable_by(|a, b| grid.height[*b as usize].total_cmp(&grid.height[*a as usize]).then(a.cmp(b)));
         peaks.truncate(MAX_PEAKS);
@@ -120,8 +120,8 @@ impl Heads {
         parts
     }
 
-    /// Takes out of all parts what lies near a border between two of them: whose hand it is that touches, the way to the
-    /// heads cannot tell, and nothing of anybody else may be in the shopper.
+    /// Takes cells near a border between two parts out of both: the way to the heads cannot tell to whom a touching hand
+    /// belongs, and no cell of another person may be in the shopper.
     fn draw_back(&mut self, grid: &Grid, cells: &[u32], parts: &mut [Vec<u32>]) {
         let parted =
             |a: usize, b: usize, owner: &[u8]| owner[b] != OUTSIDE && grid.joined(a, b) && owner[a] != owner[b];
@@ -139,16 +139,16 @@ impl Heads {
             way += 1.4 * grid.area(self.queue[begin] as usize).sqrt();
             for i in begin..end {
                 let cell = self.queue[i] as usize;
-                self.owner[cell] = NOBODYS;
+                self.owner[cell] = AT_BORDER;
                 for other in grid.neighbours(cell) {
-                    if self.owner[other] != NOBODYS && self.owner[other] != OUTSIDE && grid.joined(cell, other) {
-                        self.owner[other] = NOBODYS;
+                    if self.owner[other] != AT_BORDER && self.owner[other] != OUTSIDE && grid.joined(cell, other) {
+                        self.owner[other] = AT_BORDER;
                         self.queue.push(other as u32);
                     }
                 }
             }
             begin = end;
         }
-        parts.iter_mut().for_each(|part| part.retain(|c| self.owner[*c as usize] != NOBODYS));
+        parts.iter_mut().for_each(|part| part.retain(|c| self.owner[*c as usize] != AT_BORDER));
     }
 }

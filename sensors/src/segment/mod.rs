@@ -1,12 +1,11 @@
-//! Who of all that a depth camera sees is the shopper: floor off, pieces of surface, people, the one in the measuring zone.
+//! Finds the shopper in a depth frame: takes the floor away, then finds pieces of surface, people, and the one in the measuring zone.
 //!
-//! Budget: 5 ms a 640x480 frame, no allocation once the first frame was seen.
-//! Thread: the sensor thread.
+//! Runs on the sensor thread: at most 5 ms for a 640x480 frame. After the first frame it allocates nothing.
 //!
 //! No user map is needed. The floor is a plane found by random sampling and then fitted robustly ([`floor`]); what stands on it
 //! falls into pieces where depth jumps (`pieces`); pieces that carry a head above a chest are people, and one piece of
 //! two people who touch is parted between their heads (`heads`). Of the people, the shopper is the nearest one in the
-//! [`Zone`], and stays the shopper until they leave it. Nothing of anybody else is in the mask.
+//! [`Zone`], and stays the shopper until they leave it. No pixel of another person is in the mask.
 
 pub mod floor;
 mod grid;
@@ -31,7 +30,7 @@ pub struct Zone {
     pub ahead: [f32; 2],
     /// Half of its breadth (m).
     pub half_width: f32,
-    /// Where the mark is on the floor (x and z in our world, m), if it is known: the shopper is whoever stands nearest to it.
+    /// Place of the mark on the floor (x and z in our world, m), if it is known: the shopper is the person nearest to it.
     pub mark: Option<Vec2>,
 }
 
@@ -56,13 +55,13 @@ const LEAVING: f32 = 0.25;
 const LONGEST_STEP: f32 = 0.6;
 
 /// What a difference of a metre in height weighs against a metre between two places (1): of two people who are as near to where the
-/// shopper was, the one of their size is the shopper. Raised arms make anybody taller, so that it weighs little.
+/// shopper was, the one of their size is the shopper. Raised arms make a person taller, so that it weighs little.
 const SIZE_WEIGHT: f32 = 0.5;
 
 /// A shopper not seen for so long has left (ns).
 const FORGOTTEN_NS: u64 = toile_base::clock::SECOND_NS / 2;
 
-/// What a frame shows.
+/// Result of one frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Segmentation<'a> {
     /// 1 where a pixel shows the shopper, else 0 `[width * height]`.
@@ -143,8 +142,8 @@ impl Segmenter {
         Segmentation { mask: &self.mask, shopper, others, nearest_other, floor: self.finder.floor().copied() }
     }
 
-    /// Which of the people is the shopper: whoever it was, by place and by size, and else, once they have left, the nearest in the
-    /// zone to the mark, or to the camera where no mark is known. Whoever hides the shopper for a moment does not take their place.
+    /// Chooses the shopper among the people: the same person as before, by place and by size; once they have left, the nearest in
+    /// the zone to the mark, or to the camera if no mark is known. A person who hides the shopper for a moment does not take their place.
     fn choose(&mut self, time_ns: u64, mark: Option<Vec2>) -> Option<usize> {
         let people = self.people.all();
         let nearest = |cost: &dyn Fn(&Person) -> Option<f32>| {

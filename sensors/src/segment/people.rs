@@ -1,4 +1,4 @@
-//! Which pieces are people, and what else belongs to the shopper.
+//! Finds the pieces that are people, and the other pieces of the shopper.
 
 use glam::{Vec2, Vec3};
 use toile_base::numeric::statistics::quantile;
@@ -29,7 +29,7 @@ const SIDE: Band = Band { below: [0.30, 0.45], reach: 0.35, breadth: [0.07, 0.65
 const FEET: f32 = 0.35;
 const WHOLE: std::ops::Range<f32> = 1.2..2.15;
 
-/// A part without a head is somebody's arm up to this surface (m2); a larger one is somebody or something else.
+/// A part without a head is a person's arm up to this surface (m2); a larger one is a person or something else.
 const ARM: f32 = 0.12;
 
 /// Pieces smaller than this are noise (cells).
@@ -62,12 +62,12 @@ const LITTER: f32 = 0.12;
 /// People are looked for up to so far behind the zone, so that they are not taken for the shopper (m).
 const BEHIND: f32 = 1.5;
 
-/// Nobody stands on somebody: of two that stand as near to one another as this (m), one that lies below all but this share of the
+/// No person stands on another: of two that stand as near to one another as this (m), one that lies below all but this share of the
 /// other is their lower half, which a hand before the hips parts from the upper one.
 const ON_TOP: f32 = 0.35;
 const OVERLAP: f32 = 0.30;
 
-/// Legs that a hand before the hips parts from somebody seen down to there: they stand in the same column, are no broader than a
+/// Legs that a hand before the hips parts from a person seen down to there: they stand in the same column, are no broader than a
 /// stance, and hide no more between them and the shopper than a hand and a forearm (m).
 const STANCE: f32 = 0.7;
 const HIDDEN: f32 = 0.35;
@@ -81,7 +81,7 @@ struct Band {
 /// One person as seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Person {
-    /// Where they stand (m): to the camera's right, ahead of it.
+    /// Their position (m): to the camera's right, ahead of it.
     pub place: Vec2,
     /// Their highest point above the floor, or above y = 0 where no floor is seen (m).
     pub top: f32,
@@ -97,7 +97,7 @@ pub(super) struct PeopleFinder {
     people: Vec<Person>,
     /// Cells of each person.
     cells: Vec<Vec<u32>>,
-    /// Pieces that are nobody, by number.
+    /// Pieces that are no person, by number.
     rest: Vec<usize>,
     shopper: Vec<u32>,
     numbers: Vec<f32>,
@@ -160,7 +160,7 @@ impl PeopleFinder {
     }
 
     /// Parts one piece into people. A peak whose part is no person gives it back to the others if it is as small as an
-    /// arm; else what it holds is nobody's.
+    /// arm; else its cells belong to no person.
     fn part(&mut self, grid: &Grid, piece: usize) {
         let cells = self.pieces.cells(piece);
         let mut peaks = self.heads.peaks(grid, cells);
@@ -197,7 +197,7 @@ impl PeopleFinder {
         let axis = self.people[chosen].place;
         let mut is_shopper = vec![false; grid.depth.len()];
         self.shopper.iter().for_each(|c| is_shopper[*c as usize] = true);
-        // Whatever is in a piece with people and not the shopper's is somebody else's, or may be.
+        // Cells of a piece with people that are not the shopper's belong, or may belong, to another person.
         let mut is_other = vec![false; grid.depth.len()];
         let inhabited = (0..self.pieces.count()).filter(|p| !self.rest.contains(p));
         for cell in inhabited.flat_map(|p| self.pieces.cells(p)) {
@@ -216,7 +216,7 @@ impl PeopleFinder {
     }
 }
 
-/// Whether a piece that is nobody is part of the shopper: a hand behind a strap, legs below a black belt.
+/// Whether a piece that is no person is part of the shopper: a hand behind a strap, legs below a black belt.
 fn belongs(grid: &Grid, cells: &[u32], is_shopper: &[bool], axis: Vec2, numbers: &mut Vec<f32>) -> bool {
     let area: f32 = cells.iter().map(|c| grid.area(*c as usize)).sum();
     let top = cells.iter().map(|c| grid.height[*c as usize]).fold(f32::MIN, f32::max);
@@ -230,7 +230,7 @@ fn belongs(grid: &Grid, cells: &[u32], is_shopper: &[bool], axis: Vec2, numbers:
     cells.iter().any(|c| touches(grid, *c as usize, is_shopper, area < ARM))
 }
 
-/// Whether a piece is the legs of somebody who is seen down to a height (m) over a place.
+/// Whether a piece is the legs of a person who is seen down to a height (m) over a place.
 fn are_legs(grid: &Grid, cells: &[u32], bottom: f32, axis: Vec2, numbers: &mut Vec<f32>) -> bool {
     let span = |value: &dyn Fn(usize) -> f32| {
         let all = cells.iter().map(|c| value(*c as usize));
@@ -309,7 +309,7 @@ fn person(grid: &Grid, cells: &[u32], numbers: &mut Vec<f32>) -> Option<Person> 
     if !TALL.contains(&(top - bottom)) || right - left > BROADEST || back - front > DEEPEST {
         return None;
     }
-    // Raised hands are higher than the head, so the head is sought above the middle of the lower half; somebody half
+    // Raised hands are higher than the head, so the head is sought above the middle of the lower half; a person half
     // hidden has that elsewhere, and then their highest point is their head.
     numbers.clear();
     let low = cells.iter().filter(|c| grid.height[**c as usize] < 0.5 * (bottom + top));

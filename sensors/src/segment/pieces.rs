@@ -10,7 +10,7 @@ pub(super) const NONE: u32 = u32::MAX;
 pub(super) struct Pieces {
     /// All cells that are in a piece, in the order found.
     cells: Vec<u32>,
-    /// Where each piece begins in `cells`.
+    /// Start of each piece in `cells`.
     begins: Vec<u32>,
     /// The piece of each cell, or [`NONE`].
     label: Vec<u32>,

@@ -168,7 +168,7 @@ fn decode_png(bytes: &[u8], camera: &Intrinsics) -> Result<Box<[u16]>, String> {
     Ok(samples.chunks_exact(2).map(|b| u16::from_be_bytes([b[0], b[1]])).collect())
 }
 
-/// What is left of a message.
+/// The unread rest of a message.
 struct MessageBytes<'a>(&'a [u8]);
 
 impl MessageBytes<'_> {

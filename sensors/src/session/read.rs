@@ -18,12 +18,12 @@ const CURE: &str = "record it again, or restore the file from a copy";
 /// A recording that was cut off gives a shorter session with a note.
 ///
 /// # Errors
-/// Where the bytes are not a Toile session, are of a newer version, or are corrupt.
+/// If the bytes are not a Toile session, are of a newer version, or are corrupt.
 pub fn read(name: &str, bytes: &[u8]) -> Result<Session, SourceError> {
     read_bytes(bytes).map_err(|fault| fault.at(name))
 }
 
-/// What is known of a channel.
+/// Properties of a channel.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Topic {
     Joints,

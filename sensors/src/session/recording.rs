@@ -1,11 +1,11 @@
-//! What a session holds, and what it promises.
+//! A recorded session and its rules.
 
 use crate::error::{FilePlace, ReaderFault, SourceError};
 use crate::limits::{MAX_DEPTH_BYTES, MAX_DEPTH_FRAMES, MAX_DURATION_NS, MAX_GAP_NS, MAX_JOINT_FRAMES};
 use toile_base::clock::SECOND_NS;
 use toile_base::frame::{DepthFrame, Intrinsics, Joints};
 
-/// What a sensor saw of one shopper. World: metres, y up, floor at y = 0, the shopper faces +z near x = z = 0.
+/// A sensor's data of one shopper. World: metres, y up, floor at y = 0, the shopper faces +z near x = z = 0.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Session {
     /// The recording's name, for reports.
@@ -14,7 +14,7 @@ pub struct Session {
     pub joints: Vec<Joints>,
     /// Depth images, times strictly increasing `[frames]`; may be empty.
     pub depth: Vec<DepthFrame>,
-    /// What was assumed or repaired, one sentence each.
+    /// Assumptions and repairs, one sentence each.
     pub notes: Vec<String>,
     /// False where the recording's unit is arbitrary (BVH) and the size of the person is therefore unknown.
     pub raw_scale_known: bool,
@@ -95,7 +95,7 @@ fn check_times(times: impl Iterator<Item = u64>) -> Result<(), ReaderFault> {
     Ok(())
 }
 
-/// What room a session still has for depth images; asked before an image is unpacked.
+/// Space left in a session for depth images; asked before an image is unpacked.
 #[derive(Debug, Default)]
 pub(crate) struct DepthRoom {
     frames: usize,

@@ -21,7 +21,7 @@ const CHUNK_BYTES: u64 = 256 << 10;
 /// Writes a session to a file, all of it or nothing: the bytes go to a neighbouring file that is then renamed.
 ///
 /// # Errors
-/// Where the session breaks its own promises, or the path cannot be written.
+/// If the session breaks its own rules, or the path cannot be written.
 pub fn write(path: &Path, session: &Session) -> Result<(), SourceError> {
     let shown = path.display().to_string();
     let bytes = to_bytes(session).map_err(|fault| fault.at(&shown))?;
@@ -39,7 +39,7 @@ impl Session {
     /// The bytes of the session's recording; the same session gives the same bytes.
     ///
     /// # Errors
-    /// Where the session breaks its own promises (order of time, finite numbers, sizes).
+    /// If the session breaks its own rules (order of time, finite numbers, sizes).
     pub fn to_bytes(&self) -> Result<Vec<u8>, SourceError> {
         to_bytes(self).map_err(|fault| fault.at(&self.name))
     }

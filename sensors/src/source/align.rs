@@ -28,7 +28,7 @@ const LEG_OVER_TORSO: f32 = 1.6;
 /// Fraction of frames that must show a foot before the floor is taken from the feet.
 const FEET_SEEN: f32 = 0.1;
 
-/// Fraction of frames whose lower foot lies below the floor: half of the frames of somebody who stands, a quarter to
+/// Fraction of frames whose lower foot lies below the floor: half of the frames of a standing person, a quarter to
 /// allow for jumps.
 const STANDING: f64 = 0.25;
 

@@ -37,7 +37,7 @@ const DEFAULT_SCALE_NS: u64 = 1_000_000;
 
 const CURE: &str = "record it again with k4arecorder";
 
-/// What is read of a recording before its images.
+/// Data of a recording that are read before its images.
 struct Head<'a> {
     scale_ns: u64,
     track: Option<MkvTrack>,

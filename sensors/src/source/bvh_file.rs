@@ -9,7 +9,7 @@ use crate::limits::{MAX_BVH_DEPTH, MAX_BVH_JOINTS, MAX_JOINT_FRAMES};
 
 const CURE: &str = "export the motion again as BVH";
 
-/// What a channel turns or moves.
+/// The rotation or motion of a channel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Channel {
     /// Position along axis 0, 1 or 2 (file units); replaces the offset's component.

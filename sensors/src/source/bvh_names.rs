@@ -1,4 +1,4 @@
-//! Which of a BVH file's joints is which of ours: the dialects of the field, known by the names they use.
+//! Maps the joints of a BVH file to ours: the dialects of the field, known by the names they use.
 //!
 //! The classic error is off by one along the arm: `LeftShoulder` is the clavicle where there is a `LeftArm`, and the
 //! shoulder joint where there is a `LeftElbow`; `LeftHip` and `LeftUpLeg` are the same joint.

@@ -153,7 +153,7 @@ fn face_forward(frames: &mut [Positions], notes: &mut Vec<String>) {
     frames.iter_mut().flatten().for_each(|p| *p = turn * *p);
 }
 
-/// Which joints carry information: named in the file, and not always at their parent's place.
+/// Joints that carry information: named in the file, and not always at their parent's place.
 fn present(frames: &[Positions], names: &Names, metres: f64, notes: &mut Vec<String>) -> [bool; JOINTS] {
     let mut present = [false; JOINTS];
     let mut dropped = Vec::new();

@@ -1,4 +1,4 @@
-//! What the readers of files and folders share.
+//! Shared code of the readers of files and folders.
 
 use std::path::{Path, PathBuf};
 

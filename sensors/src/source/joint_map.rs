@@ -1,4 +1,4 @@
-//! Which point of a tracker's skeleton is which of our joints: one table for all of them.
+//! Maps the points of trackers' skeletons to our joints: one table for all trackers.
 //!
 //! The table is data (`data/joint_map.csv`), a row a joint by its H-Anim name, a column a tracker. A cell is a point's
 //! number and name, `mid(a;b)` for the middle of two points, or a point with `(offset)` that lies beside the joint.
@@ -60,7 +60,7 @@ impl Format {
 /// Column of the bones that the VMC protocol names.
 const VMC_COLUMN: usize = 8;
 
-/// Where a joint is among a tracker's points.
+/// Source of a joint among a tracker's points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Source {
     /// The joint lies at a point of the tracker.
@@ -106,7 +106,7 @@ impl JointMap {
         Self(map)
     }
 
-    /// Where a joint is; `None` where the tracker has none.
+    /// Position of a joint; `None` if the tracker has none.
     pub fn source(&self, joint: Joint) -> Option<Source> {
         self.0[joint.index()]
     }

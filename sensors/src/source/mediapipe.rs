@@ -82,7 +82,11 @@ pub(super) fn read(bytes: &[u8]) -> Result<Session, ReaderFault> {
         }
     }
     if people.len() < frames.len() {
-        notes.push(format!("{} of {} frames show nobody and were left out", frames.len() - people.len(), frames.len()));
+        notes.push(format!(
+            "{} of {} frames show no person and were left out",
+            frames.len() - people.len(),
+            frames.len()
+        ));
     }
     if frames.iter().all(|f| f.width.is_none() || f.height.is_none()) {
         let [w, h] = ASSUMED_SIZE;
@@ -115,7 +119,7 @@ fn parse(bytes: &[u8]) -> Result<Vec<LandmarkFrame>, ReaderFault> {
     Ok(frames)
 }
 
-/// The person of a frame whose hips are nearest to `last` in the image, or who is seen largest; `None` of nobody.
+/// The person of a frame whose hips are nearest to `last` in the image, or who is seen largest; `None` without a person.
 fn person(frame: &LandmarkFrame, last: Option<[f32; 2]>) -> Result<Option<LandmarkPerson>, String> {
     let ms = frame.timestamp_ms;
     if !ms.is_finite() || !(0.0..1e15).contains(&ms) {
@@ -191,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_is_nobody_and_wrong_numbers_are_refused() {
+    fn empty_frames_pass_and_wrong_numbers_are_refused() {
         let of = |text: &str| parse(text.as_bytes()).map(|f| person(&f[0], None).map(|p| p.is_some()));
         assert_eq!(of("{\"timestampMs\":5,\"landmarks\":[],\"worldLandmarks\":[]}"), Ok(Ok(false)));
         let one = points(0.5);

@@ -1,4 +1,4 @@
-//! Where a person stands whose world landmarks have their hips at the origin: where the image shows them.
+//! The place of a person whose world landmarks have the hips at the origin, from the image.
 //!
 //! Weak perspective: the image is the world landmarks' x and y times a scale, shifted. The scale (px/m) says how far
 //! away they are for a camera of an assumed focal length, and the shift where they stand across it, so that a step or a
@@ -53,7 +53,7 @@ pub(super) fn in_space(people: &[LandmarkPerson], notes: &mut Vec<String>) -> Ve
         .collect()
 }
 
-/// Camera axes (x right, y down, z forward) to world axes of somebody who faces the camera.
+/// Camera axes (x right, y down, z forward) to world axes of a person who faces the camera.
 fn turned(camera: Vec3) -> Vec3 {
     Vec3::new(camera.x, -camera.y, -camera.z)
 }

@@ -117,7 +117,7 @@ pub fn read_bytes(path: &str, name: &str, bytes: &[u8], camera: Option<(&str, &[
 /// First bytes of an OpenNI recording.
 const ONI_MAGIC: &[u8] = b"NI10";
 
-/// What is said of an OpenNI recording that cannot be read.
+/// Message for an OpenNI recording that cannot be read.
 const OPENNI: &str = "an OpenNI recording, which is read from a file and not from memory";
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -154,7 +154,7 @@ fn recognise(bytes: &[u8], has_camera: bool) -> Result<RecordingKind, &'static s
     let text =
         if is_text(head) { recognise_text(head) } else { Err("binary of no known kind, and no camera is given") };
     match text {
-        // Whatever is none of these is depth to somebody who says which camera took it.
+        // A file of no other kind is depth if the caller says which camera took it.
         Err(_) if has_camera => Ok(RecordingKind::RawDepth),
         Err(_) if !is_text(head) && (bytes.len() as u64).is_multiple_of(raw_depth::KINECT_V1_BYTES) => {
             Ok(RecordingKind::RawDepth)

@@ -67,7 +67,7 @@ struct OniFrame {
 type OniHandle = *mut c_void;
 
 functions! {
-    /// What is called of OpenNI.
+    /// The called functions of OpenNI.
     OniApi {
         fn oniInitialize(c_int) -> c_int;
         fn oniShutdown();
@@ -89,10 +89,10 @@ functions! {
     }
 }
 
-/// The library is not made for two users at once: whether somebody uses it, and who waits for that.
+/// The library is not made for two users at once: whether it is in use, and the threads that wait for it.
 static IN_USE: (Mutex<bool>, Condvar) = (Mutex::new(false), Condvar::new());
 
-/// The library, initialised; shut down when nobody has it any more.
+/// The library, initialised; shut down when the last owner drops it.
 pub(super) struct OpenNiLibrary {
     api: OniApi,
 }
@@ -121,7 +121,7 @@ unsafe impl Sync for OpenNiDevice {}
 unsafe impl Send for OpenNiStream {}
 
 impl OpenNiLibrary {
-    /// Loads it, and waits until nobody else uses it.
+    /// Loads it, and waits until no other owner uses it.
     pub fn start(folders: &[PathBuf]) -> Result<Arc<Self>, ReaderFault> {
         let whole = |e: &dyn std::fmt::Display| ReaderFault::new(FilePlace::Whole, e.to_string(), "then try again");
         let library = Library::load(&LIBRARY, folders).map_err(|e| whole(&e))?;

@@ -1,4 +1,4 @@
-//! Where a camera of unknown pose stands: from the floor that it sees. A recording and a live camera are placed by the same
+//! The pose of a camera from the floor that it sees, if the pose is unknown. A recording and a live camera are placed by the same
 //! frames in the same way.
 
 use glam::{Affine3A, Mat3, Vec3};

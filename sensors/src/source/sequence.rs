@@ -19,7 +19,7 @@ pub(super) const fn assumed_time(index: usize) -> u64 {
     index as u64 * SECOND_NS / ASSUMED_HZ
 }
 
-/// What is said of a recording whose images have no times.
+/// Note for a recording whose images have no times.
 pub(super) fn untimed(images: usize) -> String {
     format!("the file holds no times: its {images} images are taken at {ASSUMED_HZ} Hz")
 }
@@ -32,7 +32,7 @@ pub(super) struct Sequence {
     start_ns: Option<u64>,
     backwards: usize,
     frames: Vec<DepthFrame>,
-    /// What was assumed or repaired.
+    /// Assumptions and repairs.
     pub notes: Vec<String>,
 }
 
@@ -97,7 +97,7 @@ impl Sequence {
 fn place(depth: &mut [DepthFrame], posed: bool, notes: &mut Vec<String>) -> Result<(), ReaderFault> {
     let pose = if posed { centred(depth, notes) } else { found(depth, notes) };
     let pose = pose.ok_or_else(|| {
-        let cure = "record again with somebody in view";
+        let cure = "record again with a person in view";
         ReaderFault::new(FilePlace::Frame(0), "every depth image is empty", cure)
     })?;
     depth.iter_mut().for_each(|f| f.camera_to_world = pose);
@@ -160,8 +160,8 @@ mod tests {
     }
 
     #[test]
-    fn a_known_camera_keeps_its_floor_where_somebody_stands_on_it() {
-        // Noise below the floor, or feet lost in it, move nobody.
+    fn a_known_camera_keeps_its_floor() {
+        // Noise below the floor, or feet lost in it, move no person.
         for low in [-0.03, 0.0, 0.04, 0.12] {
             assert!((height_over_the_floor(low) - 0.9).abs() < 1e-5, "{low}");
         }

@@ -46,7 +46,7 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// What a camera shows live, placed in our world: so many images.
+/// Live images of a camera, placed in our world: so many.
 fn seen_live(name: &str, options: &CameraOptions, count: usize) -> Vec<DepthFrame> {
     let (name, options) = (name.parse().unwrap(), options.clone());
     let begun = Instant::now();
@@ -129,7 +129,7 @@ fn a_kinect_gives_what_its_recording_holds() {
 fn a_camera_of_openni_gives_what_its_recording_holds() {
     let Some(options) = installed(CameraKind::OpenNi, live::folders(), true) else { return };
     let folder = folder("openni");
-    let file = folder.join("visit.oni");
+    let file = folder.join("session.oni");
     oni_writer::write(&file, &people::frames(12));
     let name = format!("openni:{}", file.display());
     both_ways(&name, &file, &options, 8);
@@ -155,7 +155,7 @@ fn a_recording_of_an_azure_kinect_is_the_same_live() {
 fn a_real_sense_gives_what_it_was_made_to_see() {
     let Some(options) = installed(CameraKind::RealSense, live::folders(), false) else { return };
     let folder = folder("realsense");
-    let (file, frames) = (folder.join("visit.db3"), people::frames(12));
+    let (file, frames) = (folder.join("session.db3"), people::frames(12));
     if realsense_recorder::record(&options.libraries, &file, &frames) {
         let name = format!("realsense:{}", file.display());
         let live = seen_live(&name, &options, 6);
@@ -215,7 +215,7 @@ fn a_camera_that_is_not_connected_is_named() {
 #[test]
 fn a_recording_plays_as_a_camera_where_it_stands() {
     let folder = folder("recording");
-    let file = folder.join("visit.mcap");
+    let file = folder.join("session.mcap");
     let session = Session { depth: people::placed(&people::frames(6)), raw_scale_known: true, ..Session::default() };
     toile_sensors::session::write(&file, &session).unwrap();
     let live = seen_live(&format!("recording:{}", file.display()), &CameraOptions::default(), 6);

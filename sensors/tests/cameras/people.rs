@@ -1,4 +1,4 @@
-//! Somebody in a room, as a camera sees them, and the recordings that a Kinect would make of it.
+//! A person in a room, as a camera sees them, and the recordings that a Kinect would make of it.
 
 use std::fmt::Write;
 use std::fs;
@@ -16,7 +16,7 @@ const TICKS: u64 = 2_000_000;
 /// When the recording begins (s since 1970).
 const BEGIN_S: f64 = 1_300_399_331.5;
 
-/// So many images of somebody who stands in a room, each with noise of its own.
+/// So many images of a person who stands in a room, each with noise of its own.
 pub fn frames(count: u64) -> Vec<DepthFrame> {
     let body = toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
     let camera =

@@ -67,7 +67,7 @@ struct Extrinsics {
     translation: [f32; 3],
 }
 
-/// Where the colour camera is put, against the depth camera.
+/// Pose of the colour camera, relative to the depth camera.
 fn place() -> (Mat3, Vec3) {
     (Mat3::from_quat(Quat::from_rotation_y(0.01) * Quat::from_rotation_x(-0.006)), Vec3::new(0.0148, 0.0002, -0.0003))
 }

@@ -1,4 +1,4 @@
-//! Small recordings of skeleton trackers, made here: somebody who stands before the camera, 2.5 m away and 1 m below it.
+//! Small recordings of skeleton trackers, made here: a person who stands before the camera, 2.5 m away and 1 m below it.
 
 use glam::Vec3;
 use toile_base::frame::Joints;
@@ -58,7 +58,7 @@ pub fn azure(frames: u64) -> Vec<u8> {
     text.into_bytes()
 }
 
-/// MediaPipe landmarks, a result a line, of somebody who jumps by 0.3 m in the last frame.
+/// MediaPipe landmarks, a result a line, of a person who jumps by 0.3 m in the last frame.
 pub fn mediapipe(frames: u64) -> Vec<u8> {
     let (width, height, focal) = (1280.0, 720.0, 0.87 * 1280.0);
     let mut text = String::new();

@@ -70,7 +70,7 @@ pub(crate) struct FootLine {
 pub struct GridRow {
     /// Heights in front, at the side and behind.
     pub y: [f32; 3],
-    /// Where its rays start (z).
+    /// Start of its rays (z).
     pub z: f32,
 }
 

@@ -33,21 +33,21 @@ pub(crate) struct Group {
 }
 
 /// Each part followed by its mirror image, if it has one.
-fn with_twins<T: Clone>(parts: &[T], twin: impl Fn(&T) -> Option<T>) -> Vec<T> {
-    parts.iter().flat_map(|p| std::iter::once(p.clone()).chain(twin(p))).collect()
+fn with_mirrors<T: Clone>(parts: &[T], mirror: impl Fn(&T) -> Option<T>) -> Vec<T> {
+    parts.iter().flat_map(|p| std::iter::once(p.clone()).chain(mirror(p))).collect()
 }
 
 impl Group {
-    /// `paired`: parts beside the middle have their twin on the other side.
+    /// `paired`: parts beside the middle have their mirror on the other side.
     pub(crate) fn new(row: &GroupRow, paired: bool) -> Self {
         Self {
             tubes: row.tube.iter().map(Tube::new).collect(),
-            chains: with_twins(&row.chain, |c| c.mirrored().filter(|_| paired)),
-            balls: with_twins(&row.ball, |b| b.mirrored().filter(|_| paired))
+            chains: with_mirrors(&row.chain, |c| c.mirrored().filter(|_| paired)),
+            balls: with_mirrors(&row.ball, |b| b.mirrored().filter(|_| paired))
                 .into_iter()
                 .map(Ellipsoid::turned)
                 .collect(),
-            bumps: with_twins(&row.bump, |b| b.mirrored().filter(|_| paired)).into_iter().map(Bump::turned).collect(),
+            bumps: with_mirrors(&row.bump, |b| b.mirrored().filter(|_| paired)).into_iter().map(Bump::turned).collect(),
             digits: row.digit.clone(),
         }
     }

@@ -18,7 +18,7 @@ pub(crate) const HOLE_ROWS: usize = 3;
 /// Rows of the trunk above the armhole's upper edge, the base of the neck included.
 pub(crate) const ABOVE_HOLE: usize = 3;
 
-/// What a vertex of the cage belongs to.
+/// The part that a vertex of the cage belongs to.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Tag {
     pub region: Region,
@@ -34,7 +34,7 @@ pub(crate) struct Lattice {
     pub faces: Vec<[u32; 4]>,
     pub charts: Vec<Chart>,
     /// Each vertex's mirror image; its own in the middle.
-    pub twins: Vec<u32>,
+    pub mirrors: Vec<u32>,
 }
 
 impl Lattice {
@@ -101,14 +101,14 @@ impl Lattice {
     pub(crate) fn mirrored(mut self) -> Self {
         let left = self.points.len();
         let middle = |p: Vec3| p.x.abs() < 1e-6;
-        let mut twins: Vec<u32> = (0..left as u32).collect();
+        let mut mirrors: Vec<u32> = (0..left as u32).collect();
         for v in 0..left {
             if middle(self.points[v]) {
                 self.points[v].x = 0.0;
                 continue;
             }
             let p = self.points[v];
-            twins[v] = self.points.len() as u32;
+            mirrors[v] = self.points.len() as u32;
             self.points.push(Vec3::new(-p.x, p.y, p.z));
             let region = match self.tags[v].region {
                 Region::LeftArm => Region::RightArm,
@@ -116,15 +116,15 @@ impl Lattice {
                 both => both,
             };
             self.tags.push(Tag { region, ..self.tags[v] });
-            twins.push(v as u32);
+            mirrors.push(v as u32);
         }
         for f in 0..self.faces.len() {
-            let q = flipped(self.faces[f]).map(|v| twins[v as usize]);
+            let q = flipped(self.faces[f]).map(|v| mirrors[v as usize]);
             self.faces.push(q);
             let chart = self.charts[f].mirror();
             self.charts.push(chart);
         }
-        Self { twins, ..self }
+        Self { mirrors, ..self }
     }
 }
 

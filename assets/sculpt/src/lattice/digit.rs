@@ -12,7 +12,7 @@ use toile_base::body::Region;
 pub(super) struct Digit<'a> {
     /// Its form: centres and radii.
     pub balls: &'a [(Vec3, f32)],
-    /// Where its rings lie, shares of its length.
+    /// Positions of its rings, as shares of its length.
     pub ways: &'a [f32],
     /// Direction of its nail, and of the side that its rim reaches after the nail's.
     pub nail: Vec3,

@@ -48,7 +48,7 @@ fn bases_share_all_but_their_shape() {
 #[test]
 fn bases_are_symmetric_to_the_bit() {
     for base in both() {
-        for (v, &t) in base.twins.iter().enumerate() {
+        for (v, &t) in base.mirrors.iter().enumerate() {
             let (p, q) = (base.positions[v], base.positions[t as usize]);
             assert_eq!(
                 (p.x.to_bits(), p.y.to_bits(), p.z.to_bits()),

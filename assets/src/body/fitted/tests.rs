@@ -9,7 +9,7 @@ use toile_base::numeric::random::SplitMix64;
 const SEXES: [Sex; 2] = [Sex::Female, Sex::Male];
 
 /// The measures of a body between the mean and another, both built from stature, chest, waist and hip.
-fn somebody(sex: Sex, random: &mut SplitMix64) -> Fitted {
+fn random_person(sex: Sex, random: &mut SplitMix64) -> Fitted {
     let mut around = |mean: f32, by: f32| mean * (1.0 + by * (2.0 * random.uniform() - 1.0));
     let m = Measures::average(sex);
     let stout = around(1.0, 0.18);
@@ -29,7 +29,7 @@ fn any_subset_of_a_bodys_own_measures_is_met() {
     let mut random = SplitMix64::new(5);
     for sex in SEXES {
         for _ in 0..12 {
-            let person = somebody(sex, &mut random);
+            let person = random_person(sex, &mut random);
             let mut wanted = Wanted::new();
             for &m in En::ALL {
                 if random.uniform() < 0.5 {
@@ -84,7 +84,7 @@ fn what_is_not_given_follows_as_in_people() {
 #[test]
 fn tape_outside_agrees_with_the_gauge() {
     for sex in SEXES {
-        let f = somebody(sex, &mut SplitMix64::new(9));
+        let f = random_person(sex, &mut SplitMix64::new(9));
         for (level, measure) in [
             (f.body.levels.chest, En::BustGirth),
             (f.body.levels.waist, En::WaistGirth),
@@ -133,9 +133,9 @@ fn gradients_are_those_of_the_readings() {
 #[test]
 fn sides_are_mirror_images_to_the_bit() {
     for sex in SEXES {
-        let body = somebody(sex, &mut SplitMix64::new(3)).body;
-        let twin = &model(sex).morphs.near.twin;
-        for (v, &other) in twin.iter().enumerate() {
+        let body = random_person(sex, &mut SplitMix64::new(3)).body;
+        let mirror = &model(sex).morphs.near.mirror;
+        for (v, &other) in mirror.iter().enumerate() {
             for values in [&body.mesh.positions, &body.normals] {
                 let (a, b) = (values[v], values[other as usize]);
                 assert!(a.x == -b.x && a.y == b.y && a.z == b.z, "vertex {v}: {a} {b}");
@@ -153,7 +153,7 @@ fn soles_stay_on_the_floor() {
     for sex in SEXES {
         let drawn = &model(sex).morphs.base.positions;
         let soles: Vec<usize> = (0..drawn.len()).filter(|&v| drawn[v].y < 2e-3).collect();
-        let body = somebody(sex, &mut SplitMix64::new(4)).body;
+        let body = random_person(sex, &mut SplitMix64::new(4)).body;
         let lowest = body.mesh.positions.iter().map(|p| p.y).fold(f32::MAX, f32::min);
         assert!(soles.len() > 8 && lowest.abs() < 1e-3, "{sex:?}: {} vertices, {lowest} m", soles.len());
         assert!(soles.iter().all(|&v| (body.mesh.positions[v].y - drawn[v].y).abs() < 1e-3));
@@ -166,7 +166,7 @@ fn morphed_bodies_stay_smooth_and_whole() {
     for sex in SEXES {
         let drawn = drawn(sex);
         for _ in 0..6 {
-            let body = somebody(sex, &mut random).body;
+            let body = random_person(sex, &mut random).body;
             let ratio = sound::roughness(&body.mesh) / sound::roughness(&drawn.mesh);
             assert!((0.8..1.10).contains(&ratio), "{sex:?}: roughness {ratio}");
             assert!(sound::unevenness(&body.mesh, &drawn.mesh) < 0.05);
@@ -190,7 +190,7 @@ fn roughness_knows_a_dent() {
 }
 
 #[test]
-fn what_nobody_has_together_gives_the_nearest_body() {
+fn impossible_measures_give_the_nearest_body() {
     for sex in SEXES {
         let wanted = Wanted::new().with(En::Stature, 1.5).with(En::InsideLegHeight, 1.1);
         let Err(BodyError::Unreachable { measure, value, reached, against, nearest }) = fitted(sex, &wanted) else {

@@ -200,7 +200,7 @@ fn read_channel(
     Ok(Some(channel))
 }
 
-/// What is wrong with an accessor, behind the animation's name.
+/// The fault of an accessor, to follow the animation's name.
 fn has(reason: &str) -> String {
     format!("cannot be read: {reason}")
 }

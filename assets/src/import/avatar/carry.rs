@@ -14,7 +14,7 @@ use toile_base::limits::INFLUENCES;
 use toile_base::mesh::SkinWeights;
 use toile_base::skeleton::{BONES, Joint, Skeleton, TWISTS};
 
-/// What pruning to four influences cost.
+/// Loss by pruning to four influences.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PruningLoss {
     /// Most influences of a vertex in the file.

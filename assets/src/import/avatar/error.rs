@@ -1,4 +1,4 @@
-//! What can be wrong with an imported body: one sentence each, which names the element and the cure.
+//! Errors of an imported body: one sentence each, which names the element and the cure.
 
 use toile_base::limits::{MAX_BODY_BYTES, MAX_BODY_VERTICES};
 
@@ -8,11 +8,11 @@ use toile_base::limits::{MAX_BODY_BYTES, MAX_BODY_VERTICES};
 pub struct AvatarError {
     /// The file or folder.
     pub path: String,
-    /// What is wrong with it.
+    /// The fault.
     pub flaw: Flaw,
 }
 
-/// What is wrong, to stand behind the file's name.
+/// The fault, to follow the file's name.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Flaw {
     /// The file cannot be read.
@@ -30,7 +30,7 @@ pub enum Flaw {
     /// The text or the structure of the file; the reason holds the cure.
     #[error("{reason}")]
     Syntax {
-        /// What is wrong, and the cure.
+        /// The fault and its cure.
         reason: String,
     },
     /// No mesh has a skin.
@@ -57,7 +57,7 @@ pub enum Flaw {
     Animation {
         /// Name of the animation.
         name: String,
-        /// What is wrong, and the cure.
+        /// The fault and its cure.
         reason: String,
     },
     /// Too few vertices, or more than [`MAX_BODY_VERTICES`].
@@ -69,9 +69,9 @@ pub enum Flaw {
     /// A coordinate that is NaN or infinite.
     #[error("{what} {index} is not finite; mend the mesh where it was made and export it again")]
     NotFinite {
-        /// What it belongs to.
+        /// Kind of the element.
         what: &'static str,
-        /// Which one of them.
+        /// Number of the element.
         index: usize,
     },
     /// A weight for a joint that the skin lacks.

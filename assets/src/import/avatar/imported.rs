@@ -1,4 +1,4 @@
-//! What an import gives: a body, and what was found in its file.
+//! The result of an import: a body, and a report on its file.
 
 use super::carry::PruningLoss;
 use toile_base::body::Body;
@@ -8,11 +8,11 @@ use toile_base::body::Body;
 pub struct ImportedBody {
     /// The body in its rest pose: metres, y up, facing +z, the floor at y = 0.
     pub body: Body,
-    /// What was found in the file and how it was taken.
+    /// Findings in the file and their interpretation.
     pub report: ImportReport,
 }
 
-/// What was found in a file.
+/// Findings in a file.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ImportReport {
     /// Dialect of its joints' names.
@@ -27,6 +27,6 @@ pub struct ImportReport {
     pub boundary_edges: usize,
     /// Edges of more than two triangles.
     pub crowded_edges: usize,
-    /// What was found and how it was taken, one sentence each.
+    /// Findings and their interpretation, one sentence each.
     pub notes: Vec<String>,
 }

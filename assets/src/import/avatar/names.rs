@@ -12,7 +12,7 @@ pub struct NamingDialect {
     pub title: &'static str,
     /// Names of each joint, in the order of [`Joint::ALL`]; `@` stands for the side and is filled in by `sides`.
     names: [&'static [&'static str]; CENTRE + ONE_SIDE],
-    /// What stands for left and right.
+    /// Words for left and right.
     sides: [&'static str; 2],
 }
 

@@ -39,11 +39,11 @@ pub(crate) struct RawBody {
     pub triangles: Vec<[u32; 3]>,
     /// Joints and what is above them.
     pub joints: Vec<RawJoint>,
-    /// What the names of the joints mean.
+    /// Meaning of the joints' names.
     pub reading: NamedJoints,
     /// Joints and weights of each vertex `[vertices]`.
     pub influences: Vec<RawInfluences>,
-    /// What was found and how it was taken, one sentence each.
+    /// Findings and their interpretation, one sentence each.
     pub notes: Vec<String>,
 }
 

@@ -1,4 +1,4 @@
-//! Whether a surface is closed: vertices that lie in the same place are one (files repeat them along texture seams),
+//! Checks that a surface is closed: vertices that lie in the same place are one (files repeat them along texture seams),
 //! and an edge with a triangle on one side alone is a boundary.
 
 use std::collections::BTreeMap;
@@ -8,7 +8,7 @@ use glam::Vec3;
 /// Places closer than this are one (m): a hundredth of a millimetre.
 const SAME_M: f32 = 1e-5;
 
-/// What a surface is made of.
+/// Parts of a surface.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SurfaceCheck {
     /// Places with a vertex that a triangle uses.

@@ -20,7 +20,7 @@ const ACROMION_NEAR: f32 = 0.015;
 /// acromions): 60 mm of a body of 1.7 m.
 const AROUND: f32 = 0.1;
 
-/// What is read off an imported body.
+/// Readings of an imported body.
 pub(super) struct BodySurvey {
     pub regions: Vec<Region>,
     pub levels: Levels,

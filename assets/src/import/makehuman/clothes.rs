@@ -62,7 +62,7 @@ pub struct Clothes {
     scales: [Option<ScaleRule>; 3],
     /// Ranges of the base's vertices that the clothes hide, both ends included.
     pub hidden: Vec<[u32; 2]>,
-    /// Who wears them, where the file says it.
+    /// Sex of their wearer, if the file says it.
     pub sex: Option<Sex>,
     /// The file of its material, where it names one.
     pub material: Option<String>,
@@ -145,7 +145,7 @@ impl Clothes {
         self.bindings.len()
     }
 
-    /// Where the clothes lie on a base (dm).
+    /// Position of the clothes on a base (dm).
     fn place(&self, base: &[Vec3]) -> Vec<Vec3> {
         let at = |v: u32| base.get(v as usize).copied().unwrap_or_default();
         let mut scale = Vec3::ONE;

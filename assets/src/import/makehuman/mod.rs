@@ -19,12 +19,12 @@ use mesh::MakehumanMesh;
 use toile_bake::shape::NO_VERTEX;
 use toile_base::limits::IMPORT_INFLUENCES;
 
-/// What a body is made of.
+/// Choices that make a body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MakehumanOptions {
     /// Targets by their file's name, and how much of each; they add up.
     pub targets: Vec<(String, f32)>,
-    /// Which rig carries the body: `game_engine` or `cmu_mb`.
+    /// The rig that carries the body: `game_engine` or `cmu_mb`.
     pub rig: String,
 }
 

@@ -45,7 +45,7 @@ pub(super) fn joints(path: &Path, base: &MakehumanMesh) -> Result<Vec<RawJoint>,
     Ok(joints)
 }
 
-/// Where a bone begins (dm).
+/// Start of a bone (dm).
 fn head(head: &Value, base: &MakehumanMesh) -> Option<Vec3> {
     let number = |v: &Value| v.as_u64().and_then(|v| u32::try_from(v).ok());
     let vertices: Vec<u32> = match head["strategy"].as_str()? {

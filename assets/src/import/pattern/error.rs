@@ -17,7 +17,7 @@ pub enum PatternError {
     Content {
         /// The file as the user named it.
         file: String,
-        /// What is wrong, where, and the cure.
+        /// The fault, its place and its cure.
         reason: String,
     },
     /// It can be read and is no pattern that can be sewn.
@@ -25,12 +25,12 @@ pub enum PatternError {
     Flaw {
         /// The file as the user named it.
         file: String,
-        /// What is wrong, where, and the cure.
+        /// The fault, its place and its cure.
         flaw: PatternFlaw,
     },
 }
 
-/// What a reader finds before it knows the file's name.
+/// Fault found by a reader that does not know the file's name.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum PatternFault {
     /// A sentence with its cure.

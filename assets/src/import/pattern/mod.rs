@@ -20,11 +20,11 @@ use error::PatternFault;
 use piece::Piece;
 use seam_file::SeamFile;
 
-/// What is read as a pattern.
+/// Limits of a pattern file.
 const PATTERN_FILE: FileKind =
     FileKind { name: "a pattern", max_bytes: MAX_PATTERN_BYTES, cure: "export one garment, without pictures" };
 
-/// What is read as the seams of a draft.
+/// Limits of a seam file of a draft.
 const SEAMS: FileKind = FileKind { name: "a seam file", max_bytes: MAX_PATTERN_BYTES, cure: "name each seam once" };
 
 /// Reads a pattern; `seams` names the seam file of a draft.
@@ -42,7 +42,7 @@ pub fn read(path: &Path, seams: Option<&Path>) -> Result<Pattern, PatternError> 
 /// Text of a file that may be a pattern; as [`decode`].
 ///
 /// # Errors
-/// Where it cannot be read, is too large or is no text.
+/// If it cannot be read, is too large or is no text.
 pub fn read_text(path: &Path, kind: &FileKind) -> Result<String, FileError> {
     let not_text = || FileError::NotText { path: path.display().to_string(), kind: *kind };
     decode(file::read(path, kind)?).ok_or_else(not_text)

@@ -66,7 +66,7 @@ struct UnfoldedEdge {
 /// A run of edges by the source's numbers: from a position to another, where 4.5 is the middle of edge 4.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EdgeRange {
-    /// Where sewing begins.
+    /// Start of the sewing.
     pub from: f64,
     /// Where it ends; lower than `from` where it goes against the drawing.
     pub to: f64,

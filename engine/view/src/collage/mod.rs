@@ -1,7 +1,7 @@
 //! A collage: photographs of garments laid on the picture of a body, from the front, the side and behind.
 //!
-//! Budget: not in the frame; half a second a side of 800 rows, nearly all of it the body's picture.
-//! Thread: the caller's, which lends every core for the body's picture.
+//! A side of 800 rows takes half a second, nearly all of it for the body's picture, which uses every core. No step of the loop
+//! makes a collage.
 //!
 //! After Ugur (2008, sections 6.1.2 and 6.2). In painting order: the body, the garments in wearing order, the body's arms once more, the
 //! garments' sleeves with what lies around them. A garment hangs at its level, is as large as two points of known distance say, and its

@@ -57,7 +57,7 @@ pub enum CollageError {
 /// A garment with its pictures, from the front, the side and behind.
 #[derive(Debug, Clone, Copy)]
 pub struct WornPhotographs<'a> {
-    /// What is said of it.
+    /// The garment's entry.
     pub garment: &'a CollageGarment,
     /// Its pictures.
     pub pictures: &'a [Option<CollagePictures>; 3],

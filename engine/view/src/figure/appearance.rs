@@ -1,4 +1,4 @@
-//! How a mannequin looks by choice: its tone, and its hair.
+//! Choices for the look of a mannequin: its skin tone and its hair.
 
 use std::str::FromStr;
 

@@ -40,7 +40,7 @@ pub struct Face {
 struct HeadPatch {
     /// Vertices of the body, in rising order.
     vertices: Vec<usize>,
-    /// Where they are drawn (mm, of the head's space).
+    /// Place where they are drawn (mm, in the head's space).
     drawn: Vec<Vec3>,
     /// How far the shape takes over, 0 to 1.
     share: Vec<f32>,

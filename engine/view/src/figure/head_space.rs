@@ -7,7 +7,7 @@ use toile_base::skeleton::Joint;
 /// Height of the head that shapes are drawn for, crown to chin (mm).
 pub const HEIGHT_MM: f32 = 222.3;
 
-/// Where a body's head is, and how large.
+/// Place and size of a body's head.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HeadSpace {
     /// On the height of the crown, above the joint (m).

@@ -1,8 +1,7 @@
 //! The figure that is drawn of a body: a shop mannequin's head in the place of the drawn one, or the shopper's own; the tone of the
 //! skin, the hair.
 //!
-//! Budget: 30 ms at load; 50 us a picture, nothing allocated.
-//! Thread: that which dresses, then the renderer's.
+//! The thread that dresses the shopper makes a figure (30 ms); the render thread then draws it (50 µs a picture, no allocation).
 //!
 //! It is a matter of pictures alone: measures, weights, colliders and cloth know the body as it is, so that a head costs no bit
 //! of the physics. Below the neck, on the crown and on bodies by others no vertex is moved.
@@ -51,7 +50,7 @@ pub struct Figure {
     pub look: GarmentLook,
     /// Linear RGB of the skin.
     pub colour: Vec3,
-    /// What brings the head along with a posed skin.
+    /// The placed head, which moves along with a posed skin.
     pub head: PlacedHead,
 }
 

@@ -70,7 +70,7 @@ impl OwnHead {
     fn overwrite(&mut self) {
         self.moved.fill(Vec3::ZERO);
         (self.skin, self.hair) = ([0; 3], [0; 3]);
-        // Looked at, so that the writing is not left out as one that nobody sees.
+        // Looked at, so that the compiler does not leave the writing out as unused.
         black_box((&self.moved, &self.skin, &self.hair));
     }
 }
@@ -90,7 +90,7 @@ impl OwnHead {
         Some(Self {
             sex,
             moved: pairs.map(|(own, drawn)| space.inwards(*own) - space.inwards(*drawn)).collect(),
-            picture: TileLevels::of_somebody(frame.cut(&picture)),
+            picture: TileLevels::of_person(frame.cut(&picture)),
             corners: head_corners(base).map(|t| t.map(|t| t.map(|uv| frame.point(uv)))).collect(),
             skin: picture.skin,
             hair: picture.hair,

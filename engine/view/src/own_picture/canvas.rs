@@ -18,7 +18,7 @@ const LANES: usize = 8;
 /// Numbers of a row's pixels, from the first that are looked at together.
 const LANE: [f32; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
-/// Which faces of a surface are seen.
+/// The visible faces of a surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Faces {
     /// Both: cloth.
@@ -83,7 +83,7 @@ impl Canvas {
             if area == 0.0 || (area < 0.0 && faces == Faces::Outer) {
                 continue;
             }
-            // A triangle through the lens is left out: nobody stands in it.
+            // A triangle through the lens is left out: no shopper stands in it.
             if corners.iter().all(|c| c.z > 0.0 && c.is_finite()) {
                 self.fill(corners, area, number);
             }

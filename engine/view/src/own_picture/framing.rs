@@ -1,4 +1,4 @@
-//! Which part of a camera's picture is shown, how large, and mirrored.
+//! The shown part of a camera's picture: its place, its scale, and mirrored.
 
 use glam::Vec2;
 
@@ -38,7 +38,7 @@ impl Framing {
         Self::covering(picture, size, 0.5 * picture[0] as f32 - 0.5, [0.0, 1.0])
     }
 
-    /// Where a pixel of the picture lies in the mirror; whole numbers are centres of pixels.
+    /// Place of a picture's pixel in the mirror; whole numbers are centres of pixels.
     pub fn to_mirror(&self, pixel: Vec2) -> Vec2 {
         let off = (pixel + 0.5 - self.looks_at) * self.scale;
         self.middle + Vec2::new(-off.x, off.y) - 0.5
@@ -68,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn whoever_stands_at_the_side_is_shown_as_far_as_the_picture_reaches() {
+    fn a_shopper_at_the_side_is_cut_off() {
         let size = Size::new(608, 1080);
         for column in [-900.0, 0.0, 639.0, f32::NAN, 1e9] {
             let framing = Framing::covering([640, 480], size, column, [0.0, 0.5]);

@@ -1,7 +1,7 @@
 //! Light as the picture shows it: how bright, of which colour, and from where.
 //!
-//! What a matte surface reflects is a function of its normal alone that the first spherical harmonics hold to 87 % and more (Basri and Jacobs
-//! 2003; Ramamoorthi and Hanrahan 2001): L(n) = e (1 + d . n). The shopper's body is fitted, so normals are known where it is seen; each
+//! A matte surface reflects light as a function of its normal alone; the first spherical harmonics hold 87 % and more of it (Basri and
+//! Jacobs 2003; Ramamoorthi and Hanrahan 2001): L(n) = e (1 + d . n). The shopper's body is fitted, so normals are known where it is seen; each
 //! part of it has a reflectance of its own, and I = A (1 + d . n) is fitted to each. Colour is that of the whole picture by shades of grey
 //! (Finlayson and Trezzi 2004, p = 6), and e makes the brightest twentieth of the picture as bright as a light wall that faces the light.
 
@@ -83,7 +83,7 @@ pub struct LightMeter {
     powers: Vec3,
     bright: [u32; STEPS],
     count: u32,
-    /// What is believed.
+    /// The accepted light.
     now: Option<LightEstimate>,
 }
 
@@ -132,7 +132,7 @@ impl LightMeter {
         now
     }
 
-    /// Somebody else may stand there.
+    /// Forgets the light, because another person may stand there.
     pub fn reset(&mut self) {
         self.now = None;
     }
@@ -165,7 +165,7 @@ impl LightMeter {
             if count < FEWEST {
                 continue;
             }
-            // A little of what a single direction would lack: nobody shows their back.
+            // A little of what a single direction would lack: shoppers do not show their backs.
             let ridge = Mat4::from_diagonal(Vec4::new(0.0, 0.005, 0.005, 0.005) * count);
             let [a, b, c, d] = part.square.0;
             let square = Mat4::from_cols(a, b, c, d) + ridge;

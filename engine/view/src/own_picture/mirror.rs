@@ -23,13 +23,13 @@ use super::shadow::ShadowMap;
 use super::support::{Plain, Support};
 use crate::image::{Size, linear};
 
-/// Farthest that somebody is from where the snapshot has them (m): who is farther off is another.
+/// Farthest distance of the shopper from their place in the snapshot (m); a person farther off is another.
 const FARTHEST_M: f32 = 0.8;
 
 /// Share of the garments' vertices that have to be within the picture.
 const LEAST_IN_PICTURE: f32 = 0.6;
 
-/// Pictures that bear somebody out, one after the other, before the garment is drawn.
+/// Successive pictures that must confirm the shopper before the garment is drawn.
 const STEADY: u32 = 2;
 
 /// Pixels between two that say what the light is like.
@@ -89,13 +89,13 @@ pub struct OwnPicture {
     decoded: Vec<f32>,
     /// Column of the picture at which the shopper stands, once they were seen.
     column: Option<f32>,
-    /// Pictures that bore somebody out, one after the other.
+    /// Successive pictures that have confirmed the shopper.
     steady: u32,
     reposed: Option<Repose>,
 }
 
 impl OwnPicture {
-    /// A mirror that has shown nobody.
+    /// A mirror that has shown no person.
     pub fn new() -> Self {
         Self { decoded: (0..=255_u8).map(|b| linear(f32::from(b) / 255.0)).collect(), ..Self::default() }
     }
@@ -105,12 +105,12 @@ impl OwnPicture {
         (Size::new(self.size.0, self.size.1), &self.rgb)
     }
 
-    /// Whether cloth is seen at each pixel of the last picture that has any, for whoever compares outlines `[pixels]`.
+    /// Whether cloth is seen at each pixel of the last picture that has any `[pixels]`; used to compare outlines.
     pub fn shown(&self) -> impl Iterator<Item = bool> {
         self.painter.shown()
     }
 
-    /// Somebody else may stand there: what is known of the light and of their place is forgotten, and their picture blackened.
+    /// Forgets the light and the shopper's place and blackens their picture, because another person may stand there.
     pub fn forget(&mut self) {
         self.rgb.fill(0);
         self.light.reset();
@@ -238,7 +238,7 @@ impl OwnPicture {
         }
     }
 
-    /// Whether the picture bears out that somebody stands there.
+    /// Checks that the picture confirms the shopper.
     fn bear_out(&mut self, input: &OwnPictureInput<'_>, camera: &ColourCamera, framing: &Framing) -> Result<(), Plain> {
         self.depth.take(input.depth, camera);
         let k = camera.intrinsics;

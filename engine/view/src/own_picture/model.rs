@@ -1,4 +1,4 @@
-//! What is drawn of somebody who is dressed: made once, where they are dressed.
+//! The model of a dressed shopper as it is drawn, made once when they are dressed.
 
 use std::sync::Arc;
 
@@ -62,7 +62,7 @@ pub struct OwnPictureModel {
 }
 
 impl OwnPictureModel {
-    /// Of a body and what it wears, inner garments first. Called where somebody is dressed: it allocates, and takes 30 ms.
+    /// Of a body and what it wears, inner garments first. Called while a shopper is being dressed: it allocates, and takes 30 ms.
     pub fn of(body: &Body, garments: &[Garment]) -> Arc<Self> {
         let faces = garments.iter().flat_map(|g| g.triangles.iter().map(|t| t.map(|v| g.start[v as usize])));
         let covered = CoveringCloth::new(faces).dressed(&body.mesh.positions, &body.normals);

@@ -1,4 +1,5 @@
-//! What of the shopper lies before the garment: by depth where it was measured, by the fitted body and the odds of a person elsewhere.
+//! Finds the parts of the shopper in front of the garment: by depth where it was measured, elsewhere by the fitted body and the
+//! odds of a person.
 
 use glam::{Affine3A, Vec2};
 use toile_base::frame::{DepthFrame, Intrinsics};
@@ -159,7 +160,7 @@ mod tests {
         let at = Vec2::new(31.5, 23.5);
         let arm = |z| Some(BodyThere { z, is_covered: false });
         let trunk = |z| Some(BodyThere { z, is_covered: true });
-        // By the body alone; where nobody is, no arm is.
+        // By the body alone; without a body there is no arm.
         assert!(is_before(at, 2.0, arm(1.95), &depth, None));
         assert!(!is_before(at, 2.0, arm(2.05), &depth, None) && !is_before(at, 2.0, None, &depth, None));
         let mask =

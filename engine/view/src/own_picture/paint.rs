@@ -32,7 +32,7 @@ const AROUND: u32 = 160;
 /// Measured so near to the floor, a pixel shows it (m).
 const FLOOR_M: f32 = 0.06;
 
-/// What a picture is painted from.
+/// Inputs of a painted picture.
 pub struct Layers<'a> {
     /// Body and garments.
     pub model: &'a OwnPictureModel,

@@ -10,10 +10,10 @@ use toile_base::frame::Joints;
 use toile_base::mesh::SkinWeights;
 use toile_base::skeleton::{BONES, JOINTS, Joint, TWISTS};
 
-/// A limb that was seen this much longer or shorter than the body's is nobody's: somebody else's joints, or none.
+/// Accepted ratio of a limb's seen length to the body's; beyond it the joints belong to another person, or to none.
 pub const LENGTHS: std::ops::RangeInclusive<f32> = 0.72..=1.35;
 
-/// Limbs are drawn longer or shorter by so much at most: what is beyond it is the sensor's error, and nobody is stretched for it.
+/// Ratios by which limbs are drawn longer or shorter at most: the rest is the sensor's error, and no body is stretched for it.
 const DRAWN_LENGTHS: std::ops::RangeInclusive<f32> = 0.9..=1.12;
 
 /// Shortest limb whose direction is one (m).
@@ -48,13 +48,13 @@ const TRUNK: [(Joint, f32); 6] = {
     [(Pelvis, 0.0), (Spine, 0.35), (Chest, 0.8), (Neck, 1.0), (LeftClavicle, 1.0), (RightClavicle, 1.0)]
 };
 
-/// Where each bone goes.
+/// Transform of each bone.
 pub type BoneMoves = [Affine3A; BONES];
 
-/// What the joints of a picture make of a snapshot's.
+/// Change from a snapshot's joints to those of a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Repose {
-    /// Where each bone goes.
+    /// Transform of each bone.
     pub moves: BoneMoves,
     /// Least and greatest length of a limb against the body's.
     pub lengths: [f32; 2],

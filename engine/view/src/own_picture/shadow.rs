@@ -18,7 +18,7 @@ const REACH_M: f32 = 1.1;
 const PLACES: [[f32; 2]; 8] =
     [[0.9, 0.0], [-0.8, 0.75], [0.1, -1.7], [1.3, 1.7], [-2.4, -0.4], [2.2, -1.5], [-0.7, 2.9], [-1.6, -2.7]];
 
-/// What shades.
+/// Depth map of the cloth that casts the shadow.
 #[derive(Debug, Clone, Default)]
 pub struct ShadowMap {
     canvas: Canvas,

@@ -1,4 +1,4 @@
-//! Whether the picture bears out that the fitted body stands there: if it does not, no garment is drawn on anybody.
+//! Checks the fitted body against the picture. If the picture does not confirm the body, no garment is drawn.
 
 use glam::Vec2;
 
@@ -13,11 +13,11 @@ pub enum Plain {
     NoPicture,
     /// How the camera sees is not known, so that nothing can be drawn in register.
     UnknownCamera,
-    /// Nobody is seen, or too little of them.
+    /// No person is seen, or too little of one.
     Nobody,
     /// They stand where the picture does not show enough of what they would wear.
     OutOfPicture,
-    /// Somebody is seen, and what was fitted is not borne out by the picture.
+    /// A person is seen, but the picture does not confirm the fitted body.
     Unsure,
     /// The scene that is dressed is another: it comes with the next picture.
     Changing,

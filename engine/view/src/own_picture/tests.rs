@@ -1,4 +1,4 @@
-//! What is drawn on whom, and on whom nothing is.
+//! Shoppers on whom the garment is drawn, and pictures that stay plain.
 
 use glam::{Affine3A, Mat3, Quat, Vec3};
 use toile_assets::scene::{SHOPPER, shopper};
@@ -17,7 +17,7 @@ use super::repose::Repose;
 use super::*;
 use crate::image::Size;
 
-/// Somebody who stands dressed, and what sees them.
+/// A dressed shopper, and the camera that sees them.
 struct DressedPicture {
     model: std::sync::Arc<OwnPictureModel>,
     snapshot: Snapshot,
@@ -53,7 +53,7 @@ impl DressedPicture {
         OwnPictureInput { picture, camera: Some(camera), joints, depth: None, mask: None, colours: &[] }
     }
 
-    /// The outcome of the third of equal pictures: by then somebody is steady.
+    /// The outcome of the third of equal pictures: by then the shopper is steady.
     fn draw(&self, mirror: &mut OwnPicture, input: &OwnPictureInput<'_>) -> Result<(), Plain> {
         let options = OwnPictureOptions::of(SIZE);
         (0..2).for_each(|_| _ = mirror.draw(&self.model, &self.snapshot, input, &options));
@@ -73,14 +73,14 @@ fn painted(mirror: &OwnPicture) -> usize {
 }
 
 #[test]
-fn somebody_who_stands_there_wears_the_garment_and_the_rest_is_the_picture() {
+fn the_shopper_wears_the_garment_in_the_picture() {
     let (scene, mut mirror) = (scene(), OwnPicture::new());
     assert_eq!(scene.draw(&mut mirror, &scene.input()), Ok(()));
     let cloth = mirror.shown().filter(|is| *is).count();
     assert!((2_000..20_000).contains(&cloth), "{cloth} pixels of cloth");
     let all = painted(&mirror);
     assert!(all >= cloth && all < cloth + 12_000, "{cloth} of cloth, {all} with its shadow");
-    // The corners are far from everybody.
+    // The corners are far from the shopper.
     let bytes = mirror.picture().1;
     assert_eq!(bytes[..3], [150, 140, 130]);
     // Red as it is where it is: the same in other colours is another.
@@ -93,7 +93,7 @@ fn somebody_who_stands_there_wears_the_garment_and_the_rest_is_the_picture() {
 }
 
 #[test]
-fn whoever_hides_a_hip_and_a_shoulder_from_the_side_wears_the_garment_all_the_same() {
+fn a_hidden_hip_and_shoulder_keep_the_garment() {
     let (scene, mut mirror) = (scene(), OwnPicture::new());
     assert_eq!(scene.draw(&mut mirror, &scene.input()), Ok(()));
     let whole: Vec<bool> = mirror.shown().collect();
@@ -106,7 +106,7 @@ fn whoever_hides_a_hip_and_a_shoulder_from_the_side_wears_the_garment_all_the_sa
 }
 
 #[test]
-fn nobody_somebody_else_and_what_could_be_nobody_stay_plain() {
+fn pictures_without_the_shopper_stay_plain() {
     let scene = scene();
     let absent = Joints::absent(1);
     let far = scene.with(|j| j.joints.iter_mut().for_each(|j| j.position.x += 1.5));
@@ -147,7 +147,7 @@ fn pictures_that_are_none_are_black_and_cameras_that_are_not_known_stay_plain() 
     let broken = ColourCamera { lens: Some(lens), ..scene.camera };
     let input = OwnPictureInput { camera: Some(&broken), ..scene.input() };
     assert_eq!(scene.draw(&mut mirror, &input), Err(Plain::UnknownCamera));
-    // Black, with somebody in it all the same: cloth in the dark is dark.
+    // Black, with a shopper in it all the same: cloth in the dark is dark.
     let black = ColourImage { rgb: vec![0; 320 * 240 * 3], ..scene.picture.clone() };
     let input = OwnPictureInput { picture: &black, ..scene.input() };
     assert_eq!(scene.draw(&mut mirror, &input), Ok(()));
@@ -171,7 +171,7 @@ fn a_camera_that_changes_its_resolution_shows_the_garment_where_it_was() {
 }
 
 #[test]
-fn a_wall_where_the_body_would_be_and_odds_of_nobody_deny_it() {
+fn a_wall_and_low_odds_deny_the_body() {
     let (scene, mut mirror) = (scene(), OwnPicture::new());
     let depth = |mm: u16| DepthFrame {
         time_ns: 1,
@@ -179,20 +179,20 @@ fn a_wall_where_the_body_would_be_and_odds_of_nobody_deny_it() {
         camera_to_world: scene.camera.camera_to_world,
         depth_mm: vec![mm; 320 * 240].into(),
     };
-    // A picture of somebody on a wall, or on the shirt of somebody who stands nearer and is not who was fitted.
+    // A picture of a person on a wall, or on the shirt of a person who stands nearer and is not the fitted one.
     for (mm, outcome) in [(3_900, Err(Plain::Unsure)), (0, Ok(()))] {
         let depth = depth(mm);
         let input = OwnPictureInput { depth: Some(&depth), ..scene.input() };
         assert_eq!(scene.draw(&mut mirror, &input), outcome, "{mm} mm");
     }
-    // Somebody else stands before them: all of the garment is behind that.
+    // Another person stands before them: all of the garment is behind that.
     let near = depth(1_200);
     let input = OwnPictureInput { depth: Some(&near), ..scene.input() };
     assert_eq!(scene.draw(&mut mirror, &input), Ok(()));
     assert_eq!(mirror.shown().filter(|is| *is).count(), 0);
     let from_picture = glam::Affine2::from_scale(glam::Vec2::splat(1.0 / 320.0));
-    let nobody = PersonMask { side: 2, odds: vec![0.05; 4], from_picture };
-    let input = OwnPictureInput { mask: Some(&nobody), ..scene.input() };
+    let no_person = PersonMask { side: 2, odds: vec![0.05; 4], from_picture };
+    let input = OwnPictureInput { mask: Some(&no_person), ..scene.input() };
     assert_eq!(scene.draw(&mut mirror, &input), Err(Plain::Unsure));
 }
 

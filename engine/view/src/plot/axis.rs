@@ -3,7 +3,7 @@
 /// One axis of a chart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Axis {
-    /// What it shows, with the unit.
+    /// Its label, with the unit.
     pub label: &'static str,
     /// Whether equal factors are equally long.
     pub log: bool,

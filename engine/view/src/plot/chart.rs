@@ -43,7 +43,7 @@ impl SeriesStyle {
 /// Points under one name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// What the legend says.
+    /// Text of the legend.
     pub name: String,
     /// Points in the units of the two axes.
     pub points: Vec<[f64; 2]>,
@@ -60,7 +60,7 @@ pub struct Chart {
     pub x: Axis,
     /// The axis that goes upwards.
     pub y: Axis,
-    /// What is shown, the last on top.
+    /// The series, the last on top.
     pub series: Vec<Series>,
     /// Values of x with a rule across the chart, each with its words.
     pub rules: Vec<(f64, &'static str)>,

@@ -24,7 +24,7 @@ pub const RULE: Colour = [190, 40, 40];
 pub const SERIES_COLOURS: [Colour; 6] =
     [[0, 114, 178], [213, 94, 0], [0, 158, 115], [204, 121, 167], [86, 180, 233], [230, 159, 0]];
 
-/// Which end of a text lies where it is put.
+/// The end of a text that lies at its position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Anchor {
     /// Left end of the text.
@@ -68,7 +68,7 @@ pub enum Mark {
         size: [f64; 2],
         /// Colour of the rectangle.
         colour: Colour,
-        /// What a page shows where somebody points at it.
+        /// Text that a page shows under the pointer.
         hint: Option<String>,
     },
     /// One line of text, centred on a height.
@@ -101,7 +101,7 @@ impl Mark {
 pub struct Drawing {
     /// Width and height (pixels).
     pub size: [u32; 2],
-    /// What is drawn, in this order.
+    /// The marks, drawn in this order.
     pub marks: Vec<Mark>,
 }
 

@@ -13,16 +13,16 @@ th, td { padding: 0.2em 0.7em; text-align: right; border-bottom: 1px solid #ddd;
 /// Width of the longest bar of a table (px).
 const BAR_PX: f64 = 120.0;
 
-/// What stands in a cell of a table.
+/// Content of a cell of a table.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Entry {
     /// A figure, to the right.
     Figure(String),
     /// Words, to the left.
     Words(String),
-    /// What is as it should be.
+    /// A good result.
     Good(String),
-    /// What is not as it should be.
+    /// A bad result.
     Bad(String),
     /// A bar, by its share of the longest (0..1).
     Bar(f64),

@@ -7,7 +7,7 @@ use super::{Anchor, Colour, Drawing, Mark};
 pub struct Cell {
     /// Colour of the cell.
     pub colour: Colour,
-    /// What stands in it.
+    /// Its text.
     pub words: String,
 }
 
@@ -16,7 +16,7 @@ pub struct Cell {
 pub struct Tiles {
     /// Title above the grid.
     pub title: String,
-    /// What columns and rows are.
+    /// Labels of columns and rows.
     pub labels: [String; 2],
     /// Value of each column `[columns]`.
     pub columns: Vec<String>,
@@ -24,7 +24,7 @@ pub struct Tiles {
     pub rows: Vec<String>,
     /// The cells `[rows][columns]`.
     pub cells: Vec<Vec<Cell>>,
-    /// What each colour means.
+    /// Meaning of each colour.
     pub legend: Vec<(Colour, String)>,
 }
 

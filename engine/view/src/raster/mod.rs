@@ -1,8 +1,7 @@
 //! The rasteriser: pictures by a GPU, or by a driver that draws on the processor, on a display or off it.
 //!
-//! Budget: a picture within a display's frame (16 ms) on hardware; 540 x 960 within 100 ms by the processor, at
-//! `RenderQuality::LOW`.
-//! Thread: render; it may wait for the display, which the physics thread never does.
+//! Runs on the render thread, which may wait for the display; the physics thread never does. A picture takes at most a
+//! display's frame (16 ms) on hardware, and 540 x 960 at `RenderQuality::LOW` at most 100 ms on the processor.
 
 mod display_state;
 mod interpolation;

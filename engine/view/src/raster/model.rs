@@ -1,4 +1,4 @@
-//! What the rasteriser draws: surfaces and their materials.
+//! Surfaces and their materials, as the rasteriser draws them.
 
 use glam::{Vec2, Vec3};
 

@@ -19,7 +19,7 @@ pub enum OffscreenError {
     /// No side, or one longer than the adapter draws.
     #[error("a picture of {size} cannot be drawn by this adapter; choose sides of 1 to {most} pixels")]
     Size {
-        /// What was asked for.
+        /// The requested size.
         size: Size,
         /// The longest side that the adapter draws (pixels).
         most: u32,
@@ -113,7 +113,7 @@ impl Offscreen {
         gpu.queue.submit([encoder.finish()]);
         let (sender, result_receiver) = mpsc::channel();
         self.buffer.map_async(wgpu::MapMode::Read, .., move |result| {
-            // Nobody listens any more where the wait below has failed.
+            // The receiver is gone if the wait below has failed.
             let _ = sender.send(result);
         });
         let lost = |e: &dyn std::fmt::Display| OffscreenError::Lost(e.to_string().replace('\n', " "));

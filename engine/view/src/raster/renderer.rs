@@ -181,7 +181,7 @@ impl Renderer {
         it.follow((&self.device, &self.layouts), surface, source, within)
     }
 
-    /// Which triangles of a surface are drawn: at most as many as it has.
+    /// Sets the drawn triangles of a surface: at most as many as it has.
     ///
     /// # Errors
     /// [`ModelError`]: no such surface, too many, or a corner that is no vertex.

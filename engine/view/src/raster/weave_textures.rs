@@ -12,7 +12,7 @@ pub struct WeaveTextures {
     maps: [TextureView; 3],
     /// How they are read: repeated without end, with levels of detail.
     pub sampler: Sampler,
-    /// What cloth without a print shows: nothing.
+    /// Texture of cloth without a print: empty.
     pub blank: TextureView,
 }
 

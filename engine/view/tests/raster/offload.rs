@@ -49,7 +49,7 @@ fn shoot(gpu: &Gpu, renderer: &mut Renderer) -> Image {
 fn colliders() -> Colliders {
     let (body, rig) = (wearer(), toile_assets::rig::fit(&wearer()));
     let spheres = rig.spheres.each_ref().map(|s| RestSphere::on_bone(&body.skeleton, s.bone, s.offset, s.radius));
-    Colliders::new(&spheres, &rig.capsules, true).expect("it is the house's")
+    Colliders::new(&spheres, &rig.capsules, true).expect("the rig is the project's own")
 }
 
 /// The shirt twice, so that the one that is drawn begins somewhere in the buffers.

@@ -34,7 +34,7 @@ pub(super) fn check_size(width: usize, height: usize) -> Result<(), String> {
     Ok(())
 }
 
-/// A picture that is emptied, so that whoever reads it sees that there is none.
+/// Empties a picture, so that a reader sees that there is none.
 pub(super) fn clear(to: &mut ColourImage) {
     (to.width, to.height) = (0, 0);
     to.rgb.clear();
@@ -49,7 +49,7 @@ fn sized(to: &mut ColourImage, width: usize, height: usize) -> &mut [u8] {
 /// A JPEG or a PNG; nothing is left in `to` where it is broken.
 ///
 /// # Errors
-/// What is wrong, without the file.
+/// The fault, without the file's name.
 pub(super) fn decode(bytes: &[u8], scratch: &mut Vec<u8>, to: &mut ColourImage) -> Result<(), String> {
     clear(to);
     let done = match bytes {

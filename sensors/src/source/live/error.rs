@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-/// What stops a camera.
+/// Error that stops a camera.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum CameraError {
     /// Its library is not installed.
@@ -20,7 +20,7 @@ pub enum CameraError {
     LibraryUnfit {
         /// The library's file.
         path: PathBuf,
-        /// What the loader says.
+        /// The loader's message.
         problem: String,
     },
     /// No camera is connected.
@@ -28,7 +28,7 @@ pub enum CameraError {
     NotConnected {
         /// The kind of camera.
         camera: &'static str,
-        /// What to look at.
+        /// The cure.
         cure: &'static str,
     },
     /// The library refuses.
@@ -36,11 +36,11 @@ pub enum CameraError {
     Refused {
         /// The kind of camera.
         camera: &'static str,
-        /// What was asked.
+        /// The call that failed.
         what: String,
-        /// What the library says.
+        /// The library's message.
         said_by_library: String,
-        /// What to do about it.
+        /// The cure.
         cure: &'static str,
     },
     /// A recording that was to be played as a camera, in the words of its reader.

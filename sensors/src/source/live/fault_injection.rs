@@ -13,7 +13,7 @@ use toile_base::clock::SECOND_NS;
 use toile_base::frame::{Intrinsics, Joints};
 
 toile_base::named! {
-    /// What may be wrong with a camera.
+    /// Faults of a camera.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
     pub enum CameraFault {
         /// Unplugged: every call fails, and it cannot be opened until the fault is over.
@@ -44,10 +44,10 @@ impl CameraFault {
     }
 }
 
-/// One fault, on the clock of whoever injects it (ns).
+/// One fault, on the injector's clock (ns).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TimedFault {
-    /// What is wrong.
+    /// The fault.
     pub fault: CameraFault,
     /// When it begins (ns).
     pub from_ns: u64,
@@ -63,14 +63,14 @@ pub struct FaultPlan {
 }
 
 impl FaultPlan {
-    /// What is wrong at a time (ns).
+    /// The fault at a time (ns).
     pub fn at(&self, now_ns: u64) -> Option<CameraFault> {
         let after = self.faults.partition_point(|f| f.from_ns <= now_ns);
         self.faults[..after].last().filter(|f| now_ns < f.until_ns).map(|f| f.fault)
     }
 }
 
-/// The time on the clock of whoever injects (ns).
+/// The time on the injector's clock (ns).
 pub type FaultClock = Arc<dyn Fn() -> u64 + Send + Sync>;
 
 /// A camera with faults.
@@ -78,7 +78,7 @@ pub struct FaultyCamera<C> {
     camera: C,
     plan: Arc<FaultPlan>,
     clock: FaultClock,
-    /// What a frozen camera shows.
+    /// The image of a frozen camera.
     last: Vec<u16>,
     count: u64,
 }
@@ -193,7 +193,7 @@ impl LiveCamera for SimulatedCamera {
         if now < taken_ns + DELAY_NS {
             return Ok(Arrival::Nothing);
         }
-        // What nobody read is overwritten, as in any camera.
+        // An unread frame is overwritten, as in any camera.
         self.next = self.next.max((now - DELAY_NS) * SIMULATED_HZ / SECOND_NS) + 1;
         frame.device_ns = DEVICE_BEGIN_NS + taken_ns;
         let noise = SplitMix64::new(taken_ns).next_u64();

@@ -1,5 +1,5 @@
-//! What a frame is worth: whole or half, new or the same again, of a clock that runs or one that jumped, of a room or of a hand
-//! on the lens; and how the camera stands, from frame to frame.
+//! Checks a frame: whole or half, new or repeated, of a running clock or of one that jumped, of a room or of a hand on the
+//! lens; and follows the state of the camera from frame to frame.
 
 use super::device_clock::DeviceClock;
 use super::live_camera::CameraFrame;
@@ -35,7 +35,7 @@ toile_base::named! {
     }
 }
 
-/// What one frame is worth.
+/// Verdict on one frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FrameVerdict {
     /// Good, and taken at this time on the loop's clock (ns).
@@ -48,7 +48,7 @@ pub enum FrameVerdict {
     Empty(u64),
 }
 
-/// What was counted of a camera's frames.
+/// Counts of a camera's frames.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct CameraCounts {
     /// Frames that came.
@@ -83,7 +83,7 @@ pub struct FrameCheck {
     repeated_ns: Option<u64>,
     covered: u32,
     state: CameraState,
-    /// What was counted.
+    /// The counts.
     pub counts: CameraCounts,
 }
 

@@ -1,4 +1,4 @@
-//! Depth images that go round: made at load, lent out, and filled again once nobody has them any more.
+//! A pool of depth images: made at load, lent out, and filled again after the last borrower has dropped them.
 
 use std::sync::Arc;
 
@@ -6,7 +6,7 @@ use glam::Affine3A;
 
 use toile_base::frame::{DepthFrame, Intrinsics};
 
-/// Depth images of a camera: on their way to the tracker, to the loop, and waiting in the queue of whoever observes the sensor.
+/// Depth images of a camera: on their way to the tracker, to the loop, and waiting in the queue of an observer of the sensor.
 pub const POOL_FRAMES: usize = 16;
 
 /// Name of this capacity in reports and warnings.
@@ -21,7 +21,7 @@ pub struct FramePool {
 }
 
 impl FramePool {
-    /// For images of a camera, with room for so many more than are on their way: those that somebody keeps. Called at load: it allocates,
+    /// A pool for images of a camera, with room for `kept` images beyond those on their way. Called at load: it allocates,
     /// and the system gives the memory of an image when it is filled for the first time.
     pub fn new(intrinsics: Intrinsics, kept: usize) -> Self {
         let empty = || {
@@ -31,7 +31,7 @@ impl FramePool {
         Self { frames: (0..POOL_FRAMES + kept).map(|_| empty()).collect(), lost: 0 }
     }
 
-    /// Fills an image that nobody has, and lends it; none, which is counted, where all are lent. The first that is free is taken, so
+    /// Fills a free image and lends it; none, which is counted, if all are lent. The first that is free is taken, so
     /// that memory is touched for as many as are in use.
     pub fn fill(&mut self, fill: impl FnOnce(&mut DepthFrame)) -> Option<Arc<DepthFrame>> {
         for frame in &mut self.frames {
@@ -46,7 +46,7 @@ impl FramePool {
 }
 
 impl FramePool {
-    /// Wipes all images that nobody has.
+    /// Wipes all free images.
     pub fn wipe(&mut self) {
         for free in self.frames.iter_mut().filter_map(Arc::get_mut) {
             // One that was never filled is left alone: the system has given no memory for it.
@@ -62,7 +62,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_image_comes_back_once_nobody_has_it_and_what_finds_no_room_is_counted() {
+    fn dropped_images_come_back_and_lost_ones_are_counted() {
         let mut pool = FramePool::new(Intrinsics { width: 2, height: 1, fx: 1.0, fy: 1.0, cx: 0.0, cy: 0.0 }, 0);
         let mut lent: Vec<_> = (0..POOL_FRAMES as u64).map(|i| pool.fill(|f| f.time_ns = i).unwrap()).collect();
         assert!(pool.fill(|_| ()).is_none() && pool.lost == 1);
@@ -72,7 +72,7 @@ mod tests {
     }
 
     #[test]
-    fn what_nobody_has_is_wiped_and_what_is_lent_is_not() {
+    fn free_images_are_wiped_and_lent_ones_are_not() {
         let mut pool = FramePool::new(Intrinsics { width: 1, height: 1, fx: 1.0, fy: 1.0, cx: 0.0, cy: 0.0 }, 1);
         let kept = [1, 2].map(|i| {
             pool.fill(|frame| {

@@ -71,7 +71,7 @@ struct DeviceConfiguration {
 }
 
 functions! {
-    /// What is called of libk4a.
+    /// The called functions of libk4a.
     K4aApi {
         fn k4a_device_get_installed_count() -> u32;
         fn k4a_device_open(u32, *mut K4aHandle) -> c_int;
@@ -112,7 +112,7 @@ struct RecordConfiguration {
 }
 
 functions! {
-    /// What is called of libk4arecord.
+    /// The called functions of libk4arecord.
     PlaybackApi {
         fn k4a_playback_open(*const c_char, *mut K4aHandle) -> c_int;
         fn k4a_playback_get_raw_calibration(K4aHandle, *mut u8, *mut usize) -> c_int;
@@ -123,7 +123,7 @@ functions! {
     }
 }
 
-/// Where captures come from.
+/// Source of captures.
 enum CaptureSource {
     Device(K4aHandle),
     /// A recording, and the device's and our time of its first capture.

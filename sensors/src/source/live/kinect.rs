@@ -70,7 +70,7 @@ struct TimeValue {
 }
 
 functions! {
-    /// What is called of libfreenect.
+    /// The called functions of libfreenect.
     Freenect {
         fn freenect_init(*mut Context, *mut c_void) -> c_int;
         fn freenect_shutdown(Context) -> c_int;
@@ -94,7 +94,7 @@ functions! {
     }
 }
 
-/// What the library's callbacks fill.
+/// The buffers that the library's callbacks fill.
 #[derive(Debug, Default)]
 struct Inbox {
     depth: Vec<u16>,
@@ -261,7 +261,7 @@ unsafe extern "C" fn take_depth(_: Device, image: *mut c_void, ticks: u32) {
     }
     // SAFETY: the mode that was set promises so many 16-bit words, which stay until this returns.
     let image = unsafe { std::slice::from_raw_parts(image.cast::<u16>(), WIDTH * HEIGHT) };
-    // Nobody else has it: the library is called without holding it. Were it so, a frame would be lost.
+    // No other owner has it: the library is called without holding it. Were it so, a frame would be lost.
     INBOX.with(|inbox| {
         let Ok(mut inbox) = inbox.try_borrow_mut() else { return };
         inbox.depth.clear();

@@ -1,7 +1,7 @@
 //! Libraries of cameras, loaded at run time where they are installed: nothing is needed to build, and a machine without a
 //! camera needs none of them.
 //!
-//! What is loaded stays loaded until the program ends: these libraries have threads of their own, whose code must not go.
+//! A library stays loaded until the program ends, because the code of its own threads must not be unloaded.
 
 #![allow(unsafe_code, reason = "libraries are loaded and their functions looked up")]
 
@@ -149,14 +149,14 @@ fn open(path: &Path) -> Result<libloading::Library, String> {
             std::mem::forget(python);
         }
     }
-    // SAFETY: a camera's library, which somebody installed to be run; its initialisers are as trusted as its functions.
+    // SAFETY: a camera's library, which was installed to be run; its initialisers are as trusted as its functions.
     let opened = unsafe { Opened::open(Some(path), RTLD_LAZY) };
     opened.map(libloading::Library::from).map_err(|e| e.to_string())
 }
 
 #[cfg(not(unix))]
 fn open(path: &Path) -> Result<libloading::Library, String> {
-    // SAFETY: a camera's library, which somebody installed to be run; its initialisers are as trusted as its functions.
+    // SAFETY: a camera's library, which was installed to be run; its initialisers are as trusted as its functions.
     unsafe { libloading::Library::new(path) }.map_err(|e| e.to_string())
 }
 

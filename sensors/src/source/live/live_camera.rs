@@ -1,4 +1,4 @@
-//! What a live camera is, whichever library it is seen through.
+//! The interface of a live camera, the same for every library.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -41,7 +41,7 @@ impl CameraOptions {
     }
 }
 
-/// What is known of a camera that is open.
+/// Properties of an open camera.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CameraInfo {
     /// Its name and number, as the library has them.
@@ -52,11 +52,11 @@ pub struct CameraInfo {
     pub rate_hz: f32,
     /// Its pose in our world (m), where that is known already: then no floor is looked for.
     pub placed: Option<Affine3A>,
-    /// Where its colour camera is.
+    /// Place of its colour camera.
     pub(in crate::source) colour: ColourPlace,
 }
 
-/// Where a colour camera is, against the depth camera of the same device.
+/// Pose of a colour camera, relative to the depth camera of the same device.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(in crate::source) enum ColourPlace {
     /// That is not known, or there is none.
@@ -84,7 +84,7 @@ impl CameraInfo {
 
     /// Its colour camera, where the depth camera stands there in our world (m); none where it is not known how it sees.
     pub fn colour_camera(&self, depth_to_world: Affine3A) -> Option<ColourCamera> {
-        // Turned images would need a turned camera: nobody has tried one.
+        // Turned images would need a turned camera, which is untried.
         if self.camera.quarter_turns != 0 {
             return None;
         }
@@ -98,8 +98,8 @@ impl CameraInfo {
     }
 }
 
-/// Whether a colour image was taken in the moment of a depth image, both by the device's clock (ns): at most half a frame apart. Whoever
-/// walks at 1 m/s is 17 mm away by then.
+/// Whether a colour image was taken in the moment of a depth image, both by the device's clock (ns): at most half a frame apart. A person
+/// who walks at 1 m/s is 17 mm away by then.
 pub(super) fn is_of_moment(depth_ns: u64, colour_ns: u64, rate_hz: f32) -> bool {
     depth_ns.abs_diff(colour_ns) as f32 <= 0.5e9 / rate_hz.max(1.0) + SLACK_NS
 }
@@ -124,7 +124,7 @@ pub struct CameraFrame {
     pub depth: Vec<u16>,
     /// The colour image of about that time, where it is wanted and new.
     pub colour: ColourImage,
-    /// Joints of everybody that the camera itself tracks; empty where it tracks nobody.
+    /// Joints of all persons that the camera itself tracks; empty if it tracks none.
     pub people: Vec<Joints>,
 }
 
@@ -146,7 +146,7 @@ impl CameraFrame {
     }
 }
 
-/// What came of waiting for a frame.
+/// Result of waiting for a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Arrival {
     /// A frame.
@@ -159,13 +159,13 @@ pub enum Arrival {
 
 /// A camera that is open. It is closed when dropped.
 pub trait LiveCamera: Send {
-    /// What is known of it.
+    /// Its properties.
     fn info(&self) -> &CameraInfo;
 
     /// Waits for its next frame for about so long, and fills it in.
     ///
     /// # Errors
-    /// Where the camera is gone and has to be opened again.
+    /// If the camera is gone and has to be opened again.
     fn read(&mut self, frame: &mut CameraFrame, patience: Duration) -> Result<Arrival, CameraError>;
 }
 

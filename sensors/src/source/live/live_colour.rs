@@ -14,7 +14,7 @@ const PLACES: [usize; 2] = [64, 48];
 /// Brightness below which a place is black: a covered lens has nothing above it (of 255).
 const BLACK: u16 = 24;
 
-/// What came of a look.
+/// Result of a look at the camera.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ColourUpdate {
     /// How the camera stands.
@@ -23,7 +23,7 @@ pub struct ColourUpdate {
     pub taken_ns: Option<u64>,
     /// When a picture arrived, good or not (ns).
     pub arrived_ns: Option<u64>,
-    /// Whether there is no camera to wait for, so that whoever looks should wait.
+    /// Whether there is no camera to wait for, so that the caller should wait.
     pub is_closed: bool,
 }
 
@@ -34,7 +34,7 @@ pub struct LiveColour {
     info: CameraInfo,
     check: FrameCheck,
     raw: CameraFrame,
-    /// What is compared, in the place of depth.
+    /// The compared picture, in the place of depth.
     sampled: CameraFrame,
     /// When it was last tried to open, and when something last came (ns).
     tried_ns: u64,
@@ -61,12 +61,12 @@ impl LiveColour {
         })
     }
 
-    /// What is known of the camera.
+    /// Properties of the camera.
     pub fn info(&self) -> &CameraInfo {
         &self.info
     }
 
-    /// What was counted of its frames.
+    /// Counts of its frames.
     pub fn counts(&self) -> CameraCounts {
         self.check.counts
     }
@@ -76,7 +76,7 @@ impl LiveColour {
         &self.raw.colour
     }
 
-    /// Blackens the last picture: whoever was seen in it has left.
+    /// Blackens the last picture after the person in it has left.
     pub fn wipe(&mut self) {
         self.raw.colour.rgb.fill(0);
         self.sampled.depth.fill(0);

@@ -28,7 +28,7 @@ pub(super) const SILENT_NS: u64 = 2_000_000_000;
 /// Opens the camera, the first time and whenever it was gone.
 pub type CameraOpener = Box<dyn FnMut() -> Result<Box<dyn LiveCamera>, CameraError> + Send>;
 
-/// What came of a look.
+/// Result of a look at the camera.
 #[derive(Debug, Clone)]
 pub struct LiveUpdate {
     /// How the camera stands.
@@ -37,7 +37,7 @@ pub struct LiveUpdate {
     pub frame: Option<Arc<DepthFrame>>,
     /// When a frame arrived, good or not (ns).
     pub arrived_ns: Option<u64>,
-    /// Whether there is no camera to wait for, so that whoever looks should wait.
+    /// Whether there is no camera to wait for, so that the caller should wait.
     pub is_closed: bool,
 }
 
@@ -60,7 +60,7 @@ pub struct LiveDepth {
 }
 
 impl LiveDepth {
-    /// Opens the camera for the first time; so many of its images are kept by somebody at once. Called at load: it allocates.
+    /// Opens the camera for the first time; so many of its images may be kept elsewhere at once. Called at load: it allocates.
     ///
     /// # Errors
     /// Those of the opener; a camera whose lens cannot be straightened.
@@ -86,7 +86,7 @@ impl LiveDepth {
         })
     }
 
-    /// What is known of the camera.
+    /// Properties of the camera.
     pub fn info(&self) -> &CameraInfo {
         &self.info
     }
@@ -96,12 +96,12 @@ impl LiveDepth {
         self.converter.kept()
     }
 
-    /// What was assumed or repaired, one sentence each.
+    /// Assumptions and repairs, one sentence each.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
 
-    /// What was counted of its frames.
+    /// Counts of its frames.
     pub fn counts(&self) -> CameraCounts {
         self.check.counts
     }
@@ -121,12 +121,12 @@ impl LiveDepth {
         self.info.colour_camera(self.pose?)
     }
 
-    /// Joints of everybody whom the camera itself tracked in the last frame, in our world.
+    /// Joints of all persons that the camera itself tracked in the last frame, in our world.
     pub fn people(&self) -> &[Joints] {
         &self.people
     }
 
-    /// Wipes all images that nobody has: whoever was seen in them has left.
+    /// Wipes all free images after the person in them has left.
     pub fn wipe(&mut self) {
         self.raw.colour.rgb.fill(0);
         self.pool.wipe();
@@ -201,7 +201,7 @@ impl LiveDepth {
         let PlacedCamera { pose, note } = self.placement.push(&frame)?;
         (self.pose, self.placement) = (Some(pose), CameraPlacement::default());
         self.notes.push(note);
-        // The pool lends it to nobody else while it is here: this copies one image, once.
+        // The pool does not lend it again while it is here: this copies one image, once.
         Arc::make_mut(&mut frame).camera_to_world = pose;
         Some(frame)
     }

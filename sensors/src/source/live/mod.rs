@@ -1,7 +1,7 @@
 //! Live cameras: depth, and colour and joints where a camera gives them, frame by frame as they come.
 //!
-//! Budget: 2 ms a 640x480 frame beside what the camera's library takes; nothing is allocated once the first frame was seen.
-//! Thread: the camera thread, which may wait for the camera; nothing else does.
+//! Runs on the camera thread, the only thread that may wait for the camera: at most 2 ms a 640x480 frame beside the camera's
+//! library. After the first frame it allocates nothing.
 //!
 //! | camera | library | seen from here by |
 //! |---|---|---|

@@ -1,4 +1,4 @@
-//! Which cameras there are, and how each is opened.
+//! The kinds of cameras, and the way to open each.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -72,7 +72,7 @@ pub struct CameraName {
 impl FromStr for CameraName {
     type Err = CameraError;
 
-    /// `kinect`, or with what follows a colon `kinect:A00365`, `k4a:visit.mkv`.
+    /// `kinect`, or with what follows a colon `kinect:A00365`, `k4a:session.mkv`.
     fn from_str(text: &str) -> Result<Self, CameraError> {
         let (name, which) = text.split_once(':').map_or((text, None), |(name, which)| (name, Some(which)));
         let unknown = || {
@@ -126,9 +126,9 @@ mod tests {
 
     #[test]
     fn a_camera_is_named_by_its_kind_and_which_of_it() {
-        let name: CameraName = "k4a:visit.mkv".parse().unwrap();
-        assert_eq!((name.kind, name.which.as_deref()), (CameraKind::K4a, Some("visit.mkv")));
-        assert_eq!(name.to_string(), "k4a:visit.mkv");
+        let name: CameraName = "k4a:session.mkv".parse().unwrap();
+        assert_eq!((name.kind, name.which.as_deref()), (CameraKind::K4a, Some("session.mkv")));
+        assert_eq!(name.to_string(), "k4a:session.mkv");
         assert_eq!("kinect".parse::<CameraName>().unwrap().to_string(), "kinect");
         assert_eq!("webcam:/dev/video2".parse::<CameraName>().unwrap().to_string(), "webcam:/dev/video2");
         let error = "cctv".parse::<CameraName>().unwrap_err().to_string();

@@ -81,7 +81,7 @@ struct ObExtrinsic {
 }
 
 functions! {
-    /// What is called of OrbbecSDK.
+    /// The called functions of OrbbecSDK.
     OrbbecApi {
         fn ob_set_logger_severity(c_int, *mut ObError);
         fn ob_create_context(*mut ObError) -> ObHandle;
@@ -133,7 +133,7 @@ pub(super) struct Orbbec {
     first: Option<ObFrame>,
 }
 
-/// What a pipeline is made of, undone when dropped.
+/// The parts of a pipeline, undone when dropped.
 struct Parts {
     api: OrbbecApi,
     context: ObHandle,
@@ -146,7 +146,7 @@ struct Parts {
 /// Frames of one moment, or one frame, given back when dropped.
 struct ObFrame(ObHandle, OrbbecApi);
 
-/// What a frame's stream is, given back when dropped.
+/// The stream of a frame, given back when dropped.
 struct ObProfile(ObHandle, OrbbecApi);
 
 // SAFETY: the library may be called from any thread; `&mut self` lets one at a time.

@@ -56,7 +56,7 @@ type RsHandle = *mut c_void;
 type RsError = *mut c_void;
 
 functions! {
-    /// What is called of librealsense.
+    /// The called functions of librealsense.
     RealSenseApi {
         fn rs2_get_api_version(*mut RsError) -> c_int;
         fn rs2_create_context(c_int, *mut RsError) -> RsHandle;
@@ -123,7 +123,7 @@ struct Frames(RsHandle, RealSenseApi);
 // SAFETY: the library may be called from any thread; `&mut self` lets one at a time.
 unsafe impl Send for RealSense {}
 
-/// What one of a moment's frames is.
+/// Kind of one stream.
 struct StreamKind {
     stream: c_int,
     format: c_int,
@@ -170,7 +170,7 @@ impl RealSense {
         let mut pipeline = Pipeline::new(api)?;
         pipeline.configure(which, recording, options.colour)?;
         if recording.is_none() && pipeline.devices()? == 0 {
-            // Asked first: a pipeline waits for a quarter of a minute until somebody plugs one in.
+            // Asked first: a pipeline waits for a quarter of a minute until a camera is plugged in.
             let cure = "plug it into a USB 3 port, and see that librealsense's rules for udev let your user use it";
             return Err(CameraError::NotConnected { camera: NAME, cure });
         }

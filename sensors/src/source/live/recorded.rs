@@ -1,5 +1,5 @@
 //! A recording that is played in time as if it were a camera, again and again: for a demonstration, and for tests. It holds no picture of
-//! anybody: where colour is asked for, its depth is shown as one, shaded as if a lamp stood beside the camera.
+//! a person: where colour is asked for, its depth is shown as one, shaded as if a lamp stood beside the camera.
 
 use std::path::Path;
 use std::thread;

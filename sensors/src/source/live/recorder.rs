@@ -51,7 +51,7 @@ impl CameraRecorder {
         self.taken
     }
 
-    /// What was counted.
+    /// The counts.
     pub fn counts(&self) -> CameraCounts {
         self.check.counts
     }
@@ -59,7 +59,7 @@ impl CameraRecorder {
     /// All of them as a session of this name.
     ///
     /// # Errors
-    /// Where nothing was seen.
+    /// If nothing was seen.
     pub fn finish(self, name: &str) -> Result<Session, CameraError> {
         let told = |fault: crate::error::ReaderFault| CameraError::Recording(fault.at(&self.device).to_string());
         let mut session = self.sequence.finish().map_err(told)?;

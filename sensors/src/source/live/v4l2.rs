@@ -25,7 +25,7 @@ const CAPTURE: u32 = 1;
 const MMAP: u32 = 1;
 /// Whole pictures, no half ones.
 const PROGRESSIVE: u32 = 1;
-/// What a camera can: pictures, streams, its own list of what it can.
+/// Abilities of a camera: pictures, streams, its own list of abilities.
 const CAN_CAPTURE: u32 = 0x1;
 const CAN_STREAM: u32 = 0x0400_0000;
 const HAS_OWN_LIST: u32 = 0x8000_0000;
@@ -136,7 +136,7 @@ struct Mapped {
     length: usize,
 }
 
-// SAFETY: the memory belongs to whoever has this, whichever thread that is.
+// SAFETY: the memory belongs to the owner of this value, on any thread.
 unsafe impl Send for Mapped {}
 
 impl Drop for Mapped {

@@ -16,7 +16,7 @@ use crate::limits::{MAX_FILE_BYTES, MAX_FOLDER_FILES};
 /// Time between two pictures (ns): 30 Hz.
 const PERIOD_NS: u64 = 33_333_333;
 
-/// What a file or a folder holds.
+/// Content of a file or a folder.
 enum Pictures {
     /// JPEG and PNG files, each read when it is due, so that a picture that is broken is one frame and no more.
     Files(Vec<PathBuf>),

@@ -21,7 +21,7 @@ const CURE: &str = "write it again with OpenPose and --write_json";
 /// One keypoint; a score of 0 says that it is not seen.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Keypoint {
-    /// Where it is in the image (px).
+    /// Position in the image (px).
     pub pixel: DVec2,
     /// Confidence of the keypoint, 0 to 1.
     pub score: f32,

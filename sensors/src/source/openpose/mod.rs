@@ -47,14 +47,14 @@ pub struct KeypointRecording {
     pub rate: f64,
     /// Whether the keypoints are those of BODY_25B; else of BODY_25.
     pub is_25b: bool,
-    /// The frames; none where two cameras show nobody.
+    /// The frames; none where fewer than two cameras show the person.
     pub frames: Vec<Option<KeypointFrame>>,
 }
 
 /// The shopper in one frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KeypointFrame {
-    /// What each camera saw of them; none where it saw nobody who fits.
+    /// Their keypoints in each camera; none if the camera saw no matching person.
     pub views: Vec<Option<PersonKeypoints>>,
     /// The points that the views meet in.
     pub points: [Point; POINTS],
@@ -141,7 +141,7 @@ fn camera_folders(folder: &Path) -> Result<Vec<PathBuf>, SourceError> {
     Ok(found)
 }
 
-/// What a folder holds, by name.
+/// Files of a folder, sorted by name.
 fn list(folder: &Path) -> Result<Vec<PathBuf>, SourceError> {
     let refused = |error| SourceError::Io { path: shown(folder), action: "read", error };
     let mut all = Vec::new();
@@ -180,8 +180,10 @@ fn session(rig: &Rig, views: &[ViewFrames]) -> Result<Session, ReaderFault> {
         notes.push(format!("up to {most} people are in view: the one whom most cameras see is followed"));
     }
     if joints.len() < frames {
-        notes
-            .push(format!("{} of {frames} frames show nobody to two cameras and were left out", frames - joints.len()));
+        notes.push(format!(
+            "{} of {frames} frames show no person to two cameras and were left out",
+            frames - joints.len()
+        ));
     }
     let mut joints: Vec<Joints> = tidy::tidy(joints, &mut notes)?;
     upright::to_world(&mut joints, &mut notes)?;

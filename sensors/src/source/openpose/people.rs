@@ -1,4 +1,4 @@
-//! Which of the people that each camera sees are the same one, and which is the shopper.
+//! Matches the people seen by several cameras, and chooses the shopper.
 //!
 //! Any two people of two cameras are a guess; its points are triangulated, and every other camera adds the person whose
 //! keypoints lie nearest to where those points are seen, if near enough. The guess with the most keypoints that agree is
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_and_one_view_are_nobody() {
+    fn no_view_and_one_view_give_no_person() {
         let rig = read(TWO.as_bytes()).unwrap();
         let one = view(&rig, 0, &[body(DVec3::ZERO)]);
         assert!(shopper(&rig, &[&one, &Vec::new()], None).is_none());

@@ -22,7 +22,7 @@ pub fn to_world(frames: &mut [Joints], notes: &mut Vec<String>) -> Result<(), Re
     let (name, up) = axes.into_iter().rev().max_by(|a, b| a.1.dot(sum).total_cmp(&b.1.dot(sum))).unwrap_or(axes[0]);
     if sum == Vec3::ZERO {
         let cure = "record again with the shopper in full view of two cameras";
-        return Err(ReaderFault::new(FilePlace::Whole, "no frame shows head and feet of anybody to two cameras", cure));
+        return Err(ReaderFault::new(FilePlace::Whole, "no frame shows a person's head and feet to two cameras", cure));
     }
     if up != Vec3::Y {
         notes.push(format!("the cameras' up axis is {name} (found from the shopper): turned to y"));

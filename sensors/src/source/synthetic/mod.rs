@@ -1,8 +1,7 @@
 //! A synthetic sensor: the depth of a posed mesh, with the noise of a real camera, and joints with the noise of a
 //! tracker.
 //!
-//! Budget: 10 ms a 640x480 frame, off line.
-//! Thread: the loading thread, or the sensor thread of a test.
+//! Runs offline, on the loading thread or on the sensor thread of a test: at most 10 ms a 640x480 frame.
 
 mod joints;
 mod noise;

@@ -21,12 +21,12 @@ const WALL: f32 = 2.6;
 /// A surface: positions (world, m) and triangles.
 pub type RoomSurface<'a> = (&'a [Vec3], &'a [[u32; 3]]);
 
-/// What a camera sees without noise.
+/// A camera's view without noise.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RoomView {
     /// Depth along the camera's z (m), infinite where nothing is seen `[width * height]`.
     pub z: Vec<f32>,
-    /// What is seen there `[width * height]`.
+    /// Label of each pixel `[width * height]`.
     pub label: Vec<u8>,
 }
 

@@ -21,7 +21,7 @@ const LONGEST_TIME: f64 = 1e6;
 /// Least time between two frames (ns).
 const SHORTEST_STEP_NS: u64 = 100_000;
 
-/// What was dropped, and why.
+/// Counts of dropped messages, by reason.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Drops {
     /// Datagrams longer than [`MAX_PACKET_BYTES`].
@@ -45,7 +45,7 @@ impl Drops {
     }
 }
 
-/// What is known of one sender; of a fixed size.
+/// State of one sender, of a fixed size.
 #[derive(Debug, Clone)]
 pub struct Decoder {
     map: BoneMap,
@@ -85,7 +85,7 @@ impl Decoder {
         }
     }
 
-    /// What was dropped so far.
+    /// Counts of dropped messages so far.
     pub fn drops(&self) -> Drops {
         self.drops
     }

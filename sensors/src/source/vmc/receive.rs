@@ -29,7 +29,7 @@ impl VmcReceiver {
     /// Listens at an address, `("0.0.0.0", PORT)` by the protocol's custom.
     ///
     /// # Errors
-    /// Where the address cannot be bound.
+    /// If the address cannot be bound.
     pub fn bind(address: impl ToSocketAddrs) -> io::Result<Self> {
         let socket = UdpSocket::bind(address)?;
         socket.set_nonblocking(true)?;
@@ -37,10 +37,10 @@ impl VmcReceiver {
         Ok(Self { socket, decoder: Decoder::new(), sender: None, buffer })
     }
 
-    /// Where it listens.
+    /// Its address.
     ///
     /// # Errors
-    /// What the system says.
+    /// The system's message.
     pub fn address(&self) -> io::Result<SocketAddr> {
         self.socket.local_addr()
     }
@@ -50,7 +50,7 @@ impl VmcReceiver {
     /// waits behind so many is old.
     ///
     /// # Errors
-    /// Where the socket is broken; a receiver that was refused or interrupted is not.
+    /// If the socket is broken; a refused or interrupted receive is no error.
     pub fn poll(&mut self, now_ns: u64) -> io::Result<Option<Joints>> {
         for read in 0..2 * MAX_PACKETS_A_POLL {
             let (bytes, from) = match self.socket.recv_from(&mut self.buffer[..]) {
@@ -78,7 +78,7 @@ impl VmcReceiver {
         Ok(self.decoder.take())
     }
 
-    /// What was dropped so far.
+    /// Counts of dropped messages so far.
     pub fn drops(&self) -> Drops {
         self.decoder.drops()
     }

@@ -49,7 +49,7 @@ pub struct Block {
     pub points: Vec<(u32, DVec2)>,
 }
 
-/// What is read of a file.
+/// Parts of a file that are read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Blocks {
     /// Metres of its unit: of a millimetre where it does not say.
