@@ -11,8 +11,8 @@ use toile_base::skeleton::BONES;
 use toile_engine::lanes::Width;
 use toile_engine::skin::{Blend, SkinningJob};
 use toile_engine::workers::WorkerPool;
+use toile_fitting::scene::reference_time;
 use toile_fitting::scene::surface::SkinnedSurface;
-use toile_fitting::scene::yardstick;
 use toile_fitting::timing;
 use toile_gpu::graphics::{DeviceSkins, Graphics};
 
@@ -20,7 +20,7 @@ use super::{SkinningError, SkinningOptions, SkinningSubject, oracle, skinned, su
 use crate::backend::Adapter;
 
 /// Vertices of the rows with one surface: those of the reference loop, then up to the number of a crowd.
-const SIZES: [usize; 4] = [yardstick::VERTICES, 65_536, 262_144, 1_048_576];
+const SIZES: [usize; 4] = [reference_time::VERTICES, 65_536, 262_144, 1_048_576];
 
 /// Numbers of bodies in the rows with the shopper's own.
 const BODIES: [usize; 4] = [1, 4, 16, 64];

@@ -18,8 +18,8 @@ use toile_engine::lanes::Width;
 use toile_engine::skin::{Blend, Padding, Posed, SkinningJob};
 use toile_engine::workers::WorkerPool;
 
+use toile_fitting::scene::reference_time::{self, ReferenceTimer};
 use toile_fitting::scene::surface::SkinnedSurface;
-use toile_fitting::scene::yardstick::{self, Yardstick};
 use toile_fitting::timing;
 
 pub use error::SkinningError;
@@ -57,7 +57,7 @@ pub struct SkinningOptions {
 
 impl Default for SkinningOptions {
     fn default() -> Self {
-        Self { subject: SkinningSubject::Four, verts: Some(yardstick::VERTICES), threads: 1, lanes: None }
+        Self { subject: SkinningSubject::Four, verts: Some(reference_time::VERTICES), threads: 1, lanes: None }
     }
 }
 
@@ -89,7 +89,7 @@ pub struct Skinning {
     pub threads: usize,
     /// Number of lanes.
     pub lanes: usize,
-    /// Reference time, of [`yardstick::VERTICES`] vertices whatever `verts` is (us, median).
+    /// Reference time, of [`reference_time::VERTICES`] vertices whatever `verts` is (us, median).
     pub yardstick_us: f64,
     /// Blocks, lanes and influences of the job.
     pub padding: Padding,
@@ -112,11 +112,11 @@ pub fn measure(options: &SkinningOptions) -> Result<Skinning, SkinningError> {
     let mut job = SkinningJob::new(&surface.positions, &surface.normals, &surface.weights)?;
     job.width = width;
     let mut pool = WorkerPool::new(options.threads)?;
-    let yardstick = Yardstick::new()?;
+    let reference = ReferenceTimer::new()?;
     let mut rounds: [[Vec<f64>; 2]; 2] = Default::default();
     let mut references = Vec::new();
     for _ in 0..ROUNDS {
-        references.push(yardstick.read_us());
+        references.push(reference.read_us());
         for (blend, [alone, whole]) in Blend::ALL.into_iter().zip(&mut rounds) {
             let mut run = TimedSkinning { job: &job, surface: &surface, pool: &mut pool, blend };
             alone.push(run.us());
@@ -124,7 +124,7 @@ pub fn measure(options: &SkinningOptions) -> Result<Skinning, SkinningError> {
         }
     }
     let verts = job.vertices();
-    let of_reference = verts as f64 / yardstick::VERTICES as f64;
+    let of_reference = verts as f64 / reference_time::VERTICES as f64;
     let timing = |blend: Blend, [alone, whole]: &[Vec<f64>; 2]| {
         let ratios = alone.iter().zip(&references).map(|(us, reference)| us / (reference * of_reference));
         let error = oracle::compare(&surface, blend, &skinned(&job, &surface, blend));

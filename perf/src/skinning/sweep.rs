@@ -7,7 +7,7 @@ use toile_assets::scene;
 use toile_base::skeleton::{BONES, Twist};
 use toile_engine::body::palette;
 use toile_engine::skin::{Blend, SkinningJob, SweepBinding, SweptLimb, SweptSkin};
-use toile_fitting::scene::yardstick::{self, Yardstick};
+use toile_fitting::scene::reference_time::{self, ReferenceTimer};
 use toile_fitting::timing;
 
 use super::error::SkinningError;
@@ -53,7 +53,7 @@ pub fn sweep_timing() -> Result<SweepTiming, SkinningError> {
     let mut bones = [Affine3A::IDENTITY; BONES];
     palette(&body.skeleton, &scene::shopper(&body.skeleton, MOMENT_S), &mut bones);
     let mut posed = job.posed_mesh();
-    let reference_us = Yardstick::new()?.read_us();
+    let reference_us = ReferenceTimer::new()?.read_us();
     let dual_us = timing::median_us(|| {
         job.run_mesh(Blend::Dual, black_box(&bones), &mut posed);
         black_box(&posed);
@@ -82,7 +82,7 @@ pub fn sweep_timing() -> Result<SweepTiming, SkinningError> {
         swept: sweep.bindings.len(),
         us,
         dual_us,
-        y_ratio: us / (reference_us * sweep.bindings.len() as f64 / yardstick::VERTICES as f64),
+        y_ratio: us / (reference_us * sweep.bindings.len() as f64 / reference_time::VERTICES as f64),
         max_error_m: errors[0],
         section_error_m: errors[1],
     })

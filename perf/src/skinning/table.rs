@@ -4,7 +4,7 @@ use serde::Serialize;
 use toile_assets::put_line;
 use toile_engine::lanes::Width;
 use toile_engine::skin::Padding;
-use toile_fitting::scene::yardstick;
+use toile_fitting::scene::reference_time;
 
 use super::{
     Shapes, Skinning, SkinningError, SkinningOptions, SkinningSubject, SweepTiming, Timing, measure, shapes,
@@ -88,8 +88,8 @@ pub fn run(progress: &mut dyn FnMut(&str)) -> Result<SkinningTable, SkinningErro
         Ok(())
     };
     for (subject, verts) in [
-        (SkinningSubject::Four, Some(yardstick::VERTICES)),
-        (SkinningSubject::Body, Some(yardstick::VERTICES)),
+        (SkinningSubject::Four, Some(reference_time::VERTICES)),
+        (SkinningSubject::Body, Some(reference_time::VERTICES)),
         (SkinningSubject::Body, None),
     ] {
         for threads in [1, 2] {

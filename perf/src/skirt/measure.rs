@@ -6,7 +6,7 @@ use toile_bake::Shape;
 use toile_base::numeric::statistics::{median, quantile};
 use toile_fitting::heap::HeapProbe;
 use toile_fitting::scene::StepTimes;
-use toile_fitting::scene::yardstick::Yardstick;
+use toile_fitting::scene::reference_time::ReferenceTimer;
 use toile_gpu::backend::Backends;
 
 use super::error::SkirtError;
@@ -38,7 +38,7 @@ pub(super) fn measure_with(
     heap: &HeapProbe,
     change: impl FnOnce(&mut Shape),
 ) -> Result<SkirtReport, SkirtError> {
-    let yardstick = Yardstick::new()?;
+    let reference = ReferenceTimer::new()?;
     let mut scene = SkirtScene::by(backends, options, heap, change)?;
     let mut run = SkirtRun::new(options, &scene, *heap);
     for _ in 0..WARM_UP {
@@ -48,11 +48,11 @@ pub(super) fn measure_with(
     let before = scene.events();
     let mut readings = Vec::new();
     for _ in 0..options.runs.max(1) {
-        readings.push(yardstick.read_us());
+        readings.push(reference.read_us());
         (0..options.steps.max(1)).for_each(|_| run.step(&mut scene));
         run.end_run();
     }
-    readings.push(yardstick.read_us());
+    readings.push(reference.read_us());
     let mut report = run.report(&scene, median(&mut readings).unwrap_or(0.0));
     report.events = scene.events().since(before);
     let metered = METERED_STEPS.min(options.steps.max(1));

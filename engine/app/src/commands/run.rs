@@ -13,7 +13,7 @@ use toile_fitting::heap::HeapProbe;
 use toile_fitting::scene::Runner;
 use toile_fitting::scene::contact::ContactReport;
 use toile_fitting::scene::events::ClothEvents;
-use toile_fitting::scene::yardstick;
+use toile_fitting::scene::reference_time;
 
 use crate::commands::crossings::CrossingCount;
 use crate::report::{self, CrossingReport, RunGarment, RunReport};
@@ -162,7 +162,8 @@ pub fn run(args: &RunArgs) -> Result<(), AppError> {
     let crossings = play(&mut runner, &words, dump.as_mut())?;
     let dumped = dump.as_ref().map_or(0, Dump::frames);
     dump.map_or(Ok(()), Dump::finish)?;
-    let yardstick_us = if args.printing.json { Some(yardstick::measure().map_err(AppError::internal)?) } else { None };
+    let yardstick_us =
+        if args.printing.json { Some(reference_time::measure().map_err(AppError::internal)?) } else { None };
     let report = RunReport { crossings, ..report(&runner, args, dumped, yardstick_us) };
     if args.printing.json {
         return terminal::print_json(&Document::new("run", report));

@@ -6,8 +6,8 @@
 
 pub mod contact;
 pub mod events;
+pub mod reference_time;
 pub mod surface;
-pub mod yardstick;
 
 use std::time::Instant;
 

@@ -11,7 +11,7 @@ use toile_cli::picture::write_png;
 use toile_cli::terminal::{self, Paint, Words};
 use toile_engine::lanes::Width;
 use toile_engine::skin::Blend;
-use toile_fitting::scene::yardstick;
+use toile_fitting::scene::reference_time;
 use toile_perf::skinning::{self, SkinningError, SkinningOptions, SkinningSubject};
 
 use super::skinning_report::{self, SkinningReport};
@@ -65,7 +65,7 @@ impl SkinningArgs {
     fn options(&self) -> SkinningOptions {
         SkinningOptions {
             subject: if self.body { SkinningSubject::Body } else { SkinningSubject::Four },
-            verts: self.verts.or((!self.body).then_some(yardstick::VERTICES)),
+            verts: self.verts.or((!self.body).then_some(reference_time::VERTICES)),
             threads: self.threads,
             lanes: self.lanes,
         }

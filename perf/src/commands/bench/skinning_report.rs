@@ -4,7 +4,7 @@ use serde::Serialize;
 use toile_assets::put_line;
 use toile_cli::terminal::{Paint, Tone};
 use toile_engine::skin::Blend;
-use toile_fitting::scene::yardstick;
+use toile_fitting::scene::reference_time;
 use toile_perf::skinning::table::SkinningRow;
 use toile_perf::skinning::{Skinning, Timing};
 
@@ -35,7 +35,7 @@ impl SkinningReport {
             Blend::Linear => found.linear,
             Blend::Dual => found.dual,
         };
-        let yardstick_verts = yardstick::VERTICES;
+        let yardstick_verts = reference_time::VERTICES;
         Self { blend: blend.name(), us, ns_per_vertex, y_ratio, max_error_m, yardstick_verts, found: found.into() }
     }
 }

@@ -27,12 +27,12 @@ struct Vertex {
 
 /// The reference work, prepared so that it can be timed more than once in a run.
 #[derive(Debug)]
-pub struct Yardstick {
+pub struct ReferenceTimer {
     vertices: Vec<Vertex>,
     palette: Vec<Matrix>,
 }
 
-impl Yardstick {
+impl ReferenceTimer {
     /// Prepares the reference on the scene's shopper.
     ///
     /// # Errors
@@ -58,7 +58,7 @@ impl Yardstick {
 /// # Errors
 /// Where the scene's shopper cannot be built.
 pub fn measure() -> Result<f64, BodyError> {
-    Ok(Yardstick::new()?.read_us())
+    Ok(ReferenceTimer::new()?.read_us())
 }
 
 fn vertices(surface: &SkinnedSurface) -> Vec<Vertex> {
