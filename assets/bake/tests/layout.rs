@@ -1,5 +1,6 @@
 //! A layout that kernels could not trust is refused, with what is wrong in it.
 
+use toile_base::garment::layout::{FiberBundle, OwnerShare};
 use toile_base::garment::{Garment, GarmentData, Layout, LayoutError};
 
 use crate::cloth;
@@ -68,4 +69,29 @@ fn indices_lead_to_particles_and_parameters() {
     let short = changed(|data, _| data.inverse_mass = Box::default());
     let error = short.unwrap_err();
     assert_eq!(error.to_string(), "inverse_mass has 0 entries and needs 144; bake the garment again");
+}
+
+#[test]
+fn anchors_hold_still() {
+    let held = cloth();
+    let tethered = held.layout().tethers.length.iter().position(|length| *length > 0.0).unwrap();
+    let moving = held.inverse_mass.iter().position(|w| *w > 0.0).unwrap() as u32;
+    let loose = changed(|_, layout| layout.tethers.anchor[tethered] = moving);
+    assert_eq!(loose.unwrap_err(), LayoutError::Anchor { particle: tethered });
+}
+
+#[test]
+fn two_owners_have_no_tension_in_common() {
+    let shared = changed(|_, layout| {
+        let shares = &mut layout.weft.tuples.sets[0].shares;
+        let full = shares.iter().position(|share| *share != OwnerShare::default()).unwrap();
+        shares[1 - full] = shares[full].clone();
+    });
+    assert!(matches!(shared, Err(LayoutError::Place { what: "weft", .. })), "{shared:?}");
+    let fibers = changed(|_, layout| {
+        let bundle = layout.fibers.bundles[0].clone();
+        let twice = [bundle.clone(), FiberBundle { owner: 1 - bundle.owner, ..bundle }];
+        layout.fibers.bundles = twice.into();
+    });
+    assert!(matches!(fibers, Err(LayoutError::Place { what: "fibers", .. })), "{fibers:?}");
 }

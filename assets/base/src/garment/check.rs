@@ -42,6 +42,20 @@ pub enum LayoutError {
         /// The particle.
         particle: usize,
     },
+    /// A tether is anchored at a particle that can move.
+    #[error("the tether of particle {particle} is anchored at a particle that can move; bake the garment again")]
+    Anchor {
+        /// The particle that is tethered.
+        particle: usize,
+    },
+    /// Two owners write to the same place of a column.
+    #[error("two owners have place {place} of {what}; bake the garment again")]
+    Place {
+        /// The kind of constraint.
+        what: &'static str,
+        /// The place.
+        place: usize,
+    },
     /// Two constraints that are solved at once hold the same particle.
     #[error("two constraints of set {set} of {what} hold particle {particle} at once; bake the garment again")]
     Shared {
@@ -104,7 +118,35 @@ fn lengths(data: &GarmentData, layout: &Layout) -> Result<(), LayoutError> {
     all("fixed", Box::new(data.fixed.iter().copied()))?;
     all("strain_edges", Box::new(data.strain_edges.iter().flat_map(|(ends, _)| *ends)))?;
     all("hoop_edges", Box::new(data.hoop_edges.iter().flat_map(|(ends, _)| *ends)))?;
-    all("tethers.anchor", Box::new(layout.tethers.anchor.iter().copied()))
+    all("tethers.anchor", Box::new(layout.tethers.anchor.iter().copied()))?;
+    // A tether reads its anchor while the other owner moves its own particles.
+    let mut tethers = layout.tethers.anchor.iter().zip(&layout.tethers.length);
+    let loose = tethers.position(|(anchor, length)| *length > 0.0 && data.inverse_mass[*anchor as usize] > 0.0);
+    loose.map_or(Ok(()), |particle| Err(LayoutError::Anchor { particle }))
+}
+
+/// The owner of each place of a column, where it has one.
+struct PlaceOwners {
+    what: &'static str,
+    owner: Vec<Option<usize>>,
+}
+
+impl PlaceOwners {
+    fn new(what: &'static str, places: usize) -> Self {
+        Self { what, owner: vec![None; places] }
+    }
+
+    /// Gives places to an owner; refuses places that another owner has.
+    fn take(&mut self, first: u32, len: u32, owner: usize) -> Result<(), LayoutError> {
+        let (first, len, what) = (first as usize, len as usize, self.what);
+        bound(what, first + len, self.owner.len())?;
+        for (k, place) in self.owner[first..first + len].iter_mut().enumerate() {
+            if place.replace(owner).is_some_and(|other| other != owner) {
+                return Err(LayoutError::Place { what, place: first + k });
+            }
+        }
+        Ok(())
+    }
 }
 
 /// Each particle lies in one span, and its owner is the one that the span belongs to.
@@ -186,11 +228,31 @@ fn places<const K: usize>(what: &'static str, tuples: &Tuples<K>) -> Result<(), 
     Ok(())
 }
 
+/// Each link's tension and each place of its parameters is one owner's.
+fn links_apart(what: &'static str, tuples: &Tuples<2>) -> Result<(), LayoutError> {
+    let (mut serials, mut places) = (PlaceOwners::new(what, tuples.count), PlaceOwners::new(what, tuples.places));
+    for set in &tuples.sets {
+        for (owner, share) in set.shares.iter().enumerate() {
+            let zigzags = &tuples.zigzags[range(what, &share.zigzags, tuples.zigzags.len())?];
+            let runs = &tuples.runs[range(what, &share.runs, tuples.runs.len())?];
+            for run in zigzags.iter().flat_map(|z| [&z.straights, &z.slants]).chain(runs) {
+                serials.take(run.serial, run.len, owner)?;
+                places.take(run.at, if run.alike { 1 } else { run.len }, owner)?;
+            }
+            let loose = share.loose.len() as u32;
+            serials.take(share.loose_serial, loose, owner)?;
+            places.take(share.loose_at, loose, owner)?;
+        }
+    }
+    Ok(())
+}
+
 fn links(what: &'static str, links: &Links, marks: &mut Marks) -> Result<(), LayoutError> {
     let tuples = &links.tuples;
     length(what, links.rest.len(), tuples.places)?;
     length(what, links.compliance.len(), tuples.places)?;
     places(what, tuples)?;
+    links_apart(what, tuples)?;
     let n = marks.seen.len();
     for (number, set) in tuples.sets.iter().enumerate() {
         let first = marks.set();
@@ -211,17 +273,16 @@ fn links(what: &'static str, links: &Links, marks: &mut Marks) -> Result<(), Lay
 fn diagonals(diagonals: &Diagonals, marks: &mut Marks) -> Result<(), LayoutError> {
     const WHAT: &str = "diagonals";
     length(WHAT, diagonals.compliance.len(), diagonals.rest.len())?;
-    let n = marks.seen.len();
+    let (n, mut places) = (marks.seen.len(), PlaceOwners::new(WHAT, diagonals.rest.len()));
     for (number, family) in diagonals.families.iter().enumerate() {
         let first = marks.set();
-        for share in family {
+        for (owner, share) in family.iter().enumerate() {
             // One owner walks all of its fibers: they are one group.
             marks.set();
             let starts = &diagonals.starts[range(WHAT, &share.starts, diagonals.starts.len())?];
             let mut held: Vec<usize> = starts.iter().map(|p| *p as usize).collect();
             for run in &diagonals.runs[range(WHAT, &share.runs, diagonals.runs.len())?] {
-                let len = if run.alike { 1 } else { run.len as usize };
-                bound(WHAT, run.at as usize + len, diagonals.rest.len())?;
+                places.take(run.at, if run.alike { 1 } else { run.len }, owner)?;
                 let ends = run.first.map(|f| f as usize..f as usize + run.len as usize);
                 held.extend(ends.into_iter().flatten());
             }
@@ -240,15 +301,16 @@ fn fibers(fibers: &Fibers, marks: &mut Marks) -> Result<(), LayoutError> {
     const WHAT: &str = "fibers";
     length(WHAT, fibers.compliance.len(), fibers.rest.len())?;
     let n = marks.seen.len();
+    let (mut serials, mut places) = (PlaceOwners::new(WHAT, fibers.links), PlaceOwners::new(WHAT, fibers.rest.len()));
     let first = marks.set();
     for owner in 0..OWNERS {
         marks.set();
         for bundle in fibers.bundles.iter().filter(|b| usize::from(b.owner) == owner) {
             let rows = &fibers.rows[range(WHAT, &bundle.rows, fibers.rows.len())?];
             let links = rows.len().saturating_sub(1);
-            let parameters = links * if bundle.alike { 1 } else { bundle.lanes as usize };
-            bound(WHAT, bundle.at as usize + parameters, fibers.rest.len())?;
-            bound(WHAT, bundle.serial as usize + links * bundle.lanes as usize, fibers.links)?;
+            let links = links as u32;
+            serials.take(bundle.serial, links * bundle.lanes, owner)?;
+            places.take(bundle.at, if bundle.alike { links } else { links * bundle.lanes }, owner)?;
             for row in rows {
                 bound(WHAT, row.lanes as usize, bundle.lanes as usize)?;
                 for particle in row.first as usize..row.first as usize + row.lanes as usize {
@@ -267,14 +329,14 @@ fn fibers(fibers: &Fibers, marks: &mut Marks) -> Result<(), LayoutError> {
 fn lists(lists: &FiberLists, marks: &mut Marks) -> Result<(), LayoutError> {
     const WHAT: &str = "crossing";
     length(WHAT, lists.compliance.len(), lists.rest.len())?;
-    let n = marks.seen.len();
+    let (n, mut places) = (marks.seen.len(), PlaceOwners::new(WHAT, lists.rest.len()));
     for (number, set) in lists.sets.iter().enumerate() {
         let first = marks.set();
-        for share in set {
+        for (owner, share) in set.iter().enumerate() {
             for list in &lists.lists[range(WHAT, share, lists.lists.len())?] {
                 let (lanes, rows) = (list.lanes as usize, list.rows as usize);
                 bound(WHAT, list.first as usize + lanes * rows, lists.index.len())?;
-                bound(WHAT, list.at as usize + lanes * list.links() as usize, lists.rest.len())?;
+                places.take(list.at, list.lanes * list.links(), owner)?;
                 for lane in 0..lanes {
                     // A fiber may come back to its own first particle; lanes are apart.
                     marks.set();

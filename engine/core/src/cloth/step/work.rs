@@ -102,7 +102,7 @@ impl StepWork<'_> {
         // - constraints of one set and different owners share no particle (`garment::layout`), and each has its own tension;
         //   links by records fill up with one spare record an owner;
         // - each owner has a scratch of its own, and half of the tensions to clear.
-        // The bake asserts the first two. A step with one worker does one share after the other on one thread.
+        // `Garment::new` checks spans, anchors, sets and places. A step with one worker does one share after the other on one thread.
         let columns = unsafe { self.columns.open() };
         OwnerShare { work: self, columns, owner, substep }.run(stage);
     }
