@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use toile_cli::heap::Counted;
 
 /// The system's allocator, counted: reports tell allocations and memory as they happen in the program that is shipped.
-/// A frame allocates nothing, so counting costs it nothing.
+/// A step allocates nothing, so counting costs it nothing.
 #[global_allocator]
 static ALLOCATOR: Counted = Counted;
 

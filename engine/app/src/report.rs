@@ -248,13 +248,13 @@ pub struct MeasureReport {
     pub session: SessionReport,
     /// The shopper's measures.
     pub measurements: ShopperMeasures,
-    /// Both ways of measuring, side by side; the body fit only where there is depth.
+    /// The measures of the method that was used: the body fit, or proportions where no body fits.
     pub methods: Vec<MethodMeasures>,
     /// The fitted body; nothing without depth, or where none fits.
     pub body: Option<FittedBody>,
-    /// Pixels that carried a depth, mean over the frames.
+    /// Depth pixels on the shopper, median over the frames.
     pub valid_pixels: u64,
-    /// Most people seen in one frame.
+    /// People in view, median over the frames.
     pub people: u32,
     /// The files written.
     pub files: Vec<PathBuf>,

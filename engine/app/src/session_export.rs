@@ -48,17 +48,17 @@ impl DressedExport {
     /// More than a format holds, and a file that cannot be written.
     pub fn begin(
         out: &mut OutputFolder,
-        frame: &World,
+        world: &World,
         skin: [f32; 3],
         formats: &[ExportFormat],
         (steps, stride, hz): (u64, u64, f64),
     ) -> Result<Self, AppError> {
         let rate = FrameRate { frames: steps.div_ceil(stride) as usize, hz };
-        let body = std::iter::once(MovingPart::body(frame.body(), skin));
-        let parts = body.chain(frame.garments().iter().map(MovingPart::garment)).collect();
+        let body = std::iter::once(MovingPart::body(world.body(), skin));
+        let parts = body.chain(world.garments().iter().map(MovingPart::garment)).collect();
         let plan =
             ExportPlan::new("session", formats, parts, rate).map_err(|e| AppError::input(format!("--export: {e}")))?;
-        let vertices = frame.body().mesh.positions.len();
+        let vertices = world.body().mesh.positions.len();
         Ok(Self {
             export: begin(out, plan)?,
             stride,
@@ -72,11 +72,11 @@ impl DressedExport {
     ///
     /// # Errors
     /// A file that cannot be written.
-    pub fn after(&mut self, tick: u64, frame: &World, snapshot: &Snapshot, out: &OutputFolder) -> Result<(), AppError> {
+    pub fn after(&mut self, tick: u64, world: &World, snapshot: &Snapshot, out: &OutputFolder) -> Result<(), AppError> {
         if !tick.is_multiple_of(self.stride) {
             return Ok(());
         }
-        palette(&frame.body().skeleton, &snapshot.pose, &mut self.palette);
+        palette(&world.body().skeleton, &snapshot.pose, &mut self.palette);
         snapshot.skin.read(&mut self.skin, &mut self.normals);
         let garments = snapshot.garments.iter().map(|g| &g[..]);
         let positions: Vec<&[Vec3]> = std::iter::once(&self.skin[..]).chain(garments).collect();

@@ -81,7 +81,7 @@ pub fn measure(report: &MeasureReport, paint: Paint) -> String {
         let share = b.explained * 100.0;
         put_line!(text, "\nThe body explains {share:.0} % of the surface, {:.0} mm off; {cloth}", b.off_mm);
     }
-    put_line!(text, "\nPeople: {}; pixels with a depth: {} a frame", report.people, report.valid_pixels);
+    put_line!(text, "\nPeople: {}; depth pixels on the shopper: {} a frame", report.people, report.valid_pixels);
     text
 }
 

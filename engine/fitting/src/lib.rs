@@ -1,6 +1,6 @@
 //! The one assembly: from a sensor's data to a dressed body in motion, for the program, the kiosk and an embedder alike.
 //!
-//! Measuring takes 0.5 s and dressing 1 s, both outside of the frame. `dress`, `scene` and `plan` run on the caller's thread. `live` has
+//! Measuring takes 0.5 s and dressing 1 s, both outside of the step. `dress`, `scene` and `plan` run on the caller's thread. `live` has
 //! sensor, physics and render threads of its own.
 //!
 //! A recording becomes a dressed body in motion, with the measures, size and verdicts that every command of the program reports:

@@ -41,7 +41,7 @@ fn wearer(size: &str, sigma: f32) -> (Body, Measurements) {
     (body, Measurements { measures, valid_pixels: 1, people: 1, frames: 30, source: Source::Depth, notes })
 }
 
-fn choice(package: &PatternPackage) -> GarmentSource {
+fn source(package: &PatternPackage) -> GarmentSource {
     GarmentSource {
         name: package.name.clone(),
         kind: SourceKind::Pattern(Box::new(package.clone())),
@@ -53,7 +53,7 @@ fn choice(package: &PatternPackage) -> GarmentSource {
 
 fn judge(package: &PatternPackage, size: Option<&str>, on: &str) -> Recommendation {
     let (body, measured) = wearer(on, 0.005);
-    choice(package).judge(size, &measured, &body, &[]).unwrap().unwrap()
+    source(package).judge(size, &measured, &body, &[]).unwrap().unwrap()
 }
 
 #[test]
@@ -98,7 +98,7 @@ fn a_pattern_without_sizes_is_judged_by_its_own_lengths() {
     assert_eq!(larger.1, Verdict::Tight);
     assert_eq!(larger.2, "There is one size, as drafted: tight at the chest.");
     let (body, measured) = wearer("34", 0.01);
-    assert!(choice(&package).judge(Some("40"), &measured, &body, &[]).is_err());
+    assert!(source(&package).judge(Some("40"), &measured, &body, &[]).is_err());
 }
 
 #[test]

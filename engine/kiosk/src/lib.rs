@@ -23,7 +23,7 @@ pub use service::KioskOptions;
 pub use service::config::EXAMPLE as EXAMPLE_CONFIG;
 pub use service::report::KioskReport;
 
-/// Runs a kiosk of a program that was started at `begun` until it is asked to end; `say` prints a line for the operator.
+/// Runs a kiosk of a program that was started at `begun` until it is asked to end; `print_line` prints a line for the operator.
 ///
 /// # Errors
 /// A kiosk that already runs, a configuration, a session or a garment that cannot be used, no window where one is wanted, a

@@ -400,7 +400,7 @@ fn serve_with(config: &str, own: bool, visit: impl FnOnce(&mut Finger) + Send) -
     let dressed = stock.first.on_mannequin(&pose).unwrap();
     let (source, played, pictures) = source(&session, own, clock);
     let (pictures, switch) = pictures.unzip();
-    let first = DressedScene::new(dressed, |frame| (WorldScene::new(frame), Worn::default()));
+    let first = DressedScene::new(dressed, |world| (WorldScene::new(world), Worn::default()));
     let renderer = MirrorRenderer { pictures, mirror: OwnPicture::new(), ..MirrorRenderer::default() };
     let parts = LoopParts { first, renderer, source, account: ThreadAccount::new(), recording: None };
     let (live, handover) = LiveLoop::start(parts, clock, LoopOptions::default()).unwrap();
@@ -437,9 +437,9 @@ fn serve_with(config: &str, own: bool, visit: impl FnOnce(&mut Finger) + Send) -
             print_line: &print_line,
             figures: None,
             first: stock.first.clone(),
-            to_scene: Box::new(|frame| {
-                let worn = OwnPictureModel::of(frame.body(), frame.garments());
-                (WorldScene::new(frame), Some(worn))
+            to_scene: Box::new(|world| {
+                let worn = OwnPictureModel::of(world.body(), world.garments());
+                (WorldScene::new(world), Some(worn))
             }),
             pose,
             flight_recorder: None,

@@ -73,4 +73,5 @@ fn words_mean_what_people_mean() {
 fn every_measure_of_the_standard_has_a_name_of_its_own() {
     let names: BTreeSet<&str> = measure_names().into_iter().collect();
     assert_eq!(names.len(), En::ALL.len());
+    assert!(!names.contains("measure"), "a measure of the standard has no name: {names:?}");
 }

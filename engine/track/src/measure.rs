@@ -1,4 +1,4 @@
-//! The measures of the person before the sensor, each with its error, from one second of depth and joints.
+//! The measures of the person before the sensor, each with its error: from one second of joints, or from a body that was fitted to depth.
 
 use toile_assets::sizes::{Population, SizeBody};
 use toile_base::frame::Joints;
@@ -17,15 +17,15 @@ pub const FEWEST_JOINT_FRAMES: usize = 3;
 /// Where the measures come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Source {
-    /// From depth frames alone.
+    /// From the body fit, in a session without joints.
     Depth,
-    /// Measured from joints, without depth.
+    /// From the proportions of joints: without depth, or where no body fits it.
     Joints,
-    /// From both, each measure weighted by how sure it is.
+    /// From the body fit, in a session that also has joints.
     Both,
 }
 
-/// What [`measure`] found.
+/// The measures of a person, with their source.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measurements {
     /// The measures taken.
@@ -34,11 +34,11 @@ pub struct Measurements {
     pub valid_pixels: usize,
     /// People in view, median over the depth frames; 1 with joints only.
     pub people: usize,
-    /// Frames that were averaged: depth frames where there are any, joints otherwise.
+    /// Frames that were averaged: depth frames where a body was fitted, joints otherwise.
     pub frames: usize,
     /// Where the measures come from.
     pub source: Source,
-    /// One sentence for each measure that could not be taken, with the reason.
+    /// Sentences about guessed or assumed measures.
     pub notes: Vec<String>,
 }
 
@@ -99,7 +99,8 @@ pub fn by_proportions(joints: &[Joints], hint: &Hint) -> Result<Measurements, Me
         return Err(too_few);
     }
     let measures = joints::measures(&second, hint).ok_or(too_few)?;
-    let mut notes = vec!["No body was fitted to depth: girths are guessed from stature and shoulders.".to_owned()];
+    let mut notes =
+        vec!["Girths are guessed from stature and shoulders, because no body was fitted to depth.".to_owned()];
     if !hint.scale_known {
         notes.push("The recording has no unit: the stature is assumed.".to_owned());
     }

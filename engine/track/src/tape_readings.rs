@@ -95,7 +95,7 @@ pub struct TapeReadings {
 }
 
 /// A measure's name as people say it.
-pub fn plain(name: &str) -> String {
+fn plain(name: &str) -> String {
     name.replace('_', " ")
 }
 

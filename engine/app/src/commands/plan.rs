@@ -177,19 +177,19 @@ fn worn(
     let baked: usize = dressed.garments.iter().map(toile_base::garment::Garment::bytes).sum();
     let body = before.zip(made).map_or(0, |(a, b)| (b.live_bytes - a.live_bytes - baked as i64).max(0));
     let costs = calibrate::measure(Some((&dressed.body, &dressed.rig, &track)), workers).map_err(AppError::internal)?;
-    let frame = frame_bytes(&dressed, &request, &probe)?;
+    let world = world_bytes(&dressed, &request, &probe)?;
     let DressedBody { body: shape, rig, garments, .. } = dressed;
     let settings = Settings { workers: 1, ..request.settings() };
     let mut scene = PlannedScene::worn(&shape, &rig, garments, settings, &track).map_err(AppError::input)?;
     scene.name = request.words();
     let mut memory = vec![part("body", body as usize)];
     memory.extend(cloth_memory(&scene));
-    memory.push(part("frame: skin, colliders, meters, three snapshots", frame));
+    memory.push(part("frame: skin, colliders, meters, three snapshots", world));
     Ok((scene, costs, memory))
 }
 
-/// What a frame holds beside the states of its garments (bytes), counted while one is made.
-fn frame_bytes(dressed: &DressedBody, request: &TryOn, probe: &HeapProbe) -> Result<usize, AppError> {
+/// Memory of a world beside the states of its garments (bytes), counted while one is built.
+fn world_bytes(dressed: &DressedBody, request: &TryOn, probe: &HeapProbe) -> Result<usize, AppError> {
     let settings = Settings { workers: 1, ..request.settings() };
     let DressedBody { body, rig, garments, .. } = dressed.clone();
     let dressed = DressedBody::new(rig, body, garments);
@@ -197,7 +197,7 @@ fn frame_bytes(dressed: &DressedBody, request: &TryOn, probe: &HeapProbe) -> Res
     let made = dressed.build(settings).map_err(AppError::input)?;
     let after = probe.read();
     let cloths: usize = made.0.cloths().iter().map(Cloth::bytes).sum();
-    // Body and garments were there before and are the frame's now.
+    // Body and garments were there before and are the world's now.
     let grown = before.zip(after).map_or(0, |(a, b)| b.live_bytes - a.live_bytes);
     Ok((grown - cloths as i64).max(0) as usize + size_of::<World>())
 }

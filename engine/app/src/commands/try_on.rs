@@ -303,7 +303,7 @@ struct Played {
     hidden_mm: Option<f64>,
 }
 
-/// Plays the session through the frame, 120 steps a second, and draws it.
+/// Plays the session through the world, 120 steps a second, and draws it.
 fn play(
     (args, words, title, judged): (&TryOnArgs, &Words, &str, &[JudgedTightness]),
     out: &mut OutputFolder,
@@ -397,7 +397,7 @@ fn facing(world: &World) -> f32 {
     ahead.x.atan2(ahead.z)
 }
 
-/// A frame as it is, with what was just seen to cross.
+/// The world as it is, with the crossings that were just counted.
 fn worst_moment(world: &World, snapshot: &Snapshot, seen: &report::CrossingReport) -> WorstMoment {
     WorstMoment {
         seconds: seen.worst_s.unwrap_or_default(),
@@ -408,7 +408,7 @@ fn worst_moment(world: &World, snapshot: &Snapshot, seen: &report::CrossingRepor
     }
 }
 
-/// Fills in the lines that were asked for, of the frame as it is.
+/// Fills in the lines that were asked for, of the world as it is.
 fn draw_lines(lines: &mut Lines, kinds: &[Kind], world: &World) {
     lines.clear();
     for &kind in kinds {

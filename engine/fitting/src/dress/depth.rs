@@ -36,7 +36,7 @@ pub struct DepthSurface {
     pub pixels: usize,
     /// People in view, median over the same frames.
     pub people: usize,
-    /// Distance of somebody who stands too far away to be measured (m).
+    /// Distance of a person who stands too far away to be measured (m).
     pub too_far: Option<f32>,
 }
 
@@ -77,7 +77,7 @@ impl DepthSurface {
         Self { frames, after, ground, pixels, people, too_far }
     }
 
-    /// The reason why nobody can be measured in the depth of a session in which no body fits.
+    /// The error for a session in whose depth no body fits.
     pub fn refusal(&self, session: &Session) -> FittingError {
         if self.frames.is_empty() {
             let frames = session.depth.len().min(FRAMES);
@@ -88,7 +88,7 @@ impl DepthSurface {
             });
         }
         FittingError::Input(format!(
-            "no body fits the depth of session {}; record somebody who stands alone, facing the camera, arms slightly out",
+            "no body fits the depth of session {}; record a person who stands alone, facing the camera, arms slightly out",
             session.name
         ))
     }

@@ -28,7 +28,7 @@ use crate::FittingError;
 pub struct GarmentSource {
     /// The name that it was found by: one of the wardrobe, or a path. A request finds it again by this name.
     pub name: String,
-    /// What it is made from.
+    /// The data that it is made from.
     pub kind: SourceKind,
     /// A fabric in place of its own.
     pub fabric: Option<Fabric>,
@@ -38,7 +38,7 @@ pub struct GarmentSource {
     pub photographs: Option<Arc<GarmentPhotographs>>,
 }
 
-/// What a garment is made from.
+/// The data that a garment is made from.
 #[derive(Debug, Clone)]
 pub enum SourceKind {
     /// A garment of the wardrobe.
@@ -67,7 +67,7 @@ fn in_fabric(name: &str) -> Option<(&str, &str)> {
     (garment.len() > 1 && is_word && !Path::new(name).exists()).then_some((garment, fabric))
 }
 
-/// What is said of a name that no garment has.
+/// The error for a name that no garment has.
 fn unknown(name: &str) -> WardrobeError {
     let known: Vec<&str> = wardrobe::names().into_iter().chain(drafting::names()).collect();
     WardrobeError::Unknown { name: name.into(), known: known.join(", ") }
@@ -82,11 +82,11 @@ pub struct FittedGarment {
     pub mesh_vertices: Vec<Vec<u32>>,
     /// How it fits; none where it was not recommended.
     pub fit: Option<Recommendation>,
-    /// What became of a mesh of the user's own.
+    /// Report on a mesh of the user's own; `None` for any other garment.
     pub mesh: Option<MeshReport>,
 }
 
-/// The people whom these garments are made for: the first garment that is not made for everybody decides.
+/// The people whom these garments are made for: the first garment that is made for women or men alone decides.
 ///
 /// # Errors
 /// A garment whose size table cannot be used.
@@ -143,7 +143,7 @@ impl GarmentSource {
         Self::of_package(package, &path.display().to_string())
     }
 
-    /// The garment of a package that is open; `shown` is what it is called.
+    /// The garment of a package that is open; `shown` is its name.
     ///
     /// # Errors
     /// As [`Self::open`].
@@ -163,7 +163,7 @@ impl GarmentSource {
             SourceKind::Pattern(Box::new(pattern))
         } else {
             let unpacked = package.unpack().map_err(FittingError::input)?;
-            // Where it was unpacked says nothing to whoever packed it.
+            // The author of the package does not know the folder that it is unpacked into.
             let folder = format!("{}/", unpacked.path.display());
             let named = |e: AdaptError| FittingError::Input(format!("{shown}: {}", e.to_string().replace(&folder, "")));
             let mut mesh = OwnMesh::read(&unpacked.path.join(&manifest.garment)).map_err(named)?;
@@ -187,7 +187,7 @@ impl GarmentSource {
         Ok(Self { name: shown.to_owned(), kind, fabric, layer: manifest.layer, photographs })
     }
 
-    /// Whose bodies it is made for; what does not say is made for everybody.
+    /// The population that it is made for; a garment that names none is made for women and men.
     ///
     /// # Errors
     /// A size table that cannot be used.
@@ -202,7 +202,7 @@ impl GarmentSource {
     /// The fabric that it is made of.
     ///
     /// # Errors
-    /// A fabric that there is not.
+    /// An unknown fabric.
     pub fn fabric(&self) -> Result<Fabric, FittingError> {
         let named = match (&self.fabric, &self.kind) {
             (Some(fabric), _) => return Ok(fabric.clone()),
@@ -213,7 +213,7 @@ impl GarmentSource {
         toile_assets::fabric::built_in(named).map_err(FittingError::input)
     }
 
-    /// Its sizes; none of a mesh that has none. A pattern for nobody in particular is judged on `wearer`.
+    /// Its sizes; `None` for a mesh without sizes. A pattern without sizes is judged on `wearer`.
     ///
     /// # Errors
     /// Sizes that cannot be used, a pattern that cannot be laid around a body.
@@ -227,8 +227,8 @@ impl GarmentSource {
         Ok(offer?.map(|offer| GarmentOffer { thickness_m, ..offer }))
     }
 
-    /// The body that it is shown on where nobody is measured, and the size that it has there: the body of its middle size, the
-    /// one that a pattern for nobody in particular has ease on, the one that a mesh is made for.
+    /// The body that it is shown on where no person is measured, and its size there. This is the body of its middle size. A pattern without
+    /// sizes is shown on a body on which it has ease, and a mesh without sizes on the body that it is made for.
     ///
     /// # Errors
     /// As [`Self::offer`].
@@ -279,7 +279,7 @@ impl GarmentSource {
         table.map(|table| table.size_body(size).map(Measures::from)).transpose().map_err(FittingError::input)
     }
 
-    /// The size that fits over what is worn beneath, or how the one asked for does; none of a mesh that has no sizes.
+    /// The size that fits over the garments beneath, or the fit of the requested size; `None` for a mesh without sizes.
     ///
     /// # Errors
     /// A size that is not made; as [`Self::offer`].
@@ -369,7 +369,7 @@ impl GarmentSource {
         Ok(worn)
     }
 
-    /// Sizes the garment for measures, over what is worn beneath, and bakes it onto a body.
+    /// Sizes the garment for measures, over the garments beneath, and bakes it onto a body.
     ///
     /// # Errors
     /// As [`Self::judge`] and [`Self::dress`].

@@ -1,8 +1,8 @@
 //! The shopper measured, and a body of these measures. There is one way to measure: by the body fitted to their depth where one fits, by the
 //! proportions of their joints otherwise.
 //!
-//! Whose proportions apply is given by the caller, or found by the fit; what is worn does not decide it, so that the same session gives the
-//! same measures whatever is tried on.
+//! The caller gives the sex whose proportions apply, or the fit finds it. Garments do not decide it, so that the same session gives the same
+//! measures with all garments.
 
 use serde::{Deserialize, Serialize};
 use toile_assets::body::BodyError;
@@ -34,11 +34,11 @@ const TOWARDS_AVERAGE: [f32; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
 /// How far a measure that is read off an imported mesh is believed (m): its levels are found, not felt.
 const READ_OFF: f32 = 0.01;
 
-/// What is known of a shopper before they are measured.
+/// Facts of a shopper that are known before the measuring.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "FactsText", into = "FactsText")]
 pub struct ShopperFacts {
-    /// Whose proportions apply, if it is known.
+    /// The sex whose proportions apply, if it is known.
     pub sex: Option<Sex>,
     /// Whether they are a child, where that is known; it is estimated otherwise, and changes no measure.
     pub child: Option<bool>,
@@ -48,7 +48,7 @@ pub struct ShopperFacts {
     pub seated: bool,
     /// Measures that they took by tape.
     pub tape: TapeReadings,
-    /// Depth of a turn counts up to this time of the session (ns): what was played of a recording. The first second always counts.
+    /// Time of the session up to which the depth of a turn counts (ns): the end of the part that was played. The first second always counts.
     pub until_ns: u64,
 }
 
@@ -113,7 +113,7 @@ pub(super) mod sex_name {
     }
 }
 
-/// What was measured of a shopper.
+/// A shopper who was measured.
 #[derive(Debug, Clone)]
 pub struct MeasuredSubject {
     /// The best that is known: every report, size and body follows from it.
@@ -122,7 +122,7 @@ pub struct MeasuredSubject {
     pub fitted: Option<FittedMeasures>,
     /// The shopper's surface; empty without depth.
     pub surface: DepthSurface,
-    /// Whose proportions apply where something was not seen.
+    /// The population whose proportions stand in for measures that were not seen.
     pub population: Population,
     /// How likely they are a child, 0 to 1; `None` without a stature.
     pub child: Option<f32>,
@@ -131,7 +131,7 @@ pub struct MeasuredSubject {
 }
 
 impl MeasuredSubject {
-    /// The sex of the body to show: as given or measured, otherwise whom the garments are made for, women for all others.
+    /// The sex of the body to show: as given or measured; otherwise the sex that the garments are made for, and female if they are made for both.
     pub fn sex(&self, garments: Population) -> Sex {
         sex(self.population, garments)
     }
@@ -156,10 +156,10 @@ pub fn sex(shopper: Population, garments: Population) -> Sex {
     if known == Population::Men { Sex::Male } else { Sex::Female }
 }
 
-/// Measures whoever stands or sits in a session.
+/// Measures the person who stands or sits in a session.
 ///
 /// # Errors
-/// A session that shows nobody who can be measured.
+/// A session without a person who can be measured.
 pub fn measure(session: &Session, facts: ShopperFacts) -> Result<MeasuredSubject, FittingError> {
     if facts.seated {
         return seated(session, facts);
@@ -183,7 +183,7 @@ pub fn measure(session: &Session, facts: ShopperFacts) -> Result<MeasuredSubject
 /// through the depth.
 ///
 /// # Errors
-/// A session in which nobody can be followed.
+/// A session in which no person can be followed.
 pub fn track(session: &Session, measured: &MeasuredSubject) -> Result<Vec<Joints>, FittingError> {
     if !session.joints.is_empty() {
         return session::standing(session);
@@ -204,7 +204,7 @@ pub fn add_joints(session: &mut Session, measured: &MeasuredSubject) -> Result<(
     }
     let fitted = measured.fitted.as_ref().ok_or_else(|| {
         FittingError::Input(format!(
-            "session {} has no joints, and no body fits its depth; record somebody who stands alone, facing the camera, \
+            "session {} has no joints, and no body fits its depth; record a person who stands alone, facing the camera, \
              arms slightly out",
             session.name
         ))
@@ -260,8 +260,8 @@ fn population(facts: Option<Sex>, fitted: Option<&FittedMeasures>) -> Population
     }
 }
 
-/// What is best known once measures were taken by tape: all others follow as far as their errors go with these. `all` is what the body fit
-/// says, where there is one.
+/// The best measures once some were taken by tape: all others follow as far as their errors go with these. `all` is the estimate of the body
+/// fit, where there is one.
 pub fn with_tape(
     best: Measurements,
     all: Option<&BodyEstimate>,
@@ -279,8 +279,8 @@ pub fn with_tape(
     Measurements { measures: in_words(of), notes, ..best }
 }
 
-/// What people of that population have who have what was seen of this one. Girths that were only guessed from the stature say
-/// nothing that the stature does not.
+/// The estimate for people of that population who share the measures that were seen. Girths that were only guessed from the stature are left
+/// out, because they add nothing to it.
 fn seen(best: &Measurements, population: Population) -> BodyEstimate {
     let all = tape_readings::population(population);
     let measured = best.measures.named();
@@ -306,7 +306,7 @@ fn in_words(of: impl Fn(&str) -> Option<Estimate>) -> Measures {
     }
 }
 
-/// The measures of the body fit, with what was seen of the shopper.
+/// The measures of the body fit, with the counts of pixels, people and frames.
 fn by_fit(session: &Session, surface: &DepthSurface, fitted: &FittedMeasures) -> Measurements {
     Measurements {
         measures: in_words(|name| fitted.named(name)),
@@ -318,7 +318,7 @@ fn by_fit(session: &Session, surface: &DepthSurface, fitted: &FittedMeasures) ->
     }
 }
 
-/// A frame without what a chair hides.
+/// A frame without the joints that a chair hides.
 fn above_the_chair(frame: &Joints) -> Joints {
     use Joint::*;
     let mut above = *frame;

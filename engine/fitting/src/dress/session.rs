@@ -15,7 +15,7 @@ use crate::FittingError;
 const EMBEDDED_NAME: &str = "shopper (embedded)";
 
 /// Time that a sensor which begins without seeing the hips is given to settle, once it sees them (ns): until then
-/// somebody is walking in, and legs are guesses.
+/// the person is walking in, and legs are guesses.
 const WALK_IN_NS: u64 = SECOND_NS / 2;
 
 /// Opens a session, or the embedded one; `camera` describes raw depth.
@@ -35,7 +35,7 @@ pub fn of_joints(joints: Vec<Joints>) -> Session {
     Session { name: "live".into(), joints, raw_scale_known: true, ..Session::default() }
 }
 
-/// A session of directions, as a camera of colour alone gives them: how large the body is, nobody has measured.
+/// A session of directions, as a colour camera alone gives them: the size of the body is unknown.
 pub fn of_directions(joints: Vec<Joints>) -> Session {
     Session { name: "live".into(), joints, raw_scale_known: false, ..Session::default() }
 }
@@ -51,7 +51,7 @@ pub fn filtered(session: &Session) -> Vec<Joints> {
     session.joints.iter().map(|joints| filter.push(joints)).collect()
 }
 
-/// Whether somebody is seen: the hips are, without which nobody can be dressed.
+/// Whether a person is in view: both hips and the pelvis are believed, which dressing needs.
 pub fn is_present(frame: &Joints) -> bool {
     const HIPS: [Joint; 3] = [Joint::Pelvis, Joint::LeftHip, Joint::RightHip];
     HIPS.iter().all(|&j| frame.at(j).is_believed())
@@ -85,7 +85,7 @@ pub fn standing(session: &Session) -> Result<Vec<Joints>, FittingError> {
 /// That a session has no joints, which a moving body needs.
 pub fn no_joints(session: &Session) -> FittingError {
     FittingError::Input(format!(
-        "session {} has no joints, so that no pose can be shown; record joints too, or depth of somebody who stands alone",
+        "session {} has no joints, so that no pose can be shown; record joints too, or depth of a person who stands alone",
         session.name
     ))
 }

@@ -1,4 +1,4 @@
-//! A try-on, from the request to a dressed world: who wears what, in which sizes, and how the cloth is stepped.
+//! A try-on, from the request to a dressed world: the wearer, the garments with their sizes, and the settings of the cloth.
 //!
 //! [`TryOn`] is the one request. It begins with what a shopper asks for; [`TryOn::sized_for`] turns it into a body and sizes once the shopper
 //! was measured, and in that form a recording holds it, so that a replay makes the same world. [`TryOn::put_on`] and [`TryOn::dress`] make a
@@ -73,7 +73,7 @@ pub struct RequestedGarment {
     pub name: String,
     /// Code of the size; `None` takes the one that fits.
     pub size: Option<String>,
-    /// The garment once it was opened. It is worn as it was then, whatever becomes of its file.
+    /// The garment once it was opened. Later changes of its file do not count.
     source: Option<Arc<GarmentSource>>,
 }
 
@@ -277,7 +277,7 @@ impl TryOn {
     /// Measures the shopper of a session and dresses them as they stand. Without joints the body is followed through the depth.
     ///
     /// # Errors
-    /// A session that nobody can be measured or dressed in; as [`Self::sized_for`].
+    /// A session in which no person can be measured or dressed; as [`Self::sized_for`].
     pub fn on_shopper(&self, session: &Session) -> Result<DressedWorld, FittingError> {
         let measured = measured::measure(session, self.facts())?;
         let track = measured::track(session, &measured)?;
@@ -288,7 +288,7 @@ impl TryOn {
     /// size or the one that was asked for.
     ///
     /// # Errors
-    /// As [`Self::open`]; no garment, a size that is not made.
+    /// As [`Self::open`]; no garment, a size that is not made, a garment that cannot be tucked in.
     pub fn on_mannequin(&self, pose: &Joints) -> Result<DressedWorld, FittingError> {
         let (mut garments, mut body) = (Vec::with_capacity(self.garments.len()), None);
         self.check_count()?;
@@ -306,6 +306,7 @@ impl TryOn {
             return Err(FittingError::Input("no garment is named; name one in [wear]".into()));
         };
         let request = Self::of_body("mannequin", sex, measures, garments).in_quality(self.quality);
+        let request = Self { tuck: self.tuck.clone(), ..request };
         Ok(DressedWorld { still: true, ..request.build(pose)? })
     }
 

@@ -47,7 +47,7 @@ pub struct LoopOptions {
     pub warm_up_steps: u64,
     /// When the meters of sensor and renderer begin (ns on the loop's clock).
     pub metered_from_ns: u64,
-    /// A quality level that the run is held on; `None` lets it govern.
+    /// A quality level that the run is held on; `None` leaves the level to quality control.
     pub held_level: Option<u8>,
 }
 

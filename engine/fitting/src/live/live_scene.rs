@@ -30,7 +30,7 @@ pub struct StepReport {
     pub step_ns: u64,
     /// Whether it was published after its period.
     pub late: bool,
-    /// The place in the quality levels.
+    /// The quality level: 0 is whole quality.
     pub level: u8,
     /// Steps so far that were rolled back, because of a NaN or an infinity.
     pub nonfinite: u64,

@@ -32,7 +32,7 @@ use crate::timing;
 const WARM_UP: usize = 24;
 const TIMED: usize = 40;
 
-/// Steps of the frame without garments.
+/// Steps of a world without garments.
 const EMPTY_STEPS: usize = 60;
 
 /// The colliders that all of them lie on: the benchmark's body, walking.
@@ -91,7 +91,7 @@ struct Sample {
 /// What this machine takes for a body: some seconds' tenths. `track` moves the body.
 ///
 /// # Errors
-/// Where a cloth or the frame cannot be made.
+/// Where a cloth or the world cannot be made.
 pub fn measure(body: Option<(&Body, &Rig, &[Joints])>, workers: usize) -> Result<Costs, PlanError> {
     let mut scenes = Vec::new();
     for text in texts() {
@@ -187,17 +187,17 @@ fn barrier_us(scene: &PlannedScene, costs: &Costs) -> Result<f64, PlanError> {
     Ok(((two - rest - (one - rest) * work.share) / work.phases).max(0.0))
 }
 
-/// The stages of a frame in which nothing is worn (us).
+/// Times of the stages of a world without garments (us).
 fn body_us(body: &Body, rig: &Rig, track: &[Joints], workers: usize) -> Result<[f64; STEP_STAGES.len()], PlanError> {
     let settings = Settings { workers, ..Settings::default() };
-    let (mut frame, _reader) = DressedBody::new(rig.clone(), body.clone(), Vec::new()).build(settings)?;
-    frame.measure_every(0);
+    let (mut world, _reader) = DressedBody::new(rig.clone(), body.clone(), Vec::new()).build(settings)?;
+    world.measure_every(0);
     for k in 0..EMPTY_STEPS {
         if let Some(joints) = track.get(k * track.len() / EMPTY_STEPS) {
-            frame.step(joints);
+            world.step(joints);
         }
     }
-    let half = |k: usize| frame.meters().stages[k].histogram().value_at_quantile(0.5) as f64 * 1e-3;
+    let half = |k: usize| world.meters().stages[k].histogram().value_at_quantile(0.5) as f64 * 1e-3;
     Ok(std::array::from_fn(half))
 }
 

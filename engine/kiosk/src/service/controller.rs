@@ -14,7 +14,7 @@ use super::session::{SessionState, StateChange};
 use super::stock_watch::StockFigures;
 use crate::error::KioskError;
 
-/// What a dressed frame becomes in the loop, and what the renderer has to know of it.
+/// Turns a dressed world into a scene of the loop, and into the data that the renderer needs.
 pub type ToScene<S, O> = Box<dyn Fn(World) -> (S, O)>;
 
 /// Parts of the kiosk that a controller uses.
@@ -25,7 +25,7 @@ pub struct ControllerContext<S, O> {
     pub first: Arc<TryOn>,
     /// The mannequin that is being dressed.
     pub dressing: BackgroundJob<Result<DressedWorld, KioskError>>,
-    /// A dressed frame as a scene of the loop, and what the renderer has to know of it.
+    /// Turns a dressed world into a scene of the loop, and into the data that the renderer needs.
     pub to_scene: ToScene<S, O>,
     /// How the mannequin stands.
     pub pose: Joints,
@@ -46,7 +46,7 @@ impl<S: LoopScene, O> ControllerContext<S, O> {
             return Ok(());
         }
         let (first, pose) = (self.first.clone(), self.pose);
-        self.dressing.start("toile-dresser", move || first.on_mannequin(&pose)).map_err(KioskError::internal)
+        self.dressing.start("toile-mannequin", move || first.on_mannequin(&pose)).map_err(KioskError::internal)
     }
 
     /// Keeps a mannequin that is dressed. One that could not be dressed is tried again.
@@ -60,9 +60,9 @@ impl<S: LoopScene, O> ControllerContext<S, O> {
                 self.changer.stand_by(scene);
                 Ok(())
             }
-            Some(Finished::Panicked) => {
-                Err(KioskError::Internal("the dresser's thread panicked; start the kiosk again".into()))
-            }
+            Some(Finished::Panicked) => Err(KioskError::Internal(
+                "the thread that dresses the mannequin panicked; start the kiosk again".into(),
+            )),
             Some(Finished::Done { value: Err(_), .. }) | None => Ok(()),
         }
     }

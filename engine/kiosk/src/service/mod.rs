@@ -138,7 +138,7 @@ pub struct KioskRun<'a> {
 pub struct Frontend<F, H, O> {
     /// Makes the renderer, once the mannequin is dressed; it is given the camera's pictures, where shoppers may see themselves.
     pub renderer: F,
-    /// A dressed frame as a scene of the loop, and what the renderer has to know of it.
+    /// Turns a dressed world into a scene of the loop, and into the data that the renderer needs.
     pub to_scene: ToScene<WorldScene, O>,
     /// Makes the controller, once the loop runs.
     pub controller: H,

@@ -63,7 +63,7 @@ pub struct ServiceEnvironment<'a, S, O> {
     pub figures: Option<Writer<HealthFigures>>,
     /// The request that every visitor begins with.
     pub first: Arc<TryOn>,
-    /// What a dressed frame becomes in the loop, and what the renderer has to know of it.
+    /// Turns a dressed world into a scene of the loop, and into the data that the renderer needs.
     pub to_scene: ToScene<S, O>,
     /// How the mannequin stands.
     pub pose: Joints,
