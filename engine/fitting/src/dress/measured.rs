@@ -14,7 +14,7 @@ use toile_sensors::source::Session;
 use toile_track::child::child_odds;
 use toile_track::estimate::Estimate;
 use toile_track::fit::measuring::{FittedMeasures, MEASURES};
-use toile_track::measure::{self, MeasureError, Measurements, Source};
+use toile_track::measure::{self, Measurements, Source};
 use toile_track::measures::{Hint, Measures};
 use toile_track::tape_readings::{self, BodyEstimate, TapeReadings};
 
@@ -170,7 +170,11 @@ pub fn measure(session: &Session, facts: ShopperFacts) -> Result<MeasuredSubject
     let best = match &fitted {
         Some(fitted) => by_fit(session, &surface, fitted),
         None if session.joints.is_empty() => return Err(surface.refusal(session)),
-        None => by_proportions(&session.joints, session.raw_scale_known, population)?,
+        None => Measurements {
+            valid_pixels: surface.pixels,
+            people: surface.people.max(1),
+            ..by_proportions(&session.joints, session.raw_scale_known, population)?
+        },
     };
     let mut best = with_tape(best, fitted.as_ref().map(|f| &f.all), population, &facts.tape);
     let child = child(&best, facts);
@@ -202,19 +206,19 @@ pub fn add_joints(session: &mut Session, measured: &MeasuredSubject) -> Result<(
     if !session.joints.is_empty() {
         return Ok(());
     }
-    let fitted = measured.fitted.as_ref().ok_or_else(|| {
-        FittingError::Input(format!(
-            "session {} has no joints, and no body fits its depth; record a person who stands alone, facing the camera, \
-             arms slightly out",
-            session.name
-        ))
-    })?;
+    let fitted = measured.fitted.as_ref().ok_or_else(|| measured.surface.refusal(session))?;
     session.joints = measured.surface.follow(session, fitted);
     session.notes.push(FROM_DEPTH.to_owned());
     Ok(())
 }
 
 fn seated(session: &Session, facts: ShopperFacts) -> Result<MeasuredSubject, FittingError> {
+    if session.joints.is_empty() {
+        return Err(FittingError::Input(format!(
+            "session {} has no joints, by which a seated person is measured; record joints, or stand",
+            session.name
+        )));
+    }
     let population = Population::from(facts.sex);
     let above: Vec<Joints> = session.joints.iter().map(above_the_chair).collect();
     let mut seen = by_proportions(&above, true, population)?;
@@ -232,9 +236,6 @@ fn seated(session: &Session, facts: ShopperFacts) -> Result<MeasuredSubject, Fit
 }
 
 fn by_proportions(joints: &[Joints], scale_known: bool, population: Population) -> Result<Measurements, FittingError> {
-    if joints.is_empty() {
-        return Err(FittingError::input(MeasureError::Empty));
-    }
     measure::by_proportions(joints, &Hint { population, scale_known }).map_err(FittingError::input)
 }
 
