@@ -3,7 +3,7 @@
 //! parameters, so that the model can show which of them are needed.
 
 use std::sync::Arc;
-use std::sync::atomic::Ordering::{self, Relaxed};
+use std::sync::atomic::Ordering;
 
 use loom::cell::UnsafeCell;
 use loom::sync::atomic::AtomicUsize;
@@ -30,25 +30,31 @@ struct Ring<T> {
 // SAFETY: the protocol gives each place to one side at a time; the model ends where it does not.
 unsafe impl<T: Send> Sync for Ring<T> {}
 
-/// The end that pushes.
-pub struct Sender<T>(Arc<Ring<T>>, Orders);
+/// The end that pushes. It keeps its own position beside the shared one.
+pub struct Sender<T> {
+    ring: Arc<Ring<T>>,
+    orders: Orders,
+    sent: usize,
+}
 
-/// The end that pops.
-pub struct Receiver<T>(Arc<Ring<T>>, Orders);
+/// The end that pops. It keeps its own position beside the shared one.
+pub struct Receiver<T> {
+    ring: Arc<Ring<T>>,
+    orders: Orders,
+    taken: usize,
+}
 
 /// A queue with space for `bound` entries.
 pub fn ring<T>(bound: usize, orders: Orders) -> (Sender<T>, Receiver<T>) {
     let places = (0..bound).map(|_| UnsafeCell::new(None)).collect();
     let ring = Arc::new(Ring { places, sent: AtomicUsize::new(0), taken: AtomicUsize::new(0) });
-    (Sender(ring.clone(), orders), Receiver(ring, orders))
+    (Sender { ring: ring.clone(), orders, sent: 0 }, Receiver { ring, orders, taken: 0 })
 }
 
 impl<T> Sender<T> {
     /// Whether the next entry would not fit.
     pub fn is_full(&self) -> bool {
-        let Self(ring, orders) = self;
-        // Relaxed: only this end stores it.
-        ring.sent.load(Relaxed) - ring.taken.load(orders.free) == ring.places.len()
+        self.sent - self.ring.taken.load(self.orders.free) == self.ring.places.len()
     }
 
     /// Pushes an entry.
@@ -59,11 +65,11 @@ impl<T> Sender<T> {
         if self.is_full() {
             return Err(entry);
         }
-        let Self(ring, orders) = self;
-        let sent = ring.sent.load(Relaxed);
+        let Self { ring, orders, sent } = self;
         // SAFETY: the receiver has left the place, and comes back to it only after the store below.
-        ring.places[sent % ring.places.len()].with_mut(|place| unsafe { *place = Some(entry) });
-        ring.sent.store(sent + 1, orders.sent);
+        ring.places[*sent % ring.places.len()].with_mut(|place| unsafe { *place = Some(entry) });
+        *sent += 1;
+        ring.sent.store(*sent, orders.sent);
         Ok(())
     }
 }
@@ -71,15 +77,14 @@ impl<T> Sender<T> {
 impl<T> Receiver<T> {
     /// Takes the oldest entry, if there is one.
     pub fn pop(&mut self) -> Option<T> {
-        let Self(ring, orders) = self;
-        // Relaxed: only this end stores it.
-        let taken = ring.taken.load(Relaxed);
-        if ring.sent.load(orders.look) == taken {
+        let Self { ring, orders, taken } = self;
+        if ring.sent.load(orders.look) == *taken {
             return None;
         }
         // SAFETY: the sender has filled the place, and comes back to it only after the store below.
-        let entry = ring.places[taken % ring.places.len()].with_mut(|place| unsafe { (*place).take() });
-        ring.taken.store(taken + 1, orders.taken);
+        let entry = ring.places[*taken % ring.places.len()].with_mut(|place| unsafe { (*place).take() });
+        *taken += 1;
+        ring.taken.store(*taken, orders.taken);
         entry
     }
 }
