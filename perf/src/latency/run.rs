@@ -139,7 +139,7 @@ impl LoopEvents {
             EventKind::SensorLost => self.note(event, "no sensor frame had come for half a second"),
             EventKind::SensorBack => self.note(event, "the sensor came back"),
             EventKind::Broken => self.note(event, "a worker panicked and the garments kept their places"),
-            EventKind::Changed(_) | EventKind::Missed(_) | EventKind::Dropped(_) => {}
+            EventKind::Changed(_) | EventKind::Missed(_) | EventKind::Waited(_) | EventKind::Dropped(_) => {}
             EventKind::RolledBack => self.note(event, "a garment ended with NaN or infinity and was rolled back"),
         }
     }
@@ -268,7 +268,7 @@ fn report(
         steps: gauges.steps,
         deadline_misses: gauges.missed + gauges.dropped,
         dropped: gauges.dropped,
-        attributed: events.late.attributed,
+        attributed: events.late.attributed(),
         frames: snapshot.count + gauges.skipped,
         late_frames: later_than(&gauges.reaction, snapshot_us) + gauges.skipped,
         pictures: render.pictures,

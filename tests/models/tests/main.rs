@@ -1,4 +1,5 @@
 //! All integration tests of the crate, linked once.
 
+mod ring;
 mod triple;
 mod workers;

@@ -25,12 +25,15 @@ pub struct Event {
 /// Kinds of event.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum EventKind {
-    /// quality control gave up quality, or gave it back.
+    /// Quality control gave up quality, or gave it back.
     Quality(QualityChange),
     /// So many steps were given up before this one, because the thread woke too late.
     Dropped(u64),
     /// The step was not published within its period.
     Missed(Miss),
+    /// Time for which the thread was ready to run but had no core (ns), since the loop last looked. It comes after late steps, from
+    /// the first step that leaves enough time to look.
+    Waited(u64),
     /// No sensor frame has come for [`SENSOR_LOST_NS`].
     SensorLost,
     /// It has come back.
@@ -61,8 +64,6 @@ pub struct Miss {
 pub struct Counters {
     /// Time on a core (ns).
     pub cpu_ns: u64,
-    /// Time ready to run, but without a core (ns).
-    pub waited_ns: u64,
     /// Times that its core was taken away.
     pub preempted: u64,
     /// Page faults: memory that had to be brought in first.
@@ -75,7 +76,6 @@ impl Counters {
     pub fn since(&self, earlier: &Self) -> Self {
         Self {
             cpu_ns: self.cpu_ns.saturating_sub(earlier.cpu_ns),
-            waited_ns: self.waited_ns.saturating_sub(earlier.waited_ns),
             preempted: self.preempted.saturating_sub(earlier.preempted),
             faults: self.faults.saturating_sub(earlier.faults),
         }
@@ -84,9 +84,17 @@ impl Counters {
 
 /// Reads the calling thread's counters, allocating nothing.
 pub trait CounterSource: Send {
-    /// The counters now. `closely` says that there is time for those that cost more: behind a step that was late already,
-    /// and now and then in the time that a step leaves. The others are then as they were.
-    fn counters(&mut self, closely: bool) -> Counters;
+    /// Opens the files of the calling thread's counters, before its first step.
+    fn begin(&mut self) {}
+
+    /// Returns the counters that cost no file access.
+    fn counters(&mut self) -> Counters;
+
+    /// Returns the time for which the thread was ready to run but had no core (ns). It may read a file, so the loop asks only in the
+    /// time that a step leaves.
+    fn waited_ns(&mut self) -> u64 {
+        0
+    }
 }
 
 /// Counts nothing: for systems without such counters, and for tests.
@@ -94,7 +102,7 @@ pub trait CounterSource: Send {
 pub struct NoCounters;
 
 impl CounterSource for NoCounters {
-    fn counters(&mut self, _closely: bool) -> Counters {
+    fn counters(&mut self) -> Counters {
         Counters::default()
     }
 }

@@ -22,6 +22,9 @@ pub mod threads;
 
 /// One of the loop's three threads: it does what is due and says when it wants to be called again.
 pub trait ThreadLoop {
+    /// Opens what belongs to the calling thread. Called once on the loop's thread, before its first turn.
+    fn begin(&mut self) {}
+
     /// Does what is due; gives the time of the next turn (ns), which may have passed already, or none where it has ended.
     fn run_due(&mut self) -> Option<u64>;
 }

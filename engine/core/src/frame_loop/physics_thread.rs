@@ -249,6 +249,9 @@ pub struct PhysicsThread<S, C, A> {
     taken: StepTimes,
     account: A,
     counters: Counters,
+    /// Time without a core when it was last read (ns), and whether a step was late since.
+    waited_ns: u64,
+    is_wait_owed: bool,
     fault_counts: [u64; 2],
     /// Steps taken, and after how many the meters begin.
     tick: u64,
@@ -282,6 +285,8 @@ impl<S: LoopScene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
             taken: StepTimes::default(),
             account,
             counters: Counters::default(),
+            waited_ns: 0,
+            is_wait_owed: false,
             tick: 0,
             warm_up: 0,
             last: 0,
@@ -352,7 +357,7 @@ impl<S: LoopScene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
         self.stepper.step(due.scheduled_ns, begun, &self.clock);
         let ended = self.clock.now_ns();
         self.taken = StepTimes { scheduled_ns: due.scheduled_ns, begun_ns: begun, ended_ns: ended };
-        let counted = self.count(ended - due.scheduled_ns > PERIOD_NS);
+        let counted = self.count();
         self.meter(&due, begun, ended, news);
         let miss = Miss {
             total_ns: ended - due.scheduled_ns,
@@ -362,6 +367,7 @@ impl<S: LoopScene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
         };
         if miss.total_ns > PERIOD_NS {
             self.gauges.missed += 1;
+            self.is_wait_owed = true;
             self.send_event(due.scheduled_ns, EventKind::Missed(miss));
         }
         self.record(due.scheduled_ns);
@@ -372,8 +378,8 @@ impl<S: LoopScene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
         // In the time that is left, if there is enough of it.
         if miss.total_ns < PERIOD_NS / 2 {
             self.stepper.scene.measure();
-            if self.tick.is_multiple_of(MEASURE_EVERY) {
-                self.count(true);
+            if self.is_wait_owed || self.tick.is_multiple_of(MEASURE_EVERY) {
+                self.look_for_waits(due.scheduled_ns);
             }
         }
     }
@@ -438,9 +444,18 @@ impl<S: LoopScene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
     }
 
     /// What the thread's counters grew by since they were last looked at.
-    fn count(&mut self, closely: bool) -> Counters {
-        let now = self.account.counters(closely);
+    fn count(&mut self) -> Counters {
+        let now = self.account.counters();
         now.since(&std::mem::replace(&mut self.counters, now))
+    }
+
+    /// Reads how long the thread waited for a core, and reports it where steps were late since.
+    fn look_for_waits(&mut self, scheduled_ns: u64) {
+        let now = self.account.waited_ns();
+        let before = std::mem::replace(&mut self.waited_ns, now);
+        if std::mem::take(&mut self.is_wait_owed) {
+            self.send_event(scheduled_ns, EventKind::Waited(now.saturating_sub(before)));
+        }
     }
 
     fn record(&mut self, scheduled_ns: u64) {
@@ -475,6 +490,11 @@ impl<S: LoopScene, C: Clock, A: CounterSource> PhysicsThread<S, C, A> {
 }
 
 impl<S: LoopScene, C: Clock, A: CounterSource> ThreadLoop for PhysicsThread<S, C, A> {
+    fn begin(&mut self) {
+        self.account.begin();
+        (self.counters, self.waited_ns) = (self.account.counters(), self.account.waited_ns());
+    }
+
     fn run_due(&mut self) -> Option<u64> {
         match self.schedule.due(self.clock.now_ns()) {
             Due::At(ns) => Some(ns),

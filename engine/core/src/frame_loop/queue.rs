@@ -1,12 +1,13 @@
-//! Queue: a bounded lock-free queue that counts its high-water mark and the entries that did not fit.
+//! Queue: bounded, from one thread to another, wait-free at both ends. It counts its high-water mark and the entries that did not fit.
 //!
-//! The queue is crossbeam's `ArrayQueue`: all places are made at load; pushing and popping is one exchange each.
+//! The entries lie in a ring of `rtrb`, made at load. A push or a pop reads the other end's position and stores its own, so
+//! neither end ever waits for the other, also where the other was preempted in the middle of a call.
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::{AtomicU64, AtomicUsize};
 
-use crossbeam_queue::ArrayQueue;
+use rtrb::{Consumer, Producer, RingBuffer};
 
 /// How full something bounded was.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,44 +35,48 @@ impl Capacity {
     }
 }
 
+/// Counts of a queue, for both ends.
 #[derive(Debug)]
-struct QueueState<T> {
-    entries: ArrayQueue<T>,
+struct QueueCounts {
     constant: &'static str,
     /// Relaxed, both: counters that guard nothing; a reader wants them sooner or later.
     high_water: AtomicUsize,
     lost: AtomicU64,
 }
 
-/// The end that pushes, on the thread that must not wait.
+/// The end that pushes.
 #[derive(Debug)]
-pub struct Sender<T>(Arc<QueueState<T>>);
+pub struct Sender<T> {
+    entries: Producer<T>,
+    counts: Arc<QueueCounts>,
+}
 
 /// The end that pops.
 #[derive(Debug)]
-pub struct Receiver<T>(Arc<QueueState<T>>);
+pub struct Receiver<T> {
+    entries: Consumer<T>,
+    counts: Arc<QueueCounts>,
+}
 
-/// A queue of so many places; `constant` is the name of the bound. At load.
+/// Makes a queue with space for `bound` entries; `constant` is the name of the bound. At load.
 pub fn bounded<T>(constant: &'static str, bound: usize) -> (Sender<T>, Receiver<T>) {
-    let entries = ArrayQueue::new(bound.max(1));
-    let shared = Arc::new(QueueState { entries, constant, high_water: AtomicUsize::new(0), lost: AtomicU64::new(0) });
-    (Sender(shared.clone()), Receiver(shared))
+    let (producer, consumer) = RingBuffer::new(bound.max(1));
+    let counts = Arc::new(QueueCounts { constant, high_water: AtomicUsize::new(0), lost: AtomicU64::new(0) });
+    (Sender { entries: producer, counts: counts.clone() }, Receiver { entries: consumer, counts })
 }
 
 impl<T> Sender<T> {
-    /// Whether the next entry would be lost. Only this end fills the queue, so what is free stays free.
+    /// Whether the next entry would be lost. Only this end fills the queue, so free space stays free.
     pub fn is_full(&self) -> bool {
-        self.0.entries.is_full()
+        self.entries.is_full()
     }
 
-    /// Pushes an entry; where there is no place it is lost and counted. Says whether it fitted. Never waits.
+    /// Pushes an entry and returns whether it fitted. An entry without space is dropped here and counted.
     pub fn push(&mut self, entry: T) -> bool {
-        let fits = self.0.entries.push(entry).is_ok();
-        if fits {
-            self.0.high_water.fetch_max(self.0.entries.len(), Relaxed);
-        } else {
-            self.0.high_water.fetch_max(self.0.entries.capacity(), Relaxed);
-            self.0.lost.fetch_add(1, Relaxed);
+        let fits = self.entries.push(entry).is_ok();
+        self.counts.high_water.fetch_max(self.entries.buffer().capacity() - self.entries.slots(), Relaxed);
+        if !fits {
+            self.counts.lost.fetch_add(1, Relaxed);
         }
         fits
     }
@@ -80,16 +85,16 @@ impl<T> Sender<T> {
 impl<T> Receiver<T> {
     /// Takes the oldest entry, if there is one.
     pub fn pop(&mut self) -> Option<T> {
-        self.0.entries.pop()
+        self.entries.pop().ok()
     }
 
     /// How full it was so far.
     pub fn capacity(&self) -> Capacity {
         Capacity {
-            constant: self.0.constant,
-            bound: self.0.entries.capacity(),
-            high_water: self.0.high_water.load(Relaxed),
-            lost: self.0.lost.load(Relaxed),
+            constant: self.counts.constant,
+            bound: self.entries.buffer().capacity(),
+            high_water: self.counts.high_water.load(Relaxed),
+            lost: self.counts.lost.load(Relaxed),
         }
     }
 }

@@ -91,6 +91,7 @@ where
         // The receiver may be gone.
         let _ = send_placement.send(thread_roles::apply(role));
         let live = || {
+            life.begin();
             while !stop.is_set() {
                 let Some(next) = life.run_due() else { break };
                 mine.fetch_add(1, Relaxed);

@@ -1,9 +1,9 @@
 //! Counters of the system for the physics thread, from which the cause of a late step follows.
 //!
 //! Each step costs two system calls that touch no file: `getrusage(RUSAGE_THREAD)` for faults and lost cores, and the
-//! thread's CPU clock; together under a microsecond. How long the thread waited for a core while it was ready stands only in
-//! `/proc/thread-self/schedstat`: it is read behind steps that were late already, and ten times a second in the time
-//! that a step leaves.
+//! thread's CPU clock. Together they take less than a microsecond. Linux states in `/proc/thread-self/schedstat` alone how long
+//! the thread waited for a core while it was ready. The thread opens that file at its start. It reads the file only in the
+//! time that a step leaves: ten times a second, and after late steps.
 
 use toile_engine::frame_loop::event::{CounterSource, Counters, Event, EventKind, Miss};
 use toile_engine::meter::PERIOD_NS;
@@ -36,7 +36,11 @@ impl ThreadAccount {
 
 #[cfg(target_os = "linux")]
 impl CounterSource for ThreadAccount {
-    fn counters(&mut self, closely: bool) -> Counters {
+    fn begin(&mut self) {
+        self.schedstat = std::fs::File::open("/proc/thread-self/schedstat").ok();
+    }
+
+    fn counters(&mut self) -> Counters {
         use nix::sys::resource::{UsageWho, getrusage};
         use nix::time::{ClockId, clock_gettime};
         if let Ok(usage) = getrusage(UsageWho::RUSAGE_THREAD) {
@@ -46,30 +50,26 @@ impl CounterSource for ThreadAccount {
         if let Ok(cpu) = clock_gettime(ClockId::CLOCK_THREAD_CPUTIME_ID) {
             self.last.cpu_ns = cpu.tv_sec() as u64 * 1_000_000_000 + cpu.tv_nsec() as u64;
         }
-        if closely && let Some(waited) = self.waited() {
-            self.last.waited_ns = waited;
-        }
         self.last
+    }
+
+    fn waited_ns(&mut self) -> u64 {
+        self.schedstat.as_ref().and_then(waited_ns).unwrap_or(0)
     }
 }
 
+/// Time that the thread of a file was ready and had no core (ns).
 #[cfg(target_os = "linux")]
-impl ThreadAccount {
-    /// Time that the thread was ready and had no core (ns).
-    fn waited(&mut self) -> Option<u64> {
-        use std::os::unix::fs::FileExt;
-        if self.schedstat.is_none() {
-            self.schedstat = std::fs::File::open("/proc/thread-self/schedstat").ok();
-        }
-        let mut text = [0; 96];
-        let count = self.schedstat.as_ref()?.read_at(&mut text, 0).ok()?;
-        second_number(&text[..count])
-    }
+fn waited_ns(schedstat: &std::fs::File) -> Option<u64> {
+    use std::os::unix::fs::FileExt;
+    let mut text = [0; 96];
+    let count = schedstat.read_at(&mut text, 0).ok()?;
+    second_number(&text[..count])
 }
 
 #[cfg(not(target_os = "linux"))]
 impl CounterSource for ThreadAccount {
-    fn counters(&mut self, _closely: bool) -> Counters {
+    fn counters(&mut self) -> Counters {
         self.last
     }
 }
@@ -80,8 +80,8 @@ fn second_number(text: &[u8]) -> Option<u64> {
     std::str::from_utf8(text).ok()?.split_ascii_whitespace().nth(1)?.parse().ok()
 }
 
-/// Why a step was late; `before` is the cause of the step before, where that was late too. What is due to none of what is
-/// counted is some other's: a timer, the firmware, a hypervisor that ran another machine.
+/// Returns why a step was late. `before` is the cause of the step before, if that was late too. A delay that no counter of the step
+/// explains has the cause [`Cause::Other`]: a timer, the firmware, or a hypervisor that ran another machine.
 fn cause(miss: &Miss, before: Option<Cause>) -> Cause {
     let counted = &miss.counted;
     // It only began late because the one before ended late.
@@ -94,18 +94,20 @@ fn cause(miss: &Miss, before: Option<Cause>) -> Cause {
         Cause::Solver
     } else if counted.faults > MANY_FAULTS {
         Cause::PageFault
-    } else if counted.preempted > 0 || counted.waited_ns > LONG_WAIT_NS {
+    } else if counted.preempted > 0 {
         Cause::Preempted
     } else {
         Cause::Other
     }
 }
 
-/// Adds up why steps were late, from what the loop tells.
+/// Adds up why steps were late, from the loop's events.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct LatenessAttribution {
-    /// Late steps so far, by cause.
-    pub attributed: Attributed,
+    /// Late steps whose cause is known, by cause.
+    known: Attributed,
+    /// Late steps that no counter explains, until the loop reports how long its thread waited for a core.
+    open: u64,
     /// The last late step and its cause.
     before: Option<(u64, Cause)>,
     /// Steps that were dropped before one whose cause is not known yet.
@@ -113,19 +115,34 @@ pub struct LatenessAttribution {
 }
 
 impl LatenessAttribution {
-    /// Something happened; what is neither late nor dropped is passed over.
+    /// Takes an event. Events that say nothing of late, dropped or waiting steps are passed over.
     pub fn take(&mut self, event: &Event) {
         match event.what {
             EventKind::Missed(miss) => {
                 let before = self.before.filter(|(tick, _)| *tick + 1 == event.tick).map(|(_, cause)| cause);
                 let cause = cause(&miss, before);
                 // Steps that were dropped before this one have its cause.
-                self.attributed.add(cause, 1 + std::mem::take(&mut self.dropped));
+                let steps = 1 + std::mem::take(&mut self.dropped);
+                match cause {
+                    Cause::Other => self.open += steps,
+                    cause => self.known.add(cause, steps),
+                }
                 self.before = Some((event.tick, cause));
+            }
+            EventKind::Waited(ns) => {
+                let cause = if ns > LONG_WAIT_NS { Cause::Preempted } else { Cause::Other };
+                self.known.add(cause, std::mem::take(&mut self.open));
             }
             EventKind::Dropped(steps) => self.dropped += steps,
             _ => {}
         }
+    }
+
+    /// Late steps so far, by cause. Those that nothing explains yet count as [`Cause::Other`].
+    pub fn attributed(&self) -> Attributed {
+        let mut all = self.known;
+        all.add(Cause::Other, self.open);
+        all
     }
 }
 
@@ -142,7 +159,6 @@ mod tests {
         let cpu = |ms: u64| Counters { cpu_ns: ms * 1_000_000, ..Counters::default() };
         assert_eq!(cause(&miss(9, cpu(9)), None), Cause::Solver);
         assert_eq!(cause(&miss(9, Counters { preempted: 1, ..cpu(2) }), None), Cause::Preempted);
-        assert_eq!(cause(&miss(2, Counters { waited_ns: 7_000_000, ..cpu(2) }), None), Cause::Preempted);
         assert_eq!(cause(&miss(9, Counters { faults: 3_000, ..cpu(5) }), None), Cause::PageFault);
         assert_eq!(cause(&miss(9, cpu(2)), None), Cause::Other);
         assert_eq!(cause(&miss(2, cpu(2)), Some(Cause::Solver)), Cause::Solver, "still late from the one before");
@@ -163,17 +179,31 @@ mod tests {
         for (tick, what) in events.into_iter().chain(late_after) {
             sums.take(&Event { tick, scheduled_ns: 0, what });
         }
-        assert_eq!(sums.attributed, Attributed { solver: 5, other: 1, ..Attributed::default() });
+        assert_eq!(sums.attributed(), Attributed { solver: 5, other: 1, ..Attributed::default() });
+    }
+
+    #[test]
+    fn a_wait_for_a_core_explains_late_steps() {
+        let mut sums = LatenessAttribution::default();
+        let mut take = |tick, what| sums.take(&Event { tick, scheduled_ns: 0, what });
+        let unexplained = EventKind::Missed(miss(2, Counters::default()));
+        take(3, unexplained);
+        take(4, unexplained);
+        take(5, EventKind::Waited(7_000_000));
+        take(20, unexplained);
+        take(21, EventKind::Waited(1_000));
+        assert_eq!(sums.attributed(), Attributed { preempted: 2, other: 1, ..Attributed::default() });
     }
 
     #[test]
     #[cfg(target_os = "linux")]
     fn a_thread_that_computes_is_seen_to_and_touching_memory_faults() {
         let mut account = ThreadAccount::new();
-        let before = account.counters(true);
+        account.begin();
+        let before = account.counters();
         let block = std::hint::black_box(vec![1u8; 64 << 20]);
         let sum: u64 = block.iter().map(|b| u64::from(*b)).sum();
-        let grown = account.counters(true).since(&before);
+        let grown = account.counters().since(&before);
         assert_eq!(sum, 64 << 20);
         assert!(grown.cpu_ns > 1_000_000, "{grown:?}");
         assert!(grown.faults > 10, "{grown:?}");

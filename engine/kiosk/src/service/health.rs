@@ -131,7 +131,7 @@ impl HealthCounter {
 
     /// Why steps were late.
     pub fn attributed(&self) -> Attributed {
-        self.late.attributed
+        self.late.attributed()
     }
 
     /// A health line was printed: the next one is about the steps from now on.
