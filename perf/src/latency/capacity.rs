@@ -4,7 +4,7 @@ use toile_base::limits::{MAX_CAPSULES, MAX_PLANES, MAX_SPHERES};
 use toile_engine::cloth::contact::garments::MOST_CROSSINGS;
 use toile_engine::cloth::step::settings::MAX_SUBSTEPS;
 use toile_engine::cloth::{Cloth, forces::stiff_bending};
-use toile_engine::frame_loop::physics_thread::LoopMeters;
+use toile_engine::frame_loop::loop_meters::LoopMeters;
 use toile_engine::frame_loop::queue::Capacity;
 use toile_engine::frame_loop::schedule::MOST_CATCH_UP;
 use toile_engine::meter::PERIOD_NS;

@@ -7,6 +7,7 @@
 pub mod event;
 pub mod flight_recorder;
 pub mod handover;
+pub mod loop_meters;
 pub mod motion_input;
 pub mod physics_thread;
 pub mod quality_control;

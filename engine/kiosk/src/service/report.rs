@@ -1,7 +1,8 @@
 //! The report of a kiosk's run, as in the JSON: figures of the machine, and nothing of a person.
 
 use serde::Serialize;
-use toile_engine::frame_loop::physics_thread::{LoopMeters, LoopScene};
+use toile_engine::frame_loop::loop_meters::LoopMeters;
+use toile_engine::frame_loop::physics_thread::LoopScene;
 use toile_engine::frame_loop::queue::Capacity;
 use toile_engine::frame_loop::render_thread::Renderer;
 use toile_fitting::live::depth_camera::CameraFigures;
