@@ -117,7 +117,7 @@ fn wrong_folders_are_refused_in_one_sentence() {
     assert!(single.contains("calibration"), "{single}");
 }
 
-/// Every filter of the room, with its name.
+/// Every filter of the crate, with its name.
 fn filters() -> Vec<(&'static str, Box<dyn Filter>)> {
     let euro = FilterSettings { smoothing: Smoothing::OneEuro(OneEuroSettings::default()), bone_pull: 1.0 };
     let none = FilterSettings { smoothing: Smoothing::None, bone_pull: 0.0 };

@@ -1,4 +1,4 @@
-//! The scene on which the frame is tested: the shopper of the embedded session, her joints as a perfect sensor sees
+//! The scene on which the world is tested: the shopper of the embedded session, her joints as a perfect sensor sees
 //! them, and the wardrobe in the size nearest to her.
 
 use toile_assets::scene;
@@ -73,38 +73,38 @@ fn nearest_size(style: &Style, body: &Body) -> String {
     nearest.expect("a table with sizes").to_owned()
 }
 
-/// A frame with these garments on a body, not yet dressed.
+/// A world with these garments on a body, not yet dressed.
 ///
 /// # Panics
 /// Where the body has no colliders.
-pub fn frame(body: Body, garments: Vec<Garment>) -> World {
-    frame_and_reader(body, garments).0
+pub fn world(body: Body, garments: Vec<Garment>) -> World {
+    world_and_reader(body, garments).0
 }
 
 /// The same with the end at which its snapshots come out.
 ///
 /// # Panics
-/// As [`frame`].
-pub fn frame_and_reader(body: Body, garments: Vec<Garment>) -> (World, Reader<Snapshot>) {
+/// As [`world`].
+pub fn world_and_reader(body: Body, garments: Vec<Garment>) -> (World, Reader<Snapshot>) {
     let rig = toile_assets::rig::fit(&body);
-    World::new(body, &rig, garments, Settings::default()).expect("a frame of the wardrobe")
+    World::new(body, &rig, garments, Settings::default()).expect("a world of the wardrobe")
 }
 
 /// The scene's shopper dressed in garments of the wardrobe, as she stands at the begin of a track.
 pub fn dressed(names: &[&str], track: &[Joints]) -> World {
     let body = shopper();
     let garments = names.iter().map(|name| dress(name, &body)).collect();
-    let mut frame = frame(body, garments);
-    frame.dress(&track[0]);
-    frame
+    let mut world = world(body, garments);
+    world.dress(&track[0]);
+    world
 }
 
-/// Whether every number that the frame shows or keeps is finite.
-pub fn is_finite(frame: &World) -> bool {
-    let pose = frame.pose();
+/// Whether every number that the world shows or keeps is finite.
+pub fn is_finite(world: &World) -> bool {
+    let pose = world.pose();
     let posed = pose.root.is_finite() && pose.local.iter().all(|q| q.is_finite());
     posed
-        && frame
+        && world
             .cloths()
             .iter()
             .all(|c| (0..c.positions.len()).all(|i| c.positions[i].is_finite() && c.velocity(i).is_finite()))

@@ -101,21 +101,21 @@ fn no_garment_of_the_wardrobe_costs_an_allocation_a_step() {
             .map(|i| dressed::joints(&body, i * 1_000_000_000 / dressed::SENSOR_HZ))
             .collect();
         let mut filter = JointFilter::default();
-        let mut frame = dressed::dressed(&[name], &seen);
+        let mut world = dressed::dressed(&[name], &seen);
         let mut last = filter.push(&seen[0]);
         let found = allocations(|| {
             for raw in &seen[1..] {
                 let joints = filter.push(raw);
                 for quarter in 1..=4 {
                     let time = last.time_ns + (joints.time_ns - last.time_ns) * quarter / 4;
-                    frame.step(black_box(&between(&last, &joints, time)));
+                    world.step(black_box(&between(&last, &joints, time)));
                 }
                 last = joints;
             }
         });
-        assert_eq!(frame.tick(), (SENSOR_FRAMES - 1) * 4);
-        assert!(frame.tick() >= 120);
-        assert_eq!(found, 0, "{name}: {found} allocations in {} steps", frame.tick());
+        assert_eq!(world.tick(), (SENSOR_FRAMES - 1) * 4);
+        assert!(world.tick() >= 120);
+        assert_eq!(found, 0, "{name}: {found} allocations in {} steps", world.tick());
     }
 }
 
@@ -137,8 +137,8 @@ fn no_turn_of_the_loop_costs_an_allocation_whatever_happens() {
     let body = dressed::shopper();
     let garment = dressed::dress_coarsely("sun-dress", &body);
     let seen: Vec<_> = (40..100).map(|i| dressed::joints(&body, i * SECOND_NS / dressed::SENSOR_HZ)).collect();
-    let (mut frame, reader) = dressed::frame_and_reader(body, vec![garment]);
-    frame.dress(&seen[0]);
+    let (mut world, reader) = dressed::world_and_reader(body, vec![garment]);
+    world.dress(&seen[0]);
     let clock = SimClock::default();
     let TripleBuffer { writer, reader: news } = TripleBuffer::new(&SensorFrame::default());
     // Few places, so that both queues are full in the end as well.
@@ -146,7 +146,7 @@ fn no_turn_of_the_loop_costs_an_allocation_whatever_happens() {
     let (recording, entries) = bounded(ENTRIES_NAME, ENTRIES / 8);
     let outlets = PhysicsOutputs { events: sender, recording: Some(recording) };
     let mut physics =
-        PhysicsThread::new(WorldScene::new(frame), clock.clone(), 0, news, outlets, NoCounters).warming_up(60);
+        PhysicsThread::new(WorldScene::new(world), clock.clone(), 0, news, outlets, NoCounters).warming_up(60);
     let mut sense = SensorThread::new(Playback::new(&seen, 0, 1), JointFilter::default(), clock.clone(), writer);
     let mut render = RenderThread::new(Glance(0.0), clock.clone(), 0, reader);
     let found = allocations(|| {

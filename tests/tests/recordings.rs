@@ -70,7 +70,7 @@ fn filtered(file: &Path) -> Vec<Joints> {
 fn play(track: &[Joints], worn: &[&str]) -> (World, Figures) {
     let body = toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).expect("the average woman");
     let garments = worn.iter().map(|name| dressed::dress(name, &body)).collect();
-    let mut world = dressed::frame(body, garments);
+    let mut world = dressed::world(body, garments);
     world.dress(&track[0]);
     let mut figures = Figures::default();
     let start = track[0].time_ns;

@@ -22,16 +22,16 @@ fn standing(tucked: bool) -> World {
         tuck_in(&mut garments, 1).unwrap();
     }
     let track = dressed::track(&body, 0.0, 0.1);
-    let mut frame = dressed::frame(body, garments);
-    frame.dress(&track[0]);
-    frame
+    let mut world = dressed::world(body, garments);
+    world.dress(&track[0]);
+    world
 }
 
 /// How far the shirt's particles near the hem are in front of the trousers (m).
-fn hem_in_front(frame: &World) -> Vec<f32> {
-    let (trousers, shirt) = (&frame.cloths()[0].positions, &frame.cloths()[1].positions);
-    let garment = &frame.garments()[1];
-    let mesh = SurfaceMesh::new(&frame.garments()[0].triangles, trousers.len());
+fn hem_in_front(world: &World) -> Vec<f32> {
+    let (trousers, shirt) = (&world.cloths()[0].positions, &world.cloths()[1].positions);
+    let garment = &world.garments()[1];
+    let mesh = SurfaceMesh::new(&world.garments()[0].triangles, trousers.len());
     let hem = garment.start.iter().map(|p| p.y).fold(f32::MAX, f32::min) + 0.05;
     let at = |v: u32| trousers[v as usize];
     let in_front = |p: Vec3A| {
@@ -43,10 +43,10 @@ fn hem_in_front(frame: &World) -> Vec<f32> {
 }
 
 /// Heights of the edges that pass through the other garment (m).
-fn crossings(frame: &World) -> Vec<f32> {
-    let triangles: Vec<_> = frame.garments().iter().map(|g| &*g.triangles).collect();
+fn crossings(world: &World) -> Vec<f32> {
+    let triangles: Vec<_> = world.garments().iter().map(|g| &*g.triangles).collect();
     let exact = |p: &Vec3A| p.as_dvec3();
-    let at: Vec<Vec<DVec3>> = frame.cloths().iter().map(|c| c.positions.iter().map(exact).collect()).collect();
+    let at: Vec<Vec<DVec3>> = world.cloths().iter().map(|c| c.positions.iter().map(exact).collect()).collect();
     let all: Vec<&[DVec3]> = at.iter().map(|p| &p[..]).collect();
     let found = CrossingTest::new(&triangles).between(&all);
     found.iter().map(|c| all[c.edge_mesh][c.edge[0] as usize].y as f32).collect()
@@ -55,15 +55,15 @@ fn crossings(frame: &World) -> Vec<f32> {
 #[test]
 fn a_tucked_shirt_ends_inside_of_the_trousers_and_one_that_is_not_outside() {
     for tucked in [true, false] {
-        let frame = standing(tucked);
-        let hem = hem_in_front(&frame);
+        let world = standing(tucked);
+        let hem = hem_in_front(&world);
         let inside = hem.iter().filter(|front| **front < 0.0).count();
-        let crossed = crossings(&frame);
+        let crossed = crossings(&world);
         let right = if tucked { inside } else { hem.len() - inside };
         assert!(right * 100 >= 98 * hem.len(), "tucked in: {tucked}, {inside} of {} inside", hem.len());
         if tucked {
             assert!(crossed.len() <= MOST_CROSSINGS, "{} crossings", crossed.len());
-            let band = frame.cloths()[0].positions.iter().map(|p| p.y).fold(0.0, f32::max);
+            let band = world.cloths()[0].positions.iter().map(|p| p.y).fold(0.0, f32::max);
             assert!(crossed.iter().all(|y| (y - band).abs() < AT_EDGE_M), "below the waistband {band} m: {crossed:?}");
         }
     }

@@ -86,18 +86,18 @@ fn a_hanging_strip_stretches_by_its_weight_whatever_the_substeps() {
 fn coarse(track: &[Joints]) -> World {
     let body = dressed::shopper();
     let garment = dressed::dress_coarsely("sun-dress", &body);
-    let mut frame = dressed::frame(body, vec![garment]);
-    frame.dress(&track[0]);
-    frame
+    let mut world = dressed::world(body, vec![garment]);
+    world.dress(&track[0]);
+    world
 }
 
 /// Runs `look` after each step of a track.
-fn play(frame: &mut World, track: &[Joints], mut look: impl FnMut(u64, &World)) {
+fn play(world: &mut World, track: &[Joints], mut look: impl FnMut(u64, &World)) {
     let (start, end) = (track[0].time_ns, track[track.len() - 1].time_ns);
     let mut tick = 0;
     while start + ticks_to_ns(tick) <= end {
-        frame.step(&sample(track, start + ticks_to_ns(tick)).expect("a track with frames"));
-        look(tick, frame);
+        world.step(&sample(track, start + ticks_to_ns(tick)).expect("a track with frames"));
+        look(tick, world);
         tick += 1;
     }
 }
@@ -106,10 +106,10 @@ fn play(frame: &mut World, track: &[Joints], mut look: impl FnMut(u64, &World)) 
 fn pinned_particles_never_leave_the_skin() {
     let track = dressed::track(&dressed::shopper(), 3.2, 2.0);
     let mut farthest = 0.0f32;
-    play(&mut coarse(&track), &track, |tick, frame| {
-        let (garment, cloth) = (&frame.garments()[0], &frame.cloths()[0]);
+    play(&mut coarse(&track), &track, |tick, world| {
+        let (garment, cloth) = (&world.garments()[0], &world.cloths()[0]);
         let mut bones = [Affine3A::IDENTITY; BONES];
-        palette(&frame.body().skeleton, frame.pose(), &mut bones);
+        palette(&world.body().skeleton, world.pose(), &mut bones);
         for (&i, w) in garment.fixed.iter().zip(&garment.fixed_weights) {
             let rest = Vec3A::from(garment.start[i as usize]);
             let parts = w.bones.iter().zip(w.weights).map(|(b, w)| bones[usize::from(*b)].transform_point3a(rest) * w);
@@ -123,26 +123,26 @@ fn pinned_particles_never_leave_the_skin() {
 }
 
 /// Energy of motion of the free particles (J).
-fn kinetic_energy(frame: &World) -> f32 {
-    frame.cloths()[0].kinetic_energy(&frame.garments()[0]) as f32
+fn kinetic_energy(world: &World) -> f32 {
+    world.cloths()[0].kinetic_energy(&world.garments()[0]) as f32
 }
 
 #[test]
 fn a_garment_at_rest_settles() {
     let track = dressed::track(&dressed::shopper(), 0.0, 0.1);
-    let mut frame = coarse(&track);
+    let mut world = coarse(&track);
     let seconds = 3;
     let mut energy = Vec::new();
     for _ in 0..seconds * STEP_HZ {
-        frame.step(&track[0]);
-        assert!(dressed::is_finite(&frame));
-        energy.push(kinetic_energy(&frame));
+        world.step(&track[0]);
+        assert!(dressed::is_finite(&world));
+        energy.push(kinetic_energy(&world));
     }
     let mean = |part: &[f32]| part.iter().sum::<f32>() / part.len() as f32;
     let seconds: Vec<f32> = energy.chunks(STEP_HZ as usize).map(mean).collect();
     eprintln!("energy of motion in each second: {seconds:?} J");
     assert!(seconds[2] < 0.5 * seconds[0], "it does not come to rest: {seconds:?} J");
-    let mass: f32 = frame.garments()[0].inverse_mass.iter().filter(|w| **w > 0.0).map(|w| w.recip()).sum();
+    let mass: f32 = world.garments()[0].inverse_mass.iter().filter(|w| **w > 0.0).map(|w| w.recip()).sum();
     let speed = (2.0 * seconds[2] / mass).sqrt();
     assert!(speed < 0.05, "after two seconds it still moves at {speed} m/s");
 }
@@ -150,8 +150,8 @@ fn a_garment_at_rest_settles() {
 #[test]
 fn joints_that_are_no_numbers_leave_no_trace() {
     let track = dressed::track(&dressed::shopper(), 1.6, 3.5);
-    let mut frame = coarse(&track);
-    let mut poser = Poser::new(&frame.body().skeleton);
+    let mut world = coarse(&track);
+    let mut poser = Poser::new(&world.body().skeleton);
     let mut off = 0.0;
     for tick in 0..400u64 {
         let clean = sample(&track, track[0].time_ns + ticks_to_ns(tick)).expect("a track with frames");
@@ -162,15 +162,15 @@ fn joints_that_are_no_numbers_leave_no_trace() {
                 joint.confidence = if i % 5 == 0 { f32::NAN } else { 1.0 };
             }
         }
-        frame.step(&dirty);
-        assert!(dressed::is_finite(&frame), "tick {tick}");
+        world.step(&dirty);
+        assert!(dressed::is_finite(&world), "tick {tick}");
         let pose = poser.pose(&clean, STEP_SECONDS);
-        let turns = pose.local.iter().zip(&frame.pose().local).map(|(a, b)| a.angle_between(*b));
-        off = turns.fold(pose.root.distance(frame.pose().root), f32::max);
+        let turns = pose.local.iter().zip(&world.pose().local).map(|(a, b)| a.angle_between(*b));
+        off = turns.fold(pose.root.distance(world.pose().root), f32::max);
     }
-    assert_eq!(frame.cloths()[0].events.rolled_back, 0, "the checks before the cloth keep it out");
+    assert_eq!(world.cloths()[0].events.rolled_back, 0, "the checks before the cloth keep it out");
     assert!(off < 0.05, "two and a half seconds later the pose is still {off} (m or rad) off");
-    let strain = measure::strain(&mut frame.cloths()[0].clone(), &frame.garments()[0]);
+    let strain = measure::strain(&mut world.cloths()[0].clone(), &world.garments()[0]);
     assert!(strain.max < 0.5, "the dress has not recovered: {strain:?}");
 }
 
@@ -180,23 +180,23 @@ fn a_shopper_who_is_suddenly_elsewhere_keeps_her_dress() {
     for frame in &mut track[30..] {
         frame.joints.iter_mut().for_each(|j| j.position += Vec3::new(2.0, 0.0, -0.5));
     }
-    let mut frame = coarse(&track);
+    let mut world = coarse(&track);
     let mut arrived = 0.0;
     let mut worst = 0.0f32;
     // As from a live sensor: the latest frame, nothing between two.
     for tick in 0..480u64 {
         let latest = track[(tick / 4) as usize];
-        frame.step(&latest);
-        assert!(dressed::is_finite(&frame), "tick {tick}");
-        arrived = frame.pose().root.x;
-        worst = worst.max(measure::strain(&mut frame.cloths()[0].clone(), &frame.garments()[0]).max);
+        world.step(&latest);
+        assert!(dressed::is_finite(&world), "tick {tick}");
+        arrived = world.pose().root.x;
+        worst = worst.max(measure::strain(&mut world.cloths()[0].clone(), &world.garments()[0]).max);
     }
-    let strain = measure::strain(&mut frame.cloths()[0].clone(), &frame.garments()[0]);
+    let strain = measure::strain(&mut world.cloths()[0].clone(), &world.garments()[0]);
     eprintln!("strain at worst {worst}, three seconds later {strain:?}");
     assert!((arrived - 2.0).abs() < 0.1, "she is at {arrived} m, not at 2 m");
-    assert_eq!(frame.cloths()[0].events.rolled_back, 0);
+    assert_eq!(world.cloths()[0].events.rolled_back, 0);
     assert!(strain.p99 < 0.1, "the dress has not recovered: {strain:?}");
-    let cloth = frame.cloths()[0].positions.iter().map(|p| p.distance(frame.pose().root.into())).fold(0.0, f32::max);
+    let cloth = world.cloths()[0].positions.iter().map(|p| p.distance(world.pose().root.into())).fold(0.0, f32::max);
     assert!(cloth < 1.5, "a part of the dress stayed behind, {cloth} m away");
 }
 
@@ -217,10 +217,10 @@ fn calm_motion_stretches_little_and_stays_outside_of_the_body() {
         for (name, most) in CALM_STRAIN_P99 {
             let track = &track;
             scope.spawn(move || {
-                let mut frame = dressed::dressed(&[name], track);
-                play(&mut frame, track, |tick, frame| assert!(dressed::is_finite(frame), "{name}: tick {tick}"));
-                let strain = frame.meters().strain();
-                let deepest = frame.meters().penetration_max;
+                let mut world = dressed::dressed(&[name], track);
+                play(&mut world, track, |tick, world| assert!(dressed::is_finite(world), "{name}: tick {tick}"));
+                let strain = world.meters().strain();
+                let deepest = world.meters().penetration_max;
                 eprintln!("{name}: {strain:?}, deepest {:.1} mm", deepest * 1e3);
                 assert!(strain.p99 < most, "{name}: {strain:?}");
                 assert!(strain.mean > 0.0, "{name}: nothing was measured");

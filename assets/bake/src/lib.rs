@@ -43,14 +43,14 @@ pub use shape::Shape;
 
 /// Links between a particle and where it hangs that one substep can settle at the quality `shop`: one linearised solve of
 /// a longer chain leaves too much of its sideways motion to the next. On the benchmark's skirt 4, 4 and 8 substeps keep
-/// the mean strain of a walk below .2 % at 32, 64 and 128 rows; with half as many it is three times that.
+/// the mean strain of a walk below 0.2 % at 32, 64 and 128 rows; with half as many it is three times that.
 const LINKS_A_SUBSTEP: f32 = 16.0;
 
 /// Fewest substeps: what the legs do to the hem within a step does not get less with the mesh.
 const LEAST_SUBSTEPS: f32 = 4.0;
 
 /// Substeps of a mesh whose links lie in no rows, over those of one whose links do: each of its substeps solves everything
-/// once ([`Layout::is_scattered`]). On the benchmark's irregular skirt 16 such substeps take .85 of the time of 10 that solve
+/// once ([`Layout::is_scattered`]). On the benchmark's irregular skirt 16 such substeps take 0.85 of the time of 10 that solve
 /// hoops and fibers in turn, and leave as much strain in the mean and three quarters in the 99th percentile.
 const SCATTERED: f32 = 1.6;
 

@@ -105,7 +105,7 @@ pub fn rough_sheet(width: f64, height: f64, spacing: f64, seed: u64) -> TestMesh
     laid(&points, &delaunay(&points), |p| Vec3::new(p.x, p.y - height as f32, 0.0))
 }
 
-/// An irregular skirt: a cone from radius .18 m at the waist (y = 0) to .42 m, .78 m below, closed.
+/// An irregular skirt: a cone from radius 0.18 m at the waist (y = 0) to 0.42 m, 0.78 m below, closed.
 pub fn rough_skirt(spacing: f64, seed: u64) -> TestMesh {
     let (inner, outer) = (0.18, 0.42);
     let mut random = SplitMix64::new(seed);

@@ -55,7 +55,7 @@ fn no_two_constraints_of_a_set_share_a_particle() {
         let at = layout.fibers.bundles[last].rows.start as usize;
         layout.fibers.rows[at].first = row.first;
     });
-    assert!(fibers.is_err(), "{fibers:?}");
+    assert!(matches!(fibers, Err(LayoutError::Shared { what: "fibers", .. })), "{fibers:?}");
 }
 
 #[test]

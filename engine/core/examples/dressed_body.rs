@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         measures.stature
     );
 
-    // The frame owns the scene; the reader is the end at which pictures are made, on whatever thread.
+    // The world owns the scene; the reader is the end at which pictures are made, on whatever thread.
     let (mut world, mut reader) = World::new(body.clone(), &rig, vec![dress], Settings::default())?;
     world.dress(&joints(&body, 0));
     let mut shown = 0;

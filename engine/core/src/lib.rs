@@ -44,7 +44,7 @@
 //!
 //! | feature | what it adds |
 //! |---|---|
-//! | none | pose, skinning, colliders, cloth, [`frame`]: one step called from the host's own loop. 17 packages |
+//! | none | pose, skinning, colliders, cloth, [`world`]: one step called from the host's own loop. 17 packages |
 //! | `threads` | a second worker of the cloth on a thread of its own; the bits stay the same |
 //! | `meters` | distributions of step and stage times |
 //! | `loop` | sensor, physics and render threads at 120 Hz, recording and replay. With all features 28 packages |
@@ -56,8 +56,9 @@
 //!
 //! # Platforms
 //!
-//! Rust 1.89 or newer. x86-64 with SSE2, AVX2 or AVX-512, chosen when the program runs; other processors use plain `f32`
-//! with the same bits. The same input gives the same bits whatever the lanes and the workers.
+//! Rust 1.89 or newer. x86-64 with SSE2, AVX2 or AVX-512, chosen when the program runs; aarch64 with NEON; WebAssembly with
+//! SIMD128 where it is compiled in; other processors use plain `f32`. All give the same bits. The same input gives the same
+//! bits whatever the lanes and the workers.
 
 // Modules in the order of the data: each imports only from the groups above its own (tests/tests/layers.rs).
 pub mod clock;

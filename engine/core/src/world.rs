@@ -137,7 +137,7 @@ impl World {
         };
         let TripleBuffer { writer, reader } = TripleBuffer::new(&snapshot);
         let pool = WorkerPool::new(settings.workers.clamp(1, SHARES))?;
-        let frame = Self {
+        let world = Self {
             poser: Poser::new(&body.skeleton).keeping_clear(&spheres, &rig.capsules),
             pose: Pose::rest(&body.skeleton),
             palette: [Affine3A::IDENTITY; BONES],
@@ -158,7 +158,7 @@ impl World {
             pool,
             body,
         };
-        Ok((frame, reader))
+        Ok((world, reader))
     }
 
     /// Dresses the shopper before the session starts: from the rest pose, in which garments are cut, into the pose of
@@ -193,7 +193,7 @@ impl World {
         Self { settings: Settings { workers: pool.workers(), ..self.settings }, pool, ..self }
     }
 
-    /// Swaps worker pools with a frame that is no longer stepped, which gets this one's: no thread begins or ends.
+    /// Swaps worker pools with a world that is no longer stepped, which gets this one's: no thread begins or ends.
     pub fn swap_workers(&mut self, from: &mut Self) {
         std::mem::swap(&mut self.pool, &mut from.pool);
         self.settings.workers = self.pool.workers();
@@ -454,11 +454,11 @@ mod tests {
         let rig = toile_assets::rig::fit(&body);
         for (asked, given) in [(0, 1), (1, 1), (2, 2), (9, SHARES)] {
             let settings = Settings { workers: asked, ..Settings::default() };
-            let (frame, _reader) = World::new(body.clone(), &rig, Vec::new(), settings).unwrap();
-            assert_eq!(frame.settings().workers, given, "{asked} asked for");
+            let (world, _reader) = World::new(body.clone(), &rig, Vec::new(), settings).unwrap();
+            assert_eq!(world.settings().workers, given, "{asked} asked for");
             let (other, _reader) = World::new(body.clone(), &rig, Vec::new(), Settings::default()).unwrap();
-            let frame = other.with_workers(WorkerPool::new(given).unwrap());
-            assert_eq!(frame.settings().workers, given);
+            let world = other.with_workers(WorkerPool::new(given).unwrap());
+            assert_eq!(world.settings().workers, given);
         }
     }
 }

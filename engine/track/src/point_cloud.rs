@@ -2,7 +2,6 @@
 
 use glam::Vec3;
 use toile_base::frame::{DepthFrame, Intrinsics};
-use toile_base::numeric::statistics::quantile_of;
 use toile_sensors::segment::{Segmenter, Zone};
 
 /// Farther than this the Kinect's steps exceed 46 mm and a body has under 6,000 pixels (m).
@@ -23,12 +22,6 @@ const EDGE: usize = 4;
 pub struct PersonCloud {
     /// Surface points, world (m), row by row from the top left of the picture.
     pub points: Vec<Vec3>,
-    /// Distance between neighbouring points, across the view (m).
-    pub pitch: f32,
-    /// Median distance from the camera (m).
-    pub distance: f32,
-    /// Elevation of their highest point seen from the camera, above the horizontal (rad).
-    pub elevation: f32,
     /// The picture's edge cuts the person off below.
     pub cut_below: bool,
 }
@@ -73,7 +66,7 @@ impl PersonFinder {
 impl PersonCloud {
     /// The cloud of a frame that holds nothing but a person; `None` if it is empty.
     pub fn of(alone: &DepthFrame) -> Option<Self> {
-        let Intrinsics { width, height, fx, fy, .. } = alone.intrinsics;
+        let Intrinsics { width, height, .. } = alone.intrinsics;
         let (width, height) = (width as usize, height as usize);
         let (mut points, mut pixels) = (Vec::new(), Vec::new());
         for (i, &mm) in alone.depth_mm.iter().enumerate().filter(|(_, mm)| **mm != 0) {
@@ -81,15 +74,16 @@ impl PersonCloud {
             points.push(alone.camera_to_world.transform_point3(seen));
             pixels.push(i);
         }
-        let distance = quantile_of(pixels.iter().map(|i| f32::from(alone.depth_mm[*i]) * 1e-3), 0.5)?;
+        if points.is_empty() {
+            return None;
+        }
         let [bottom, top] = extent(points.iter().map(|p| p.y));
         let low = bottom + LOWEST * (top - bottom);
         let lowest = points.iter().zip(&pixels).filter(|(p, _)| p.y < low).map(|(_, i)| (i % width, i / width));
         let at_edge = |(u, v): (usize, usize)| u < EDGE || v < EDGE || u + EDGE >= width || v + EDGE >= height;
         let (all, cut) = lowest.fold((0, 0), |(all, cut), at| (all + 1, cut + usize::from(at_edge(at))));
-        let elevation = ((top - alone.camera_to_world.translation.y) / distance).atan();
         let cut_below = cut as f32 > CUT * all as f32;
-        Some(Self { points, pitch: distance / (fx * fy).sqrt(), distance, elevation, cut_below })
+        Some(Self { points, cut_below })
     }
 }
 

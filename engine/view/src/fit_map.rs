@@ -72,9 +72,9 @@ pub fn agreed(local: &[f32], heights: &[f32], levels: &[(f32, f32)]) -> Vec<f32>
 /// How tight a garment was judged, -1 (loose) .. 1 (tight), at the zones where it is known.
 pub type JudgedTightness = Vec<(Girth, f32)>;
 
-/// The fit map of each garment of a frame: how tight it sits from place to place, in the mean as tight as it was judged
+/// The fit map of each garment of a world: how tight it sits from place to place, in the mean as tight as it was judged
 /// `[garments][particles]`.
-pub fn of_frame(world: &World, judged: &[JudgedTightness]) -> Vec<Vec<f32>> {
+pub fn of_world(world: &World, judged: &[JudgedTightness]) -> Vec<Vec<f32>> {
     let levels = &world.body().levels;
     let level = |zone: Girth| match zone {
         Girth::Chest => levels.chest,

@@ -1,4 +1,5 @@
 //! Signed distance to a closed triangle mesh, by which the contact of cloth with the skin is judged.
+//! It shares no code with the engine.
 //!
 //! The nearest triangle is found in a tree of boxes, without any limit to the distance. The sign is that of the offset along the
 //! normal of the nearest face, edge or corner, where the normal of an edge is the sum of its faces' and that of a corner the sum

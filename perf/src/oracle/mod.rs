@@ -1,4 +1,5 @@
 //! The oracle: an independent f64 solver of the engine's discretisation, by which the engine's solver error is measured.
+//! It shares no solver code with the engine.
 //!
 //! x* is where the sum of inertia or weight, stretch, bending, contact and friction is at its least: Newton's method with
 //! a line search (`newton`) on a sparse Cholesky factorisation (`system`), inside rounds of the method of multipliers

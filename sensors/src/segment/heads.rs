@@ -10,14 +10,15 @@ use super::grid::Grid;
 /// How far a peak stands out of what it is part of (m).
 const STANDS_OUT: f32 = 0.12;
 
-/// Cells so near the border between two people, over the surface, are given to neither (m): a forearm with
-/// its hand.
+/// Distance over the surface from the border between two people within which a cell is given to neither (m): a forearm
+/// with its hand.
 const TOUCHING: f32 = 0.4;
 
 /// Most peaks of a piece: two people with raised hands have six.
 pub(super) const MAX_PEAKS: usize = 8;
 
-const NO_PERSON: u32 = u32::MAX;
+/// Marks a cell that is in no hill yet.
+const NO_HILL: u32 = u32::MAX;
 
 /// Owner of a cell outside the piece, of one not reached yet, and of one near a border.
 const OUTSIDE: u8 = u8::MAX - 2;
@@ -39,7 +40,7 @@ pub(super) struct Heads {
 impl Heads {
     /// The peaks of a piece, the highest first, at most [`MAX_PEAKS`].
     pub fn peaks(&mut self, grid: &Grid, cells: &[u32]) -> Vec<u32> {
-        self.hill.resize(grid.depth.len(), NO_PERSON);
+        self.hill.resize(grid.depth.len(), NO_HILL);
         self.order.clear();
         self.order.extend_from_slice(cells);
         self.order
@@ -49,7 +50,7 @@ impl Heads {
             let cell = self.order[i];
             self.hill[cell as usize] = cell;
             for other in grid.neighbours(cell as usize) {
-                if self.hill[other] == NO_PERSON || !grid.joined(cell as usize, other) {
+                if self.hill[other] == NO_HILL || !grid.joined(cell as usize, other) {
                     continue;
                 }
                 let (a, b) = (self.root(cell), self.root(other as u32));
@@ -67,7 +68,7 @@ impl Heads {
         // What never met a higher hill is a peak; within one piece that is the highest cell.
         peaks.extend(self.order.iter().copied().filter(|c| self.hill[*c as usize] == *c));
         for cell in cells {
-            self.hill[*cell as usize] = NO_PERSON;
+            self.hill[*cell as usize] = NO_HILL;
         }
         peaks.sort_unstable_by(|a, b| grid.height[*b as usize].total_cmp(&grid.height[*a as usize]).then(a.cmp(b)));
         peaks.truncate(MAX_PEAKS);

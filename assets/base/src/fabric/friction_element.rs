@@ -64,8 +64,8 @@ pub struct LoopReading {
     pub width: f64,
 }
 
-/// Deforms to `most`, to `-most` and back, and reads slope and width between `from` and `to`: of bending between .5 and
-/// 1.5 1/cm in a loop to 2.5, of shear between .5 and 2.5 degrees in a loop to 8.
+/// Deforms to `most`, to `-most` and back, and reads slope and width between `from` and `to`: of bending between 0.5 and
+/// 1.5 1/cm in a loop to 2.5, of shear between 0.5 and 2.5 degrees in a loop to 8.
 pub fn read_loop(most: f64, [from, to]: [f64; 2], mut force: impl FnMut(f64) -> f64) -> LoopReading {
     const STEPS: i32 = 1_000;
     let at = |k: i32| most * f64::from(k) / f64::from(STEPS);

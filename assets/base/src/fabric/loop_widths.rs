@@ -15,7 +15,7 @@ pub struct LoopWidths {
 
 impl LoopWidths {
     /// Accepted figures, lowest and highest: an order of magnitude wider than what is published of apparel fabrics (2HB
-    /// .0004 to .5 gf cm/cm, 2HG .1 to 10 gf/cm).
+    /// 0.0004 to 0.5 gf cm/cm, 2HG 0.1 to 10 gf/cm).
     pub const RANGES: [(&'static str, f32, f32); 3] = [
         ("hysteresis.bend_warp_mn", 0.0, 50.0),
         ("hysteresis.bend_weft_mn", 0.0, 50.0),

@@ -163,7 +163,7 @@ impl Fabric {
     }
 
     /// Accepted figures, lowest and highest: from the thinnest silk to canvas, an order of magnitude wider than the 618
-    /// fabrics that were measured for the published bands (REFERENCES: density .031 to .487 kg/m2, bending rigidity .9
+    /// fabrics that were measured for the published bands (REFERENCES: density 0.031 to 0.487 kg/m2, bending rigidity 0.9
     /// to 109 uN m).
     pub const RANGES: [(&'static str, f32, f32); 11] = [
         ("density_kg_m2", 0.01, 2.0),

@@ -46,7 +46,7 @@ const HEAD: usize = 8 + 4 + 8;
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum BytesError {
     /// Other bytes than a baked garment begins with.
-    #[error("these bytes are not a baked garment; give a file that `toile bake --out` wrote")]
+    #[error("these bytes are not a baked garment; give what `Garment::to_bytes` wrote")]
     NotAGarment,
     /// A byte form of another version.
     #[error(

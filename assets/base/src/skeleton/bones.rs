@@ -26,7 +26,7 @@ pub struct Twist {
 /// Twist bones of an upper arm: 120 degrees, in seven stretches of 17.
 const ARM: usize = 6;
 /// Twist bones of a forearm: 120 degrees, in twelve stretches of 10. It is the limb that people do turn so far, and its
-/// triangles alone lose some 1.5 % of the volume as they are twisted; blending adds .5 % to that.
+/// triangles alone lose some 1.5 % of the volume as they are twisted; blending adds 0.5 % to that.
 const FOREARM: usize = 11;
 /// Twist bones of a thigh: 60 degrees, in four stretches of 15.
 const THIGH: usize = 3;

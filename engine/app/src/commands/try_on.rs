@@ -352,7 +352,7 @@ fn play(
     let drew = pictures.is_some() || video.is_some();
     let mut hidden_m = 0.0f32;
     if let Some(pictures) = pictures {
-        let tightness = fit_map::of_frame(world, judged);
+        let tightness = fit_map::of_world(world, judged);
         draw_lines(&mut lines, &args.lines, world);
         let (facing, worst) = (facing(world), worst.as_ref());
         let ending = FinalState { tightness: &tightness, facing, title, lines: lines.as_slice(), worst };

@@ -1,6 +1,6 @@
 //! Frame loop: the loop of sensor, physics and render threads, and the quality control that keeps it in time.
 //!
-//! It may add 20 us a step to the frame's own stages, and allocates nothing after the start. Each of the three loops is a
+//! It may add 20 us a step to the world's own stages, and allocates nothing after the start. Each of the three loops is a
 //! [`ThreadLoop`] on a thread of its own, or all of them run one after the other against a simulated clock. They share only a
 //! [`crate::triple_buffer`] or a bounded queue ([`queue`]).
 

@@ -25,7 +25,7 @@ pub const MEASURE_EVERY: u64 = 12;
 /// Most dropped steps whose lateness is metered one by one: ten seconds of them.
 const MOST_TOLD: u64 = 10 * STEP_HZ as u64;
 
-/// What is stepped: the frame, or what stands for it in a test.
+/// The scene that the loop steps: the world, or a stand-in of a test.
 pub trait LoopScene {
     /// One step to where the joints are; publishes a snapshot with these times.
     fn step(&mut self, joints: &Joints, times: SnapshotTimes, clock: &impl Clock);
@@ -45,7 +45,7 @@ pub trait LoopScene {
     /// Spoils the state, for a run that tries what is borne.
     fn inject_fault(&mut self, _seed: u64) {}
 
-    /// Takes over what does not go with the scene before it: who works on the steps.
+    /// Takes over the workers of the scene before it.
     fn take_workers_from(&mut self, _before: &mut Self) {}
 
     /// Steps that a worker broke off, and steps that a garment rolled back, so far.

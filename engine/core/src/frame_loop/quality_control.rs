@@ -76,7 +76,7 @@ const NO_SKIN: QualityLevel =
 const NO_WIND: QualityLevel = QualityLevel { gives_up: "the wind", time_share: 0.14, wind: false, ..NO_SKIN };
 
 /// The quality levels, whole quality first: substeps go first, then contact of a garment with itself, then between
-/// garments and with the skin, both in rate before they go altogether, then the wind. `toile latency --level R` measures the error of
+/// garments and with the skin, both in rate before they go altogether, then the wind. `toile latency --level L` measures the error of
 /// each.
 pub const QUALITY_LEVELS: [QualityLevel; 9] =
     [WHOLE, QUARTER, HALF, NO_FOLDS, LAYERS_HALF, NO_LAYERS, SKIN_HALF, NO_SKIN, NO_WIND];

@@ -1,5 +1,8 @@
 //! Lanes: one kernel, run on 1, 4, 8 or 16 numbers at a time.
 //!
+//! Every operation is one that IEEE 754 rounds exactly: no fused multiply-add, no estimate of the processor. A kernel
+//! therefore gives the same bits at every width and on every machine.
+//!
 //! This is one of the few modules with unsafe code: vector instructions, and columns that workers share.
 
 #[expect(unsafe_code, reason = "the workers of a step share its columns")]

@@ -3,6 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::Affine3A;
 use toile_base::garment::Garment;
+use toile_base::numeric::portable;
 use toile_engine::cloth::contact::body::ContactSettings;
 use toile_engine::cloth::forces::root::Carried;
 use toile_engine::cloth::step::prepared::Prepared;
@@ -89,7 +90,7 @@ impl GarmentConstants {
         let tethered = settings.tethers || prepared.quality == Quality::Draft;
         Self {
             gravity_step: (settings.gravity * dt).to_array(),
-            damping_factor: (-garment.fabric.damping_per_s * dt).exp(),
+            damping_factor: portable::exp(-garment.fabric.damping_per_s * dt),
             dt,
             per_dt: dt.recip(),
             per_dt2,

@@ -68,7 +68,7 @@ impl SceneBuffers {
             garments: make.with("garments", constants, BufferUsages::COPY_DST),
             state: make.with("state", &state, BufferUsages::COPY_DST | BufferUsages::COPY_SRC),
             targets: make.zeros("targets", 2 * flat.targets as usize, VEC4),
-            acceleration: make.zeros("pushed", particles, VEC4),
+            acceleration: make.zeros("acceleration", particles, VEC4),
             reports: make.zeros("reports", garments, size_of::<u32>() * REPORT),
             good: make.with("good", &flat.start, DRAWN),
             start: make.with("start", &flat.start, KERNELS_ONLY),

@@ -4,6 +4,7 @@ use glam::Vec3A;
 use toile_assets::scene::skirt::Stretch;
 use toile_base::garment::Garment;
 use toile_base::garment::layout::OWNERS;
+use toile_base::numeric::portable;
 use toile_engine::cloth::forces::bending;
 use toile_engine::cloth::forces::root::{RootMotion, RootStep};
 use toile_engine::cloth::forces::stiff_bending::{self, StiffBendingUpdate};
@@ -56,8 +57,8 @@ impl<'a> Reference<'a> {
         let columns = self.state.columns();
         let width = self.settings.width;
         let per_dt2 = (p.dt * p.dt).recip();
-        let scratch_columns = [fibers::scratch_len(&layout.fibers), lists::scratch_len(&layout.crossing)];
-        let mut scratch = Store::zeros(scratch_columns[0].max(scratch_columns[1]));
+        let scratch_lens = [fibers::scratch_len(&layout.fibers), lists::scratch_len(&layout.crossing)];
+        let mut scratch = Store::zeros(scratch_lens[0].max(scratch_lens[1]));
         let tensions = layout.weft.tuples.count.max(layout.fibers.links).max(layout.crossing.rest.len());
         let mut tension = Store::zeros(tensions);
         let mut scratch_columns = diagonals::DiagonalScratch::new(&layout.diagonals, garment.particles());
@@ -69,7 +70,7 @@ impl<'a> Reference<'a> {
             }
             Kernel::Predict => {
                 for owner in 0..OWNERS {
-                    let damping_factor = (-garment.fabric.damping_per_s * p.dt).exp();
+                    let damping_factor = portable::exp(-garment.fabric.damping_per_s * p.dt);
                     let (gravity_step, acceleration) = (self.settings.gravity * p.dt, None);
                     width.run(predict::Predict {
                         columns,

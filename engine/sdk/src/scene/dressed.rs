@@ -153,14 +153,14 @@ impl DressedScene {
     }
 
     pub fn fit_map(&self, garment: usize) -> Vec<f32> {
-        let maps = fit_map::of_frame(&self.world, &self.judged);
+        let maps = fit_map::of_world(&self.world, &self.judged);
         self.orders[garment].each(|cloth, particle| maps[cloth][particle], |_| f32::NAN).collect()
     }
 
     pub fn pictures(&mut self, views: &[View], size: [u32; 2], look: Look) -> Result<Vec<Picture>> {
         let size = picture::checked_size(size)?;
         let mut drawn = DrawnFrame::new(&self.world, Appearance::default());
-        let maps = fit_map::of_frame(&self.world, &self.judged);
+        let maps = fit_map::of_world(&self.world, &self.judged);
         drawn.update(self.reader.latest());
         let surfaces = drawn.surfaces((look == Look::FitMap).then_some(&maps));
         let ahead = self.world.pose().local[Joint::Pelvis.index()] * Vec3::Z;

@@ -225,11 +225,10 @@ fn by_records_links_have_the_bits_that_they_have_in_columns() {
             for width in Width::ALL.into_iter().filter(|w| w.available()) {
                 let (mut one, mut other) = (State::new(&positions, weights), State::new(&positions, weights));
                 let mut tensions = [links.tuples.count, records.len()].map(Store::zeros);
-                let mut scratch_columns = Store::zeros(RECORD * (positions.len() + 2));
-                let (c, scratch_columns, spans) =
-                    (other.columns(), scratch_columns.column(), [(0, positions.len() as u32)]);
+                let mut store = Store::zeros(RECORD * (positions.len() + 2));
+                let (c, records_column, spans) = (other.columns(), store.column(), [(0, positions.len() as u32)]);
                 let [in_columns, in_records] = tensions.each_mut().map(|t| soft.then(|| (t.column(), per_dt2)));
-                width.run(FillRecords { from: c.x, w: c.w, spans: &spans, records: scratch_columns });
+                width.run(FillRecords { from: c.x, w: c.w, spans: &spans, records: records_column });
                 for ((number, set), owner) in links
                     .tuples
                     .sets
@@ -246,11 +245,11 @@ fn by_records_links_have_the_bits_that_they_have_in_columns() {
                         links: &records,
                         set: number,
                         owner,
-                        records: scratch_columns,
+                        records: records_column,
                         tension: in_records,
                     });
                 }
-                width.run(ReadRecords { columns: c, spans: &spans, records: scratch_columns });
+                width.run(ReadRecords { columns: c, spans: &spans, records: records_column });
                 assert_eq!(one.positions(), other.positions(), "{width} lanes, soft {soft}");
             }
         }

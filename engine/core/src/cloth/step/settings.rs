@@ -109,7 +109,7 @@ pub struct Settings {
     pub continuous: bool,
     /// Rate of each kind of contact, which quality control lowers.
     pub contact: ContactRates,
-    /// Workers of a step, 1 or 2. A frame takes the nearest of them that it can have, which its own settings then name.
+    /// Workers of a step, 1 or 2. A world takes the nearest of them that it can have, which its own settings then name.
     pub workers: usize,
     /// Lanes that kernels run on.
     pub width: Width,
