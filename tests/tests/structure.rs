@@ -8,7 +8,7 @@ use toile_tests::scan;
 use toile_tests::tree::{self, CRATES};
 
 /// Files that may hold unsafe code, each with its reason.
-const UNSAFE_FILES: [(&str, &str); 44] = [
+const UNSAFE_FILES: [(&str, &str); 46] = [
     ("engine/cli/src/heap.rs", "the program's allocator counts, for which it has to implement an unsafe trait"),
     ("engine/c/src/border.rs", "what C hands over is read and written"),
     ("engine/c/src/failure.rs", "a function that C calls by its name"),
@@ -27,7 +27,9 @@ const UNSAFE_FILES: [(&str, &str); 44] = [
     ("engine/core/src/workers/per_share.rs", "the data of a share is lent to its worker"),
     ("engine/core/src/workers/mod.rs", "a job that borrows the caller's stack is handed to another thread"),
     ("engine/core/src/cloth/step/work.rs", "the workers of a step share its columns"),
+    ("engine/core/src/cloth/step/mod.rs", "the stages of a step are done in their order"),
     ("engine/core/src/cloth/contact/garments/work.rs", "the workers of a step share the contacts"),
+    ("engine/core/src/cloth/contact/garments/step.rs", "the phases of a step are done in their order"),
     ("engine/core/src/lanes/column.rs", "columns are raw pointers, so that copies may write through them"),
     ("engine/core/src/lanes/neon.rs", "vector instructions of aarch64"),
     ("engine/core/src/lanes/simd128.rs", "vector instructions of WebAssembly read and write by address"),

@@ -16,15 +16,15 @@ use crate::failure::{Failure, Result};
 /// Every pattern of bits is a value of such a type.
 pub unsafe trait Plain: Copy {}
 
-// SAFETY: numbers; every pattern of bits is one.
+// SAFETY: every pattern of 8 bits is an `i8`.
 unsafe impl Plain for i8 {}
-// SAFETY: the same.
+// SAFETY: every pattern of 8 bits is a `u8`.
 unsafe impl Plain for u8 {}
-// SAFETY: the same.
+// SAFETY: every pattern of 16 bits is a `u16`.
 unsafe impl Plain for u16 {}
-// SAFETY: the same.
+// SAFETY: every pattern of 32 bits is a `u32`.
 unsafe impl Plain for u32 {}
-// SAFETY: the same.
+// SAFETY: every pattern of 32 bits is an `f32`.
 unsafe impl Plain for f32 {}
 
 /// An array of C's to be read, or one value; null where there is none.

@@ -56,7 +56,7 @@ impl<T: Copy> Slot<T> {
     /// # Safety
     /// No thread writes it meanwhile, and the last write happened before.
     pub unsafe fn read(&self) -> T {
-        // SAFETY: see above.
+        // SAFETY: the caller keeps all writes apart from this read, as `# Safety` asks, so the copy is of a whole value.
         unsafe { *self.0.get() }
     }
 
@@ -65,7 +65,7 @@ impl<T: Copy> Slot<T> {
     /// # Safety
     /// No thread reads or writes it meanwhile, and all earlier reads and writes happened before.
     pub unsafe fn write(&self, value: T) {
-        // SAFETY: see above.
+        // SAFETY: the caller keeps all other accesses apart from this write, as `# Safety` asks. `T` is `Copy`, so nothing is dropped.
         unsafe { *self.0.get() = value };
     }
 }

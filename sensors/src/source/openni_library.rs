@@ -115,9 +115,10 @@ pub(super) struct OpenNiFrame<'a>(*mut OniFrame, &'a OpenNiStream);
 // SAFETY: handles of the library, which locks its own tables and keeps nothing of the thread that made them; `IN_USE` keeps other
 // users away, and the methods that change something take turns by their owner's `&mut`.
 unsafe impl Send for OpenNiDevice {}
-// SAFETY: as above. Shared between the streams of one owner, who has them on one thread.
+// SAFETY: a shared device gives out its handle only, and the library locks its own tables. Only the streams of one owner share a
+// device, and this owner has them on one thread.
 unsafe impl Sync for OpenNiDevice {}
-// SAFETY: as above.
+// SAFETY: a stream is a handle of the library, which keeps nothing of the thread that made it, and a device that is `Sync`.
 unsafe impl Send for OpenNiStream {}
 
 impl OpenNiLibrary {

@@ -46,7 +46,7 @@ impl<T: Copy> Slot<T> {
     /// # Safety
     /// No thread writes it meanwhile, and the last write happened before.
     pub unsafe fn read(&self) -> T {
-        // SAFETY: see above; the model ends where it does not hold.
+        // SAFETY: the caller keeps all writes apart from this read. Otherwise loom's cell ends the model here.
         self.0.with(|value| unsafe { *value })
     }
 
@@ -55,7 +55,7 @@ impl<T: Copy> Slot<T> {
     /// # Safety
     /// No thread reads or writes it meanwhile, and all earlier reads and writes happened before.
     pub unsafe fn write(&self, new: T) {
-        // SAFETY: see above; the model ends where it does not hold.
+        // SAFETY: the caller keeps all other accesses apart from this write. Otherwise loom's cell ends the model here.
         self.0.with_mut(|value| unsafe { *value = new });
     }
 }

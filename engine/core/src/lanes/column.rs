@@ -136,7 +136,7 @@ pub(crate) struct Shared<T>(T);
 
 // SAFETY: nothing within can be reached but through `open`, whose caller answers for what the threads do with it.
 unsafe impl<T: Copy> Send for Shared<T> {}
-// SAFETY: as above.
+// SAFETY: a shared reference gives access through `open` alone, whose caller answers for what the threads do.
 unsafe impl<T: Copy> Sync for Shared<T> {}
 
 impl<T: Copy> Shared<T> {

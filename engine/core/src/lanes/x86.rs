@@ -1,7 +1,7 @@
 //! Vectors of x86-64: 4 lanes everywhere, 8 with AVX2, 16 with AVX-512.
 //!
-//! The types are private to `lanes`: only [`run8`] and [`run16`] hand the wide ones to a kernel, after the processor was
-//! asked. That is what makes the unsafe blocks below sound.
+//! The types are private to `lanes`. Only [`run8`] and [`run16`] hand the wide ones to a kernel, and `Width::run` calls them only
+//! after it asked the processor. That makes the unsafe blocks below sound.
 
 mod records;
 mod widths;
@@ -16,7 +16,7 @@ use super::{
 
 /// Whether the processor and the system have 16 lanes.
 pub fn has_sixteen() -> bool {
-    is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq")
+    is_x86_feature_detected!("avx2") && is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq")
 }
 
 /// A kernel on 8 lanes; the caller has asked for AVX2.
@@ -37,7 +37,7 @@ pub fn run16<K: Kernel>(kernel: K) -> K::Out {
     fn inner<K: Kernel>(kernel: K) -> K::Out {
         kernel.run::<Sixteen>()
     }
-    // SAFETY: `Width::run` calls this only where AVX-512 was detected.
+    // SAFETY: `Width::run` calls this only where `has_sixteen` detected every feature that `inner` enables.
     unsafe { inner(kernel) }
 }
 

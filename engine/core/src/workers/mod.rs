@@ -101,10 +101,11 @@ pub(crate) struct PoolState {
     job: Slot<Job>,
 }
 
-// SAFETY: the job's pointer is the only part that is not an atomic. `WorkerPool::run` takes only jobs that are `Sync`, and the
-// protocol above keeps reads and writes of the cell apart.
+// SAFETY: the job's pointer is the only part that is not an atomic. It may go to another thread, because `WorkerPool::run` takes
+// only jobs that are `Sync`.
 unsafe impl Send for PoolState {}
-// SAFETY: as above.
+// SAFETY: the cell of the job is the only part that is not an atomic. `WorkerPool::run` writes it while every share is done, and
+// `work` reads it while a share is not done, so no thread writes it while another accesses it. The job is `Sync`.
 unsafe impl Sync for PoolState {}
 
 impl PoolState {
@@ -136,7 +137,8 @@ impl PoolState {
     /// still on, because [`WorkerPool::run`] waits for both shares of its last phase: the job lives, and its cell is not
     /// written.
     unsafe fn work(&self, sequence: u64, share: usize) {
-        // SAFETY: see above; the write of the cell happened before `open` was stored, which this thread has acquired.
+        // SAFETY: the caller's share is not done, so `WorkerPool::run` does not write the cell. The last write happened before the
+        // store of `open`, which this thread has acquired or made.
         let job = unsafe { self.job.read() };
         // Relaxed: only saves work. The caller of the run looks again after it has acquired every `done`.
         if self.failed.load(Relaxed) == 0 {
@@ -275,7 +277,7 @@ impl WorkerPool {
         /// # Safety
         /// `data` is an `F` that lives during the call.
         unsafe fn call<F: Fn(usize, usize)>(data: *const (), phase: usize, share: usize) {
-            // SAFETY: see above.
+            // SAFETY: the caller passes a pointer to an `F` that lives during the call. Shares call it through a shared reference.
             unsafe { (*data.cast::<F>())(phase, share) }
         }
         let state = &*self.state;
@@ -317,7 +319,7 @@ impl WorkerPool {
             loop {
                 // Relaxed: gives out each number once; the barriers before and after the phase carry the items.
                 let i = next.fetch_add(1, Relaxed);
-                // SAFETY: no number is given out twice.
+                // SAFETY: `fetch_add` gives out no number twice, and `each` borrows the slice until `run` returns.
                 let Some(item) = (unsafe { items.get(i) }) else { return };
                 task(i, item);
             }
@@ -381,7 +383,8 @@ impl<T> Items<T> {
     /// No index is asked for twice, and the slice is still borrowed.
     #[expect(clippy::mut_from_ref, reason = "each item is given out once")]
     unsafe fn get(&self, i: usize) -> Option<&mut T> {
-        // SAFETY: within the slice; see above.
+        // SAFETY: `i` was compared with the length. The caller asks for each index once while the slice is borrowed, so this is
+        // the only reference to the item.
         (i < self.len).then(|| unsafe { &mut *self.data.add(i) })
     }
 }

@@ -223,7 +223,7 @@ impl K4a {
         let ask = |data: *mut u8, size: &mut usize| match &self.source {
             // SAFETY: the handle is open, and `data` is null or a place for `size` bytes.
             CaptureSource::Device(device) => unsafe { (self.api.k4a_device_get_raw_calibration)(*device, data, size) },
-            // SAFETY: the same.
+            // SAFETY: the recording is open, and `data` is null or a place for `size` bytes.
             CaptureSource::Playback { api, handle, .. } => unsafe {
                 (api.k4a_playback_get_raw_calibration)(*handle, data, size)
             },
@@ -360,7 +360,7 @@ fn depth_of(api: &K4aApi, capture: &Capture) -> Option<K4aImage> {
 }
 
 fn colour_of(api: &K4aApi, capture: &Capture) -> Option<K4aImage> {
-    // SAFETY: as above.
+    // SAFETY: the capture is valid; the library gives a reference of our own, or nothing.
     let image = unsafe { (api.k4a_capture_get_color_image)(capture.0) };
     (!image.is_null()).then_some(K4aImage(image, *api))
 }

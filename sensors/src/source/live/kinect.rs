@@ -198,7 +198,8 @@ impl Kinect {
             Some(serial) => {
                 let serial =
                     std::ffi::CString::new(serial).map_err(|_| refused("its serial number has a zero in it"))?;
-                // SAFETY: the same, and the serial number ends with a zero and outlives the call.
+                // SAFETY: the context is valid, and the device is a place for one pointer. The serial number ends with a zero and
+                // outlives the call.
                 unsafe { (api.freenect_open_device_by_camera_serial)(context, &mut self.device, serial.as_ptr()) }
             }
         };
@@ -225,7 +226,7 @@ impl Kinect {
             return Err(refused("its depth cannot be started"));
         }
         if self.colour {
-            // SAFETY: as above.
+            // SAFETY: the device is open, and the callback is a function, which lives for ever.
             let video = unsafe {
                 (api.freenect_set_video_callback)(device, take_colour);
                 let mode = (api.freenect_find_video_mode)(RESOLUTION_MEDIUM, VIDEO_RGB);

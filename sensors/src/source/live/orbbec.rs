@@ -222,13 +222,13 @@ impl Parts {
             Some(serial) => api.call("it cannot be opened", |e| unsafe {
                 (api.ob_device_list_get_device_by_serial_number)(list, serial.as_ptr(), e)
             }),
-            // SAFETY: the same.
+            // SAFETY: the list is valid until it is deleted below.
             None => match api.call("", |e| unsafe { (api.ob_device_list_get_count)(list, e) }) {
                 Ok(0) | Err(_) => Err(CameraError::NotConnected {
                     camera: NAME,
                     cure: "plug it into a USB 3 port, and see that OrbbecSDK's rules for udev let your user use it",
                 }),
-                // SAFETY: the same.
+                // SAFETY: the list is valid until it is deleted below, and it has a device 0 since its count is not 0.
                 Ok(_) => api.call("it cannot be opened", |e| unsafe { (api.ob_device_list_get_device)(list, 0, e) }),
             },
         };
@@ -249,7 +249,7 @@ impl Parts {
             (api.ob_config_enable_stream)(self.config, STREAM_DEPTH, e);
         })?;
         if colour && !is_recording {
-            // SAFETY: as above.
+            // SAFETY: the configuration was made above and is valid.
             api.call("its colour cannot be chosen", |e| unsafe {
                 (api.ob_config_enable_video_stream)(self.config, STREAM_COLOUR, ANY, ANY, ANY, FORMAT_RGB, e);
             })?;
@@ -365,7 +365,7 @@ impl ObFrame {
         let (api, what) = (self.1, "its lens cannot be read");
         // SAFETY: the profile is valid, here and below.
         let k = api.call(what, |e| unsafe { (api.ob_video_stream_profile_get_intrinsic)(profile.0, e) })?;
-        // SAFETY: as above.
+        // SAFETY: `profile` holds a reference of ours to the profile until it is dropped.
         let lens = api.call(what, |e| unsafe { (api.ob_video_stream_profile_get_distortion)(profile.0, e) })?;
         let [width, height] = self.size().ok_or_else(|| refused(what, String::new()))?;
         Ok((Intrinsics { width, height, fx: k.fx, fy: k.fy, cx: k.cx, cy: k.cy }, lens))
@@ -391,7 +391,7 @@ impl ObFrame {
         let (api, [w, h]) = (self.1, self.size()?);
         // SAFETY: the frame is valid.
         let data = api.call("", |e| unsafe { (api.ob_frame_get_data)(self.0, e) }).ok()?;
-        // SAFETY: as above.
+        // SAFETY: `self` keeps the frame until it is dropped.
         let size = api.call("", |e| unsafe { (api.ob_frame_get_data_size)(self.0, e) }).ok()? as usize;
         let wanted = (w as usize).checked_mul(h as usize)?.checked_mul(bytes)?;
         if data.is_null() || size < wanted {

@@ -232,7 +232,7 @@ impl Pipeline {
         let list = api.call(what, |e| unsafe { (api.rs2_query_devices)(self.context, e) })?;
         // SAFETY: the list was made above, and is deleted once.
         let count = api.call(what, |e| unsafe { (api.rs2_get_device_count)(list, e) });
-        // SAFETY: as above.
+        // SAFETY: the list was made above and is not used after this.
         unsafe { (api.rs2_delete_device_list)(list) };
         count
     }
@@ -251,7 +251,7 @@ impl Pipeline {
                 .map_err(|error| explained(error, recording));
         }
         if let Some(serial) = &text {
-            // SAFETY: the same.
+            // SAFETY: the configuration is valid, and the serial number ends with a zero and outlives the call.
             api.call("it cannot be chosen", |e| unsafe { (api.rs2_config_enable_device)(config, serial.as_ptr(), e) })?;
         }
         // SAFETY: the configuration is valid.
@@ -259,7 +259,7 @@ impl Pipeline {
             (api.rs2_config_enable_stream)(config, STREAM_DEPTH, -1, width, height, FORMAT_Z16, rate, e);
         })?;
         if colour {
-            // SAFETY: the same.
+            // SAFETY: the configuration is valid.
             api.call("its colour cannot be chosen", |e| unsafe {
                 (api.rs2_config_enable_stream)(config, STREAM_COLOUR, -1, width, height, FORMAT_RGB8, rate, e);
             })?;
@@ -389,13 +389,13 @@ impl Frames {
     /// The rows of a video frame of so many bytes a pixel, with its width and height.
     fn rows(&self, bytes: usize) -> Option<([usize; 2], impl Iterator<Item = &[u8]>)> {
         let api = self.1;
-        // SAFETY: a video frame that is valid, here and below.
         let number = |f: unsafe extern "C" fn(RsHandle, *mut RsError) -> c_int| {
+            // SAFETY: `self` keeps the frame until it is dropped, and the four functions below ask for a valid video frame only.
             usize::try_from(api.call("", |e| unsafe { f(self.0, e) }).ok()?).ok()
         };
         let (width, height) = (number(api.rs2_get_frame_width)?, number(api.rs2_get_frame_height)?);
         let (stride, size) = (number(api.rs2_get_frame_stride_in_bytes)?, number(api.rs2_get_frame_data_size)?);
-        // SAFETY: as above.
+        // SAFETY: `self` keeps the frame until it is dropped.
         let data = api.call("", |e| unsafe { (api.rs2_get_frame_data)(self.0, e) }).ok()?;
         let whole = stride >= width * bytes && stride > 0 && stride.checked_mul(height)? <= size;
         if data.is_null() || !whole {

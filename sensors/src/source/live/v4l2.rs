@@ -214,7 +214,7 @@ impl VideoStream {
         unsafe { calls::request_buffers(fd, &raw mut asked) }.map_err(io_error)?;
         for index in 0..asked.count.min(MOST_BUFFERS) {
             let mut buffer = VideoBuffer { index, kind: CAPTURE, memory: MMAP, ..VideoBuffer::default() };
-            // SAFETY: as above.
+            // SAFETY: the structure is the call's own, and the kernel writes no more than its size.
             unsafe { calls::query_buffer(fd, &raw mut buffer) }.map_err(io_error)?;
             let length = NonZero::new(buffer.length as usize).filter(|_| buffer.length <= MOST_BYTES);
             let length = length.ok_or_else(|| io::Error::other(format!("a buffer of {} bytes", buffer.length)))?;

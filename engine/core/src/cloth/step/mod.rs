@@ -26,6 +26,7 @@ use work::{StepWork, WorkColumns};
 
 impl Cloth {
     /// One step of the settings' length, both owners' shares on the caller's thread.
+    #[expect(unsafe_code, reason = "the stages of a step are done in their order")]
     pub fn step(&mut self, garment: &Garment, step: &Step<'_>) {
         let settings = self.sound(step.settings);
         let step = &Step { settings: &settings, ..*step };
@@ -37,7 +38,8 @@ impl Cloth {
         for (stage, substep) in work.prepared.program.stages() {
             let mut greater = 0;
             for owner in 0..OWNERS {
-                work.run(stage, substep, owner);
+                // SAFETY: this thread does the shares one after the other, in the order of the program. `work` borrows the cloth alone.
+                unsafe { work.run(stage, substep, owner) };
                 if let Some(start) = begun {
                     let now = Instant::now();
                     let share = (now - start).as_nanos() as u64;
@@ -55,6 +57,7 @@ impl Cloth {
 
     /// The same with the pool's workers, an owner's share each: the same bits. A step that is timed is the caller's alone, so
     /// that each share's time is its own.
+    #[expect(unsafe_code, reason = "the stages of a step are done in their order")]
     pub fn step_with(&mut self, pool: &mut WorkerPool, garment: &Garment, step: &Step<'_>) {
         if pool.workers() < OWNERS || garment.layout().spans[1].is_empty() || step.settings.timed {
             return self.step(garment, step);
@@ -66,7 +69,10 @@ impl Cloth {
         let program = &work.prepared.program;
         let share = |phase: usize, owner: usize| {
             let (stage, substep) = program.stage(phase);
-            work.run(stage, substep, owner);
+            // SAFETY: a phase is one stage, in the order of the program. `WorkerPool::run` calls this once for each share of a phase
+            // and has a barrier after each phase. `work` borrows the cloth alone. Nothing checks yet that the cloth was made of this
+            // garment: the caller of `step_with` answers for that.
+            unsafe { work.run(stage, substep, owner) };
         };
         let failed = pool.run(program.len(), share).is_err();
         let limited = work.limited();

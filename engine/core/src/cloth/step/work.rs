@@ -89,10 +89,14 @@ struct OwnerShare<'w, 'a> {
 }
 
 impl StepWork<'_> {
-    /// Does one owner's share of a stage. A barrier of the workers stands between two stages; no share of a stage is done twice.
-    pub fn run(&self, stage: Stage, substep: u32, owner: usize) {
-        // SAFETY: `WorkerPool::run` has a barrier after each phase, which is one stage, and each share of it is done
-        // once: earlier writes are seen. Within a stage no place that one owner writes is touched by the other:
+    /// Does one owner's share of a stage.
+    ///
+    /// # Safety
+    /// All shares of earlier stages happened before this call, and no share of a later stage begins before its end. At most the
+    /// other owner's share of this stage runs meanwhile, and then the cloth was made of `garment`.
+    pub unsafe fn run(&self, stage: Stage, substep: u32, owner: usize) {
+        // SAFETY: the caller keeps the stages apart, so earlier writes are seen. Within a stage no place that one owner writes
+        // is touched by the other:
         // - the ranges of `Layout::spans` hold each particle once (wind, root motion, prediction, contact, velocities,
         //   tethers, records filled and read back, and turns of stiff bending write nothing else; a tether reads anchors,
         //   which are fixed and not written);
@@ -102,7 +106,7 @@ impl StepWork<'_> {
         // - constraints of one set and different owners share no particle (`garment::layout`), and each has its own tension;
         //   links by records fill up with one spare record an owner;
         // - each owner has a scratch of its own, and half of the tensions to clear.
-        // `Garment::new` checks spans, anchors, sets and places. A step with one worker does one share after the other on one thread.
+        // `Garment::new` checks spans, anchors, sets and places.
         let columns = unsafe { self.columns.open() };
         OwnerShare { work: self, columns, owner, substep }.run(stage);
     }

@@ -1,13 +1,15 @@
 //! Records of four numbers, turned: `N` records become four vectors, and back. 128 bits at a time, each holds one record; four
 //! such vectors are turned within their quarters.
 //!
-//! Soundness: as in `widths`; the callers have checked that the records are there.
+//! Soundness: the methods of `Lanes` that the macro `vector!` makes check the records before they call a function of this file.
 
 use super::*;
 
 impl Four {
     #[inline(always)]
     pub(super) unsafe fn read_records(from: impl Records, k: usize) -> [Self; RECORD] {
+        // SAFETY: `load_records` checked that four records from the `k`th on lie within the column, with all their numbers.
+        // The loads ask for no alignment, and every x86-64 processor has SSE2.
         unsafe {
             let rows = [
                 _mm_loadu_ps(from.place(k)),
@@ -22,6 +24,8 @@ impl Four {
     #[inline(always)]
     pub(super) unsafe fn write_records([x, y, z, w]: [Self; RECORD], to: impl Records, k: usize) {
         let [a, b, c, d] = Self::turned([x.0, y.0, z.0, w.0]);
+        // SAFETY: `store_records` checked that four records from the `k`th on lie within the column, with all their numbers.
+        // The stores ask for no alignment, and every x86-64 processor has SSE2.
         unsafe {
             _mm_storeu_ps(to.place(k), a);
             _mm_storeu_ps(to.place(k + 1), b);
@@ -31,6 +35,7 @@ impl Four {
     }
     #[inline(always)]
     fn turned([a, b, c, d]: [__m128; 4]) -> [__m128; 4] {
+        // SAFETY: every x86-64 processor has SSE2, and the block uses registers only.
         unsafe {
             let (low, high) = (_mm_unpacklo_ps(a, b), _mm_unpackhi_ps(a, b));
             let (low2, high2) = (_mm_unpacklo_ps(c, d), _mm_unpackhi_ps(c, d));
@@ -57,6 +62,8 @@ macro_rules! turned {
 impl Eight {
     #[inline(always)]
     pub(super) unsafe fn read_records(from: impl Records, k: usize) -> [Self; RECORD] {
+        // SAFETY: `load_records` checked that eight records from the `k`th on lie within the column, with all their numbers.
+        // `pair` reads two of them in each of the four calls; `Width::run` detected AVX2.
         unsafe {
             let [x, y, z, w] = Self::turned([
                 Self::pair(from, k),
@@ -69,6 +76,8 @@ impl Eight {
     }
     #[inline(always)]
     pub(super) unsafe fn write_records([x, y, z, w]: [Self; RECORD], to: impl Records, k: usize) {
+        // SAFETY: `store_records` checked that eight records from the `k`th on lie within the column, with all their numbers.
+        // `part` writes two of them in each of the four calls; `Width::run` detected AVX2.
         unsafe {
             let [a, b, c, d] = Self::turned([x.0, y.0, z.0, w.0]);
             Self::part(a, to, k);
@@ -79,6 +88,8 @@ impl Eight {
     }
     #[inline(always)]
     unsafe fn pair(from: impl Records, k: usize) -> __m256 {
+        // SAFETY: `read_records` passes a `k` for which it knows records `k` and `k + 4`. The loads ask for no alignment, and
+        // `Width::run` detected AVX2.
         unsafe {
             let low = _mm256_castps128_ps256(_mm_loadu_ps(from.place(k)));
             _mm256_insertf128_ps::<1>(low, _mm_loadu_ps(from.place(k + 4)))
@@ -86,6 +97,8 @@ impl Eight {
     }
     #[inline(always)]
     unsafe fn part(pair: __m256, to: impl Records, k: usize) {
+        // SAFETY: `write_records` passes a `k` for which it knows records `k` and `k + 4`. The stores ask for no alignment, and
+        // `Width::run` detected AVX2.
         unsafe {
             _mm_storeu_ps(to.place(k), _mm256_castps256_ps128(pair));
             _mm_storeu_ps(to.place(k + 4), _mm256_extractf128_ps::<1>(pair));
@@ -93,6 +106,7 @@ impl Eight {
     }
     #[inline(always)]
     unsafe fn turned(v: [__m256; 4]) -> [__m256; 4] {
+        // SAFETY: `Width::run` detected AVX2 before it started this kernel; the block uses registers only.
         unsafe {
             turned!(
                 v,
@@ -110,6 +124,8 @@ impl Eight {
 impl Sixteen {
     #[inline(always)]
     pub(super) unsafe fn read_records(from: impl Records, k: usize) -> [Self; RECORD] {
+        // SAFETY: `load_records` checked that 16 records from the `k`th on lie within the column, with all their numbers.
+        // `four` reads four of them in each of the four calls; `Width::run` detected AVX-512.
         unsafe {
             let [x, y, z, w] = Self::turned([
                 Self::four(from, k),
@@ -122,6 +138,8 @@ impl Sixteen {
     }
     #[inline(always)]
     pub(super) unsafe fn write_records([x, y, z, w]: [Self; RECORD], to: impl Records, k: usize) {
+        // SAFETY: `store_records` checked that 16 records from the `k`th on lie within the column, with all their numbers.
+        // `part` writes four of them in each of the four calls; `Width::run` detected AVX-512.
         unsafe {
             let [a, b, c, d] = Self::turned([x.0, y.0, z.0, w.0]);
             Self::part(a, to, k);
@@ -132,6 +150,8 @@ impl Sixteen {
     }
     #[inline(always)]
     unsafe fn four(from: impl Records, k: usize) -> __m512 {
+        // SAFETY: `read_records` passes a `k` for which it knows records `k`, `k + 4`, `k + 8` and `k + 12`.
+        // The loads ask for no alignment, and `Width::run` detected AVX-512.
         unsafe {
             let v = _mm512_castps128_ps512(_mm_loadu_ps(from.place(k)));
             let v = _mm512_insertf32x4::<1>(v, _mm_loadu_ps(from.place(k + 4)));
@@ -141,6 +161,8 @@ impl Sixteen {
     }
     #[inline(always)]
     unsafe fn part(four: __m512, to: impl Records, k: usize) {
+        // SAFETY: `write_records` passes a `k` for which it knows records `k`, `k + 4`, `k + 8` and `k + 12`.
+        // The stores ask for no alignment, and `Width::run` detected AVX-512.
         unsafe {
             _mm_storeu_ps(to.place(k), _mm512_castps512_ps128(four));
             _mm_storeu_ps(to.place(k + 4), _mm512_extractf32x4_ps::<1>(four));
@@ -150,6 +172,7 @@ impl Sixteen {
     }
     #[inline(always)]
     unsafe fn turned(v: [__m512; 4]) -> [__m512; 4] {
+        // SAFETY: `Width::run` detected AVX-512 before it started this kernel; the block uses registers only.
         unsafe {
             turned!(
                 v,
@@ -171,6 +194,8 @@ impl Four {
         let first = Self::turned([a.0, b.0, c.0, d.0]);
         let second = Self::turned([e.0, f.0, g.0, h.0]);
         for i in 0..4 {
+            // SAFETY: `store_doubles` checked that four double records from the `k`th on lie within the column.
+            // Each has eight numbers. The stores ask for no alignment, and every x86-64 processor has SSE2.
             unsafe {
                 _mm_storeu_ps(to.place(k + i), first[i]);
                 _mm_storeu_ps(to.place(k + i).add(RECORD), second[i]);
@@ -182,6 +207,8 @@ impl Four {
 impl Eight {
     #[inline(always)]
     pub(super) unsafe fn write_doubles([a, b, c, d, e, f, g, h]: [Self; DOUBLE], to: RecordsAt<'_>, k: usize) {
+        // SAFETY: `store_doubles` checked that eight double records from the `k`th on lie within the column.
+        // Each has eight numbers. The stores ask for no alignment, and `Width::run` detected AVX2.
         unsafe {
             let first = Self::turned([a.0, b.0, c.0, d.0]);
             let second = Self::turned([e.0, f.0, g.0, h.0]);
@@ -196,6 +223,8 @@ impl Eight {
 impl Sixteen {
     #[inline(always)]
     pub(super) unsafe fn write_doubles([a, b, c, d, e, f, g, h]: [Self; DOUBLE], to: RecordsAt<'_>, k: usize) {
+        // SAFETY: `store_doubles` checked that 16 double records from the `k`th on lie within the column.
+        // `halves` writes two of them in each of the eight calls; `Width::run` detected AVX-512.
         unsafe {
             let first = Self::turned([a.0, b.0, c.0, d.0]);
             let second = Self::turned([e.0, f.0, g.0, h.0]);
@@ -210,6 +239,8 @@ impl Sixteen {
     }
     #[inline(always)]
     unsafe fn halves(two: __m512d, to: RecordsAt<'_>, k: usize) {
+        // SAFETY: `write_doubles` passes a `k` for which it knows double records `k` and `k + 4`, of eight numbers each.
+        // The stores ask for no alignment, and `Width::run` detected AVX-512.
         unsafe {
             let two = _mm512_castpd_ps(two);
             _mm256_storeu_ps(to.place(k), _mm512_castps512_ps256(two));

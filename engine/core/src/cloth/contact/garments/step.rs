@@ -27,6 +27,7 @@ impl GarmentContact {
     ///
     /// # Errors
     /// Where a worker panicked: the garments then keep what they had published.
+    #[expect(unsafe_code, reason = "the phases of a step are done in their order")]
     pub fn step(
         &mut self,
         pool: &mut WorkerPool,
@@ -52,7 +53,12 @@ impl GarmentContact {
         let parts = LayerParts { surfaces, pairs, paces, worker, turns: *turns, motions, shares, touching, bearing };
         let work = LayerWork::new(&works, parts, substeps);
         let phases = work.phases();
-        let done = pool.run(phases.count(), |phase, share| work.run(phases.at(phase), share));
+        let done = pool.run(phases.count(), |phase, share| {
+            // SAFETY: `WorkerPool::run` does the phases of this work in their order, each share once, with a barrier after each phase.
+            // `work` borrows the cloths and these layers alone. Nothing checks yet that they were made of these garments: the caller
+            // of `step` answers for that.
+            unsafe { work.run(phases.at(phase), share) };
+        });
         let limited: heapless::Vec<u64, MAX_GARMENTS> = works.iter().map(|w| w.limited()).collect();
         let times = work.times();
         drop(work);

@@ -34,7 +34,8 @@ struct Cells<'a, T> {
     owner: PhantomData<&'a mut [T]>,
 }
 
-// SAFETY: it hands out `&mut T` and `&T` to callers that keep to the rules of `own` and `read`, and T may go to other threads.
+// SAFETY: a shared reference gives out `&mut T` and `&T` through unsafe functions only, whose callers keep threads apart. `T` may be
+// sent to other threads and shared with them.
 unsafe impl<T: Send + Sync> Sync for Cells<'_, T> {}
 
 impl<'a, T> Cells<'a, T> {
@@ -43,27 +44,32 @@ impl<'a, T> Cells<'a, T> {
     }
 
     /// # Safety
-    /// Until the next barrier, no other thread reads or writes the item.
+    /// Until the next barrier, no other thread reads or writes the item. While the result is used, this thread makes no other
+    /// reference to the item.
     #[expect(clippy::mut_from_ref, reason = "each item is one worker's")]
     unsafe fn own(&self, i: usize) -> &mut T {
         assert!(i < self.len, "there is no such item");
-        // SAFETY: within the slice; see above.
+        // SAFETY: `i` was compared with the length of the slice, which `new` borrowed for 'a. The caller makes no other reference to
+        // the item meanwhile.
         unsafe { &mut *self.data.add(i) }
     }
 
     /// # Safety
-    /// Until the next barrier, no other thread reads or writes any of them.
+    /// Until the next barrier, no other thread reads or writes any of them. While the result is used, this thread makes no other
+    /// reference to one of them.
     #[expect(clippy::mut_from_ref, reason = "all are one worker's")]
     unsafe fn own_all(&self) -> &mut [T] {
-        // SAFETY: the slice that it was made of; see above.
+        // SAFETY: pointer and length are those of the slice that `new` borrowed for 'a. The caller makes no other reference to its
+        // items meanwhile.
         unsafe { std::slice::from_raw_parts_mut(self.data, self.len) }
     }
 
     /// # Safety
-    /// Until the next barrier, no thread writes the item.
+    /// Until the next barrier, no thread writes the item or holds a result of [`Self::own`] for it.
     unsafe fn read(&self, i: usize) -> &T {
         assert!(i < self.len, "there is no such item");
-        // SAFETY: within the slice; see above.
+        // SAFETY: `i` was compared with the length of the slice, which `new` borrowed for 'a. The caller sees to it that no thread
+        // writes the item meanwhile.
         unsafe { &*self.data.add(i) }
     }
 }
@@ -147,8 +153,13 @@ impl<'a> LayerWork<'a> {
         }
     }
 
-    /// Does one worker's share of a phase; no share of a phase is done twice.
-    pub fn run(&self, phase: LayerPhase, share: usize) {
+    /// Does one worker's share of a phase.
+    ///
+    /// # Safety
+    /// The layers and the cloths were made of the garments of this step. The phases are those of [`Self::phases`], in their order, and
+    /// each share of a phase is done once. All shares of earlier phases happened before this call, and no share of a later phase begins
+    /// before its end.
+    pub unsafe fn run(&self, phase: LayerPhase, share: usize) {
         match phase {
             LayerPhase::Motions => self.meter(LAYERS_METERED, || {
                 self.each_garment(share, |g| {
@@ -204,8 +215,8 @@ impl<'a> LayerWork<'a> {
 
     fn each_pair(&self, share: usize, act: impl Fn(usize, &mut PairShare)) {
         for p in 0..self.pairs.len() {
-            // SAFETY: the shares of pairs are written in the phases that call this, by the worker of the share alone, and
-            // read in the others.
+            // SAFETY: `Find` and `Solve` alone call this. Each worker has its own half of the shares of pairs, and neither phase
+            // reads them in another way. The other phases only read them.
             act(p, unsafe { self.shares.own(share * self.pairs.len() + p) });
         }
     }
@@ -226,9 +237,11 @@ impl<'a> LayerWork<'a> {
     /// What the last step has shown of where the body is in its own way.
     fn give_way(&self, garment: usize) {
         let seconds = self.works[0].step.settings.step_seconds;
-        let (given, touching) = (self.particles(garment).given, self.touching(garment));
+        let given = self.particles(garment).given;
+        // SAFETY: `Motions` alone calls this, for each garment by its worker.
+        let touching = unsafe { self.touching(garment) };
         if touching.gives || touching.any() {
-            // SAFETY: in this phase the garment's worker alone has them.
+            // SAFETY: `Motions` alone calls this, for each garment by its worker. No other code of this phase touches the bearing.
             touching.gives = give_way(given, unsafe { self.bearing[garment].own_all() }, seconds);
         }
     }
@@ -240,7 +253,7 @@ impl<'a> LayerWork<'a> {
         if !self.pairs.iter().zip(self.paces).any(looks) {
             return;
         }
-        // SAFETY: written in this phase by the garment's worker, read in the next.
+        // SAFETY: `Motions` alone calls this, for each garment by its worker. The motions are read in the next phase only.
         let motion = unsafe { self.motions.own(garment) };
         let meets = self.works.len() > 1 && self.works[0].step.settings.contact.layers > 0;
         motion.take(&self.surfaces[garment], self.particles(garment), self.width(), meets);
@@ -252,7 +265,7 @@ impl<'a> LayerWork<'a> {
         PairScene {
             columns: [particles, faces].map(|g| self.particles(g)),
             surfaces: [particles, faces].map(|g| &self.surfaces[g]),
-            // SAFETY: written in the phase before.
+            // SAFETY: `Find` alone calls this. The motions are written in `Motions`, the phase before.
             motions: [particles, faces].map(|g| unsafe { self.motions.read(g) }),
             step_seconds: self.works[0].step.settings.step_seconds * f32::from(steps),
             tick: self.paces[pair].number,
@@ -267,9 +280,11 @@ impl<'a> LayerWork<'a> {
     }
 
     fn fill_lists(&self, garment: usize) {
-        let touching = self.touching(garment);
+        // SAFETY: `Lists` alone calls this, for each garment by its worker.
+        let touching = unsafe { self.touching(garment) };
         touching.fill(self.pairs, |list| self.contacts(list).contacts());
-        // SAFETY: in this phase the garment's worker alone has them.
+        // SAFETY: `Lists` alone calls this, for each garment by its worker. No other code of this phase touches what its particles
+        // bear or rest on.
         let all = unsafe { (self.bearing[garment].own_all(), self.resting[garment].own_all()) };
         for (i, (bearing, resting)) in all.0.iter_mut().zip(all.1).enumerate() {
             if !touching.touches(i) {
@@ -278,22 +293,30 @@ impl<'a> LayerWork<'a> {
         }
     }
 
-    /// The touches of a garment, in phases in which its worker alone has them.
+    /// The touches of a garment, to write.
+    ///
+    /// # Safety
+    /// The caller is the worker of the garment in `Motions` or `Lists`, and makes no other reference to the touches meanwhile.
     #[expect(clippy::mut_from_ref, reason = "each garment is one worker's")]
-    fn touching(&self, garment: usize) -> &mut TouchLists {
-        // SAFETY: written in `Motions` and `Lists` by the garment's worker, read in the others.
+    unsafe fn touching(&self, garment: usize) -> &mut TouchLists {
+        // SAFETY: the caller is the garment's worker in one of the two phases that write the touches and read them in no other way.
         unsafe { self.touching.own(garment) }
     }
 
     /// The same in phases that write none.
     fn touches(&self, garment: usize) -> &TouchLists {
-        // SAFETY: see above.
+        // SAFETY: `Motions` and `Lists` alone write the touches, and neither calls this.
         unsafe { self.touching.read(garment) }
     }
 
     /// A worker's share of a stage: of a garment that is one worker's all or nothing.
     fn stage(&self, garment: usize, stage: Stage, substep: usize, share: usize) {
-        let run = |owner: usize| self.works[garment].run(stage, substep as u32, owner);
+        let run = |owner: usize| {
+            // SAFETY: the phases follow the program of the garment. If both workers own particles of it, a stage is one phase, and each
+            // worker does its share of it. Otherwise the garment's worker alone does both shares of one stage after the other. The
+            // caller of `Self::run` knows that the cloth was made of the garment.
+            unsafe { self.works[garment].run(stage, substep as u32, owner) };
+        };
         match self.is_shared(garment) {
             true => self.meter(stage.metered(), || run(share)),
             false if self.worker[garment] == share => self.meter(stage.metered(), || (0..OWNERS).for_each(run)),
@@ -356,7 +379,7 @@ impl<'a> LayerWork<'a> {
         }
         for touched in touches.touched(turn.level, part) {
             let i = touched.particle as usize;
-            // SAFETY: as in `each_touched`.
+            // SAFETY: `Apply` alone calls this. Each particle is in one part, whose worker alone has what it bears and rests on.
             let (resting, bearing) = unsafe { (self.resting[garment].own(i), self.bearing[garment].own(i)) };
             let own = touches.of(touched);
             match turn.up {
@@ -386,7 +409,7 @@ impl<'a> LayerWork<'a> {
         }
         let (above, of) = if pair.wearing == Wearing::Outer { (0, pair.particles) } else { (1, pair.faces) };
         let borne = |i: u32| {
-            // SAFETY: no worker writes them in `Solve`.
+            // SAFETY: `Solve` alone calls this. What particles bear is written in other phases only.
             let bearing = unsafe { self.bearing[of].read(i as usize) };
             (bearing.owed, bearing.held_by)
         };
@@ -408,7 +431,7 @@ impl<'a> LayerWork<'a> {
         for (contact, push) in own.contacts.pairs_mut() {
             let mut rest = [Resting::default(); VERTICES];
             for (k, rest) in rest.iter_mut().enumerate() {
-                // SAFETY: no worker writes them in `Solve`.
+                // SAFETY: `Solve` alone calls this. What particles rest on is written in other phases only.
                 *rest = *unsafe { resting[contact.side(k)].read(contact.vertices[k] as usize) };
             }
             contact.solve(columns, &rest, constants, push);
