@@ -72,7 +72,7 @@ impl DepthSurface {
             }
         }
         let ground = (2 * cut < frames.len()).then_some(0.0);
-        let median = |counts: Vec<f32>| median_of(counts.into_iter()).unwrap_or(0.0);
+        let median = |counts: Vec<f32>| median_of(counts).unwrap_or(0.0);
         let (pixels, people) = (median(pixels) as usize, median(people).round() as usize);
         Self { frames, after, ground, pixels, people, too_far }
     }
