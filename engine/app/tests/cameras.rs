@@ -98,6 +98,7 @@ fn the_doctor_names_every_camera_with_its_library_or_the_command_that_installs_i
 #[test]
 fn a_visit_at_the_kiosk_is_seen_by_a_camera_from_start_to_end() {
     let Some(library) = player() else { return };
+    let _alone = crate::REAL_TIME.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     let scratch = Scratch::new("camera-kiosk");
     let recording = scratch.path().join("visit");
     // Long enough to be measured and dressed beside compilers, too; the kiosk goes on longer, for it is played more slowly then.

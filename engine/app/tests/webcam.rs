@@ -99,6 +99,7 @@ fn a_visit_at_the_kiosk_is_seen_by_a_webcam() {
     if !is_fetched() {
         return;
     }
+    let _alone = crate::REAL_TIME.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     let scratch = Scratch::new("webcam-kiosk");
     write_pictures(&scratch.path().join("pictures"), 60);
     let config = "[sensor]\ncamera = \"webcam-file\"\ndevice = \"pictures\"\n[shopper]\nmeasures = [\"stature=1680\"]\n\
