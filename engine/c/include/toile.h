@@ -1262,9 +1262,7 @@ toile_code toile_recording_read(toile_recording recording, toile_recording_facts
  * Measures the person in a recording: by a body fitted to depth where there is any, by the joints otherwise. `shopper` may be
  * null: nothing is known before.
  */
-toile_code toile_recording_measure(toile_recording recording,
-                                   const toile_shopper *shopper,
-                                   toile_measured *measured);
+toile_code toile_recording_measure(toile_recording recording, const toile_shopper *shopper, toile_measured *measured);
 
 /**
  * The filtered joints from the moment on at which the person can be dressed; of depth alone, the body is followed through it.
@@ -1339,10 +1337,7 @@ toile_code toile_try_on_result_measure(toile_try_on_result result, size_t index,
  * Notes on the measures and the body, a line each, as a text into `bytes`; its length with the closing zero into
  * `needed`.
  */
-toile_code toile_try_on_result_notes(toile_try_on_result result,
-                                     char *bytes,
-                                     size_t room,
-                                     size_t *needed);
+toile_code toile_try_on_result_notes(toile_try_on_result result, char *bytes, size_t room, size_t *needed);
 
 /**
  * A picture of the recording's end in a look (a toile_look): 0 is the front, 1 the side, 2 the back. rgba as toile_scene_picture
