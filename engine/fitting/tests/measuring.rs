@@ -99,7 +99,7 @@ fn a_whole_woman_with_shoes_and_hair_is_as_tall_as_her_picture() {
 
 #[test]
 fn people_seen_from_the_waist_up_have_an_unsure_stature() {
-    // Frames of one man in a wide shirt; in the last one somebody stands behind him.
+    // Frames of one man in a wide shirt; in the last one another person stands behind him.
     let frames = [1028894671u64, 1038901490, 1045879925, 1051883281, 1058893191, 1064898470, 1078881076, 1399145206];
     let mut chests = 0;
     for number in frames {

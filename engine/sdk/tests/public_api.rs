@@ -232,7 +232,7 @@ fn what_callers_cannot_name_is_left_out_and_what_they_can_is_kept() {
         pub struct Open { /// Words.
             pub a: u8, b: u8 }
         pub struct Hidden { pub a: u8 }
-        impl Open { pub fn of(a: u8) -> Self { todo!() } fn own(&self) {} pub(crate) fn ours(&self) {} }
+        impl Open { pub fn of(a: u8) -> Self { Self { a, b: 0 } } fn own(&self) {} pub(crate) fn ours(&self) {} }
         impl Drop for Open { fn drop(&mut self) {} }
         impl Hidden { pub fn of() {} }
         pub fn open() {}

@@ -309,8 +309,10 @@ fn fibers(fibers: &Fibers, marks: &mut Marks) -> Result<(), LayoutError> {
             let rows = &fibers.rows[range(WHAT, &bundle.rows, fibers.rows.len())?];
             let links = rows.len().saturating_sub(1);
             let links = links as u32;
-            serials.take(bundle.serial, links * bundle.lanes, owner)?;
-            places.take(bundle.at, if bundle.alike { links } else { links * bundle.lanes }, owner)?;
+            // Saturating: a product that wraps would pass the bound.
+            let all = links.saturating_mul(bundle.lanes);
+            serials.take(bundle.serial, all, owner)?;
+            places.take(bundle.at, if bundle.alike { links } else { all }, owner)?;
             for row in rows {
                 bound(WHAT, row.lanes as usize, bundle.lanes as usize)?;
                 for particle in row.first as usize..row.first as usize + row.lanes as usize {
@@ -336,7 +338,7 @@ fn lists(lists: &FiberLists, marks: &mut Marks) -> Result<(), LayoutError> {
             for list in &lists.lists[range(WHAT, share, lists.lists.len())?] {
                 let (lanes, rows) = (list.lanes as usize, list.rows as usize);
                 bound(WHAT, list.first as usize + lanes * rows, lists.index.len())?;
-                places.take(list.at, list.lanes * list.links(), owner)?;
+                places.take(list.at, list.lanes.saturating_mul(list.links()), owner)?;
                 for lane in 0..lanes {
                     // A fiber may come back to its own first particle; lanes are apart.
                     marks.set();
