@@ -24,7 +24,6 @@ pub mod tailor;
 pub mod adapt;
 
 pub mod scene_file;
-pub mod wardrobe;
 
 pub mod draping;
 

@@ -166,7 +166,7 @@ fn packages_cut_short_and_garbled_are_refused_or_read_but_never_more() {
 fn a_catalogue_leaves_out_what_cannot_be_used_and_names_it() {
     let scratch = Scratch::new("shop");
     let package = |name: &str, article: &str| {
-        let text = manifest(article, "sun-dress");
+        let text = manifest(article, "strap-dress");
         scratch.file(name, zipped(&[("garment.toml", text.as_bytes())]))
     };
     package("a.toile", "A-1");
@@ -249,7 +249,7 @@ fn a_theme_is_read_and_what_is_wrong_with_it_is_one_sentence() {
 fn a_package_that_is_still_the_same_is_not_read_again() {
     let scratch = Scratch::new("again");
     scratch.file("catalogue.toml", "shop = \"A\"\n");
-    let package = |article: &str| zipped(&[("garment.toml", manifest(article, "sun-dress").as_bytes())]);
+    let package = |article: &str| zipped(&[("garment.toml", manifest(article, "strap-dress").as_bytes())]);
     scratch.file("a.toile", package("A-1"));
     scratch.file("b.toile", package("B-1"));
     let before = Catalogue::read(&scratch.0).unwrap();
@@ -266,7 +266,7 @@ fn two_hundred_garments_are_read_in_little_memory() {
     let scratch = Scratch::new("many");
     scratch.file("catalogue.toml", "shop = \"Department store\"\n");
     for i in 0..200 {
-        let text = manifest(&format!("N-{i}"), "t-shirt");
+        let text = manifest(&format!("N-{i}"), "tee");
         scratch.file(&format!("{i:03}.toile"), zipped(&[("garment.toml", text.as_bytes())]));
     }
     let start = std::time::Instant::now();

@@ -4,6 +4,9 @@ use glam::Vec3;
 use toile_assets::drafting;
 use toile_assets::draping::{DrapedPattern, PatternPackage};
 use toile_base::body::{Body, Measures, Sex};
+use toile_base::garment::gather::WIDENS_M;
+use toile_base::garment::tuck::SLIPS_M;
+use toile_base::garment::{Garment, Tuck};
 use toile_base::skeleton::Joint;
 
 /// Strain of all but one in a hundred edges (1): trousers reach it at the crotch.
@@ -111,6 +114,47 @@ fn a_scarf_lies_around_the_neck_and_is_held_by_nothing() {
 #[test]
 fn a_dress_comes_back_from_its_bytes() {
     let body = toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
-    let dress = toile_assets::wardrobe::style("sun-dress").unwrap().dress("38", &body).unwrap();
-    assert_eq!(toile_base::garment::Garment::from_bytes(&dress.to_bytes()).unwrap(), dress);
+    let dress = drafting::style("strap-dress").unwrap().package().unwrap().dress("38", &body).unwrap();
+    assert_eq!(Garment::from_bytes(&dress.to_bytes()).unwrap(), dress);
+}
+
+#[test]
+fn what_is_tucked_in_gets_the_width_at_which_it_lies_and_the_rest_keeps_its_own() {
+    let shopper = toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
+    let shirt = drafting::style("tee").unwrap().package().unwrap().dress("38", &shopper).unwrap();
+    let mut same = shirt.clone();
+    same.gather();
+    assert_eq!(same, shirt, "nothing is tucked in");
+    let band = shopper.levels.waist - 0.05;
+    let mut tucked = shirt.clone();
+    let particles: Box<[bool]> = shirt.start.iter().map(|p| p.y < band).collect();
+    let free = |[a, b]: [u32; 2]| [a, b].iter().all(|&v| shirt.start[v as usize].y > band + SLIPS_M + WIDENS_M);
+    tucked.start.iter_mut().zip(&particles).filter(|(_, inside)| **inside).for_each(|(p, _)| {
+        (p.x, p.z) = (0.8 * p.x, 0.8 * p.z);
+    });
+    tucked.tuck = Some(Tuck { into: 0, band, particles: particles.clone() });
+    tucked.gather();
+    // The shirt starts a little wider or narrower than it is cut, because this shopper is not of its size.
+    let as_cut = |garment: &Garment| {
+        let of = |within: bool| {
+            let links = garment.hoop_edges.iter().filter(|(ends, _)| free(*ends) == within);
+            links.map(|(_, rest)| *rest).sum::<f32>()
+        };
+        [of(false), of(true)]
+    };
+    let ([before, rest], [after, kept]) = (as_cut(&shirt), as_cut(&tucked));
+    assert!((0.7..0.95).contains(&(after / before)) && rest == kept, "{before} {after} {rest} {kept}");
+    // The layout has them too: as many links, each as long as before or shorter.
+    let lengths = |garment: &Garment| {
+        let mut all = Vec::new();
+        let links = &garment.layout().weft;
+        links.tuples.for_each(|at, ends| all.push((ends, links.rest[at], links.compliance[at])));
+        all
+    };
+    let (old, new) = (lengths(&shirt), lengths(&tucked));
+    assert_eq!(old.len(), new.len());
+    for ((ends, was, soft), (same_ends, is, same_soft)) in old.into_iter().zip(new) {
+        assert_eq!((ends, soft), (same_ends, same_soft));
+        assert!(is <= was && (!free(ends) || is == was), "{ends:?}: {was} became {is}");
+    }
 }

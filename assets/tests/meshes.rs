@@ -10,7 +10,7 @@ use toile_assets::adapt::{AdaptError, OwnMesh};
 use toile_assets::draping;
 use toile_assets::import;
 use toile_assets::sizes::SizeTable;
-use toile_assets::wardrobe::own;
+use toile_assets::adapt::dress as own;
 use toile_bake::check::check;
 use toile_base::body::{Body, Measures, Sex};
 

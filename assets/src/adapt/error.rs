@@ -3,9 +3,11 @@
 use thiserror::Error;
 
 use crate::body::BodyError;
+use crate::fabric::FabricError;
 use crate::file::FileError;
 use crate::import::avatar::AvatarError;
 use crate::sizes::SizeError;
+use toile_bake::check::MeshError;
 
 /// Error of the user's mesh, or of a file beside it.
 #[derive(Debug, Error)]
@@ -45,4 +47,23 @@ pub enum AdaptError {
         /// Why the body cannot be built.
         source: BodyError,
     },
+    /// A size given for a mesh that has none.
+    #[error("{path} is a mesh in one size, so it has no size {size}; leave the size out")]
+    NoSizes {
+        /// The file's path as the user gave it.
+        path: String,
+        /// The size asked for.
+        size: String,
+    },
+    /// A mesh that cannot be cloth.
+    #[error("garment {path}: {source}")]
+    Cloth {
+        /// The file's path as the user gave it.
+        path: String,
+        /// The fault of the mesh.
+        source: MeshError,
+    },
+    /// A fabric that cannot be used.
+    #[error(transparent)]
+    Fabric(#[from] FabricError),
 }

@@ -2,8 +2,10 @@
 //!
 //! In this order: the unit is recognised by whether a body stands in the mesh ([`mod@unit`]); the mesh becomes surfaces of one layer
 //! ([`repair`], [`surface`], [`shells`], [`hems`]); the body that it is made for is found ([`made_for`]); and for each shopper it
-//! is laid on them ([`place`], [`lay`]), held where it lies on the skin ([`hold`]), and each piece judged ([`judge`]).
+//! is laid on them ([`place`], [`lay`]), held where it lies on the skin ([`hold`]), and each piece judged ([`judge`]); what comes of it is
+//! baked ([`dress`]).
 
+pub mod dress;
 mod error;
 pub mod file_order;
 pub mod grading;

@@ -186,34 +186,39 @@ fn no_person_inside(low: Vec3, high: Vec3) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::wardrobe;
+    use crate::{drafting, fabric};
     use toile_base::body::{Measures, Sex};
 
     fn body() -> Body {
         crate::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap()
     }
 
-    /// A garment of our own as a file in another unit and place would have it.
-    fn written(name: &str, place: impl Fn(Vec3) -> Vec3) -> ForeignMesh {
-        let shape = wardrobe::style(name).unwrap().draft(if name == "t-shirt" { "M" } else { "42" }, &body()).unwrap();
-        let mut mesh = ForeignMesh { positions: shape.worn, faces: shape.faces, ..ForeignMesh::default() };
-        mesh.positions.iter_mut().for_each(|p| *p = place(*p));
-        mesh
+    /// A garment of our own on a body, as its mesh would be exported.
+    fn worn(name: &str, body: &Body) -> ForeignMesh {
+        let package = drafting::style(name).unwrap().package().unwrap();
+        let shape = package.draft("42", body, &fabric::built_in(&package.fabric).unwrap()).unwrap();
+        ForeignMesh { positions: shape.worn, faces: shape.faces, ..ForeignMesh::default() }
+    }
+
+    /// The same as a file in another unit and place would have it.
+    fn written(mesh: &ForeignMesh, place: impl Fn(Vec3) -> Vec3) -> ForeignMesh {
+        ForeignMesh { positions: mesh.positions.iter().map(|p| place(*p)).collect(), ..mesh.clone() }
     }
 
     #[test]
     fn units_axes_and_heights_are_found() {
         let body = body();
-        for name in ["t-shirt", "wide-trousers", "sun-dress"] {
+        for name in ["tee", "wide-leg-trousers", "strap-dress"] {
+            let mesh = worn(name, &body);
             for (metres, unit) in UNITS {
-                let found = recognise(&written(name, |p| p / metres), &body, None).unwrap();
+                let found = recognise(&written(&mesh, |p| p / metres), &body, None).unwrap();
                 assert_eq!((found.unit, found.z_up, found.lift), (unit, false, 0.0), "{name}");
             }
-            let found = recognise(&written(name, |p| Vec3::new(p.x, -p.z, p.y) * 100.0), &body, None).unwrap();
+            let found = recognise(&written(&mesh, |p| Vec3::new(p.x, -p.z, p.y) * 100.0), &body, None).unwrap();
             assert_eq!((found.unit, found.z_up), ("centimetres", true), "{name}");
-            let found = recognise(&written(name, |p| (p - Vec3::Y * 0.9) * 10.0), &body, None).unwrap();
+            let found = recognise(&written(&mesh, |p| (p - Vec3::Y * 0.9) * 10.0), &body, None).unwrap();
             // Wide trousers lie nearer to the skin two hands higher.
-            let sure = if name == "wide-trousers" { 0.2 } else { 0.08 };
+            let sure = if name == "wide-leg-trousers" { 0.2 } else { 0.08 };
             assert!(found.unit == "decimetres" && (found.lift - 0.9).abs() < sure, "{name}: {found:?}");
         }
     }
@@ -221,10 +226,11 @@ mod tests {
     #[test]
     fn what_no_body_stands_in_is_refused_in_one_sentence() {
         let body = body();
+        let mesh = worn("tee", &body);
         let wrong: [&dyn Fn(Vec3) -> Vec3; 4] =
             [&|p| p * 1e-5, &|p| p * 1e6, &|p| p * Vec3::new(0.05, 1.0, 0.05), &|p| p + Vec3::X * 3.0];
         for place in wrong {
-            let message = recognise(&written("t-shirt", place), &body, None).unwrap_err();
+            let message = recognise(&written(&mesh, place), &body, None).unwrap_err();
             assert!(message.contains("; ") && !message.contains('\n'), "{message}");
         }
     }

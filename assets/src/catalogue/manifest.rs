@@ -10,7 +10,6 @@ use super::price::Price;
 use crate::drafting;
 use crate::draping;
 use crate::toml_keys::place;
-use crate::wardrobe;
 
 /// Words by the tag of their language, `en` or `de`.
 pub type Words = BTreeMap<String, String>;
@@ -124,19 +123,22 @@ impl GarmentManifest {
                     .into(),
             );
         }
+        if let Some(new) = drafting::successor(&self.garment) {
+            return Err(format!("the garment {} is no longer built in; name {new}, which took its place", self.garment));
+        }
         if !self.is_built_in() && !self.is_pattern() && !self.is_mesh() {
             return Err(format!(
                 "garment is {:?}; name a file of the package that ends in .json, .dxf, .obj, .gltf or .glb, or one of {}",
                 self.garment,
-                built_in().collect::<Vec<_>>().join(", ")
+                drafting::names().join(", ")
             ));
         }
         Ok(())
     }
 
-    /// Whether it is a garment of the wardrobe, or one that is drafted, under a shop's own name.
+    /// Whether it is a garment of the wardrobe under a shop's own name.
     pub fn is_built_in(&self) -> bool {
-        built_in().any(|name| name == self.garment)
+        drafting::style(&self.garment).is_some()
     }
 
     /// Whether it is made from a pattern.
@@ -158,11 +160,6 @@ impl GarmentManifest {
         let laid_on = self.image.iter().flat_map(PhotographedGarment::files);
         others.chain(self.photographs.iter().map(String::as_str)).chain(laid_on)
     }
-}
-
-/// Names of the garments that need no file.
-fn built_in() -> impl Iterator<Item = &'static str> {
-    wardrobe::names().into_iter().chain(drafting::names())
 }
 
 /// Checks names by language.
@@ -210,7 +207,7 @@ srgb = [0.3, 0.4, 0.2]
         assert_eq!(word(&manifest.names, "de"), "Tellerrock");
         assert_eq!(word(&manifest.names, "tr"), "Circle skirt");
         assert!(manifest.is_pattern() && !manifest.is_mesh() && !manifest.is_built_in());
-        let dress = GarmentManifest::parse(&GOOD.replace("skirt.json", "sun-dress")).unwrap();
+        let dress = GarmentManifest::parse(&GOOD.replace("skirt.json", "strap-dress")).unwrap();
         assert!(dress.is_built_in());
     }
 
@@ -220,6 +217,7 @@ srgb = [0.3, 0.4, 0.2]
             ("SK-1001", "", "article number"),
             ("SK-1001", &"x".repeat(60), "article number"),
             ("skirt.json", "skirt.exe", ".obj"),
+            ("skirt.json", "sun-dress", "strap-dress"),
             ("49.90 EUR", "free", "49.90 EUR"),
             ("0.3, 0.4", "3, 4", "0 to 1"),
             ("de = ", "german = ", "name.german"),

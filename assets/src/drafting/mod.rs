@@ -31,6 +31,19 @@ pub fn names() -> Vec<&'static str> {
     STYLES.iter().map(|style| style.name).collect()
 }
 
+/// Garments of earlier versions, and those that took their places.
+const SUCCESSORS: [(&str, &str); 4] = [
+    ("sun-dress", "strap-dress"),
+    ("t-shirt", "tee"),
+    ("wide-trousers", "wide-leg-trousers"),
+    ("jacket", "blazer"),
+];
+
+/// The garment that took the place of one of an earlier version.
+pub fn successor(name: &str) -> Option<&'static str> {
+    SUCCESSORS.iter().find(|(old, _)| *old == name).map(|(_, new)| *new)
+}
+
 /// A garment that is drafted here, by its name.
 pub fn style(name: &str) -> Option<&'static DraftStyle> {
     STYLES.iter().find(|style| style.name == name)

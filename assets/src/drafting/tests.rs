@@ -133,11 +133,14 @@ fn trims_lie_on_their_panels_in_every_size_and_on_both_sides_alike() {
 #[test]
 fn names_are_no_files_and_titles_are_words() {
     for name in names() {
-        assert!(!crate::draping::is_pattern(name) && !crate::wardrobe::names().contains(&name), "{name}");
+        assert!(!crate::draping::is_pattern(name) && successor(name).is_none(), "{name}");
     }
     assert_eq!(style("mens-tee").unwrap().title(), "Men's tee");
     assert_eq!(style("straight-skirt").unwrap().title(), "Straight skirt");
     assert!(style("crown").is_none());
+    for (old, new) in SUCCESSORS {
+        assert!(style(old).is_none() && style(new).is_some(), "{old}");
+    }
 }
 
 #[test]

@@ -20,6 +20,7 @@ mod place;
 mod quality;
 mod relax;
 mod rows;
+mod section;
 mod skin_field;
 mod sleeves;
 mod springs;

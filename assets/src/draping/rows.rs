@@ -8,8 +8,8 @@ use super::arrange::Arrangement;
 use super::limits::CLEARANCE_M;
 use super::outlines::{outline, width};
 use super::panels::Around;
+use super::section::{BodySection, RingFit, SectionPlane};
 use crate::tailor::SewnMesh;
-use crate::wardrobe::section::{BodySection, RingFit, SectionPlane};
 use toile_base::body::Body;
 
 /// Height between two rows (m), half of the finest cloth's spacing above which folds are seen.

@@ -4,16 +4,13 @@ use std::fmt::Display;
 use std::path::Path;
 use std::sync::Arc;
 
-use toile_assets::adapt::{AdaptError, MeshReport, OwnMesh, source};
+use toile_assets::adapt::{AdaptError, MeshReport, OwnMesh, dress as own, source};
 use toile_assets::catalogue::limits::{MAX_PACKAGE_BYTES, MAX_TOML_BYTES};
 use toile_assets::catalogue::package::ENDING;
 use toile_assets::catalogue::{GarmentPackage, GarmentPhotographs, word};
 use toile_assets::drafting;
 use toile_assets::draping::{self, AS_DRAFTED, HungPattern, PatternPackage, TO_MEASURE};
 use toile_assets::sizes::{Population, SizeTable};
-use toile_assets::wardrobe::own;
-use toile_assets::wardrobe::style::Style;
-use toile_assets::wardrobe::{self, WardrobeError};
 use toile_base::body::{Body, Measures, Sex};
 use toile_base::fabric::Fabric;
 use toile_base::garment::Garment;
@@ -41,20 +38,15 @@ pub struct GarmentSource {
 /// The data that a garment is made from.
 #[derive(Debug, Clone)]
 pub enum SourceKind {
-    /// A garment of the wardrobe.
-    Style(Box<Style>),
     /// A mesh of the user's own.
     Mesh(Box<OwnMesh>),
-    /// A sewn pattern or a garment package.
+    /// A garment of the wardrobe, a sewn pattern, or a garment package.
     Pattern(Box<PatternPackage>),
 }
 
 impl SourceKind {
-    /// A garment that is built in, of the wardrobe or drafted; none where no such garment has this name.
+    /// A garment of the wardrobe; none where none has this name.
     fn built_in(name: &str) -> Option<Result<Self, FittingError>> {
-        if wardrobe::names().contains(&name) {
-            return Some(wardrobe::style(name).map(|style| Self::Style(Box::new(style))).map_err(FittingError::input));
-        }
         let package = drafting::style(name)?.package();
         Some(package.map(|package| Self::Pattern(Box::new(package))).map_err(FittingError::input))
     }
@@ -68,9 +60,14 @@ fn in_fabric(name: &str) -> Option<(&str, &str)> {
 }
 
 /// The error for a name that no garment has.
-fn unknown(name: &str) -> WardrobeError {
-    let known: Vec<&str> = wardrobe::names().into_iter().chain(drafting::names()).collect();
-    WardrobeError::Unknown { name: name.into(), known: known.join(", ") }
+fn unknown(name: &str) -> FittingError {
+    FittingError::Input(match drafting::successor(name) {
+        Some(new) => format!("the garment {name} is no longer built in; ask for {new}, which took its place"),
+        None => {
+            let known = drafting::names().join(", ");
+            format!("there is no garment named {name}; choose one of {known}, or give the path of an OBJ file")
+        }
+    })
 }
 
 /// A garment on the body, and how its size fits; a mesh may have no sizes.
@@ -123,7 +120,7 @@ impl GarmentSource {
         } else if path.exists() || source::is_mesh(name) {
             SourceKind::Mesh(Box::new(OwnMesh::read(path).map_err(FittingError::input)?))
         } else {
-            return Err(FittingError::input(unknown(name)));
+            return Err(unknown(name));
         };
         Ok(Self { name: name.to_owned(), kind, fabric: None, layer: None, photographs: None })
     }
@@ -193,7 +190,6 @@ impl GarmentSource {
     /// A size table that cannot be used.
     pub fn population(&self) -> Result<Population, FittingError> {
         match &self.kind {
-            SourceKind::Style(style) => Ok(style.sizes().map_err(FittingError::input)?.population),
             SourceKind::Mesh(own) => Ok(own.sex.into()),
             SourceKind::Pattern(package) => package.population().map_err(FittingError::input),
         }
@@ -206,7 +202,6 @@ impl GarmentSource {
     pub fn fabric(&self) -> Result<Fabric, FittingError> {
         let named = match (&self.fabric, &self.kind) {
             (Some(fabric), _) => return Ok(fabric.clone()),
-            (None, SourceKind::Style(style)) => &style.fabric,
             (None, SourceKind::Mesh(own)) => own.measures.fabric.as_deref().unwrap_or(draping::FABRIC),
             (None, SourceKind::Pattern(package)) => &package.fabric,
         };
@@ -219,7 +214,6 @@ impl GarmentSource {
     /// Sizes that cannot be used, a pattern that cannot be laid around a body.
     pub fn offer(&self, wearer: &Body) -> Result<Option<GarmentOffer>, FittingError> {
         let offer = match &self.kind {
-            SourceKind::Style(style) => GarmentOffer::of_style(style).map(Some),
             SourceKind::Mesh(own) => GarmentOffer::of_mesh(own),
             SourceKind::Pattern(package) => GarmentOffer::of_pattern(package, wearer).map(Some),
         };
@@ -240,10 +234,6 @@ impl GarmentSource {
         };
         let middle = |codes: &[&str]| codes.get(codes.len() / 2).map_or_else(String::new, |code| (*code).to_owned());
         match &self.kind {
-            SourceKind::Style(style) => {
-                let table = style.sizes().map_err(FittingError::input)?;
-                of_size(&table, &middle(&table.codes()))
-            }
             SourceKind::Mesh(own) => match &own.sizes {
                 Some(sizes) => of_size(&sizes.table, &middle(&sizes.table.codes())),
                 None => Ok((own.made_for.body.sex, own.made_for.body.measures, own::UNKNOWN.to_owned())),
@@ -270,7 +260,6 @@ impl GarmentSource {
     /// A size that is not made.
     pub fn body_of(&self, size: &str) -> Result<Option<Measures>, FittingError> {
         let table = match &self.kind {
-            SourceKind::Style(style) => Some(style.sizes().map_err(FittingError::input)?),
             SourceKind::Mesh(own) => own.sizes.as_ref().map(|sizes| sizes.table.clone()),
             SourceKind::Pattern(package) => {
                 return Ok(package.body_of(size).map_err(FittingError::input)?.map(|body| body.measures));
@@ -304,14 +293,6 @@ impl GarmentSource {
     pub fn dress(&self, size: Option<&str>, wearer: &Body) -> Result<FittedGarment, FittingError> {
         let mut worn = FittedGarment { garments: Vec::new(), mesh_vertices: Vec::new(), fit: None, mesh: None };
         match &self.kind {
-            SourceKind::Style(style) => {
-                let size = size.ok_or_else(|| FittingError::Internal(format!("{} has no size", self.name)))?;
-                let dressed = match &self.fabric {
-                    Some(fabric) => style.dress_in(fabric, size, wearer),
-                    None => style.dress(size, wearer),
-                };
-                worn.garments.push(dressed.map_err(FittingError::input)?);
-            }
             SourceKind::Mesh(mesh) => {
                 let size = size.filter(|size| *size != own::UNKNOWN);
                 let dressed = own::dress_in(mesh, self.fabric.as_ref(), size, wearer);
@@ -339,7 +320,7 @@ impl GarmentSource {
     pub fn hang(&self, size: &str) -> Result<Option<HungPattern>, FittingError> {
         match &self.kind {
             SourceKind::Pattern(package) => package.hang(self.fabric.as_ref(), size).map_err(FittingError::input),
-            SourceKind::Style(_) | SourceKind::Mesh(_) => Ok(None),
+            SourceKind::Mesh(_) => Ok(None),
         }
     }
 

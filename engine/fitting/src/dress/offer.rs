@@ -2,14 +2,12 @@
 
 use std::f32::consts::TAU;
 
-use toile_assets::adapt::OwnMesh;
+use toile_assets::adapt::{OwnMesh, dress as own};
 use toile_assets::draping::{
     self, AS_DRAFTED, PatternEase, PatternPackage, PatternSizes, SizeGirths, TO_MEASURE, ZoneEase,
 };
 use toile_assets::pattern::Pattern;
 use toile_assets::sizes::{GarmentKind, Girth, SizeBody, SizeError, SizeTable};
-use toile_assets::wardrobe::own;
-use toile_assets::wardrobe::style::Style;
 use toile_base::body::{Body, Measures, Sex};
 use toile_track::measure::Measurements;
 use toile_track::recommend::{self, EaseRange, MadeSize, Offer, RecommendError, Recommendation, ZoneGirth};
@@ -34,18 +32,6 @@ pub struct GarmentOffer {
 }
 
 impl GarmentOffer {
-    /// A garment of the wardrobe.
-    ///
-    /// # Errors
-    /// A table or size that there is not.
-    pub fn of_style(style: &Style) -> Result<Self, FittingError> {
-        let table = style.sizes().map_err(FittingError::input)?;
-        let sizes = made(&table, |size| style.finished(size)).map_err(FittingError::input)?;
-        let range = |zone: Girth| style.comfort_mm.at(zone).map(|range| (zone, range));
-        let ease = ranges(Girth::ALL.into_iter().filter_map(range));
-        Ok(Self { garment: style.name.clone(), kind: style.kind, table, sizes, ease, thickness_m: 0.0 })
-    }
-
     /// A mesh of the user's own; none of one that has no sizes.
     ///
     /// # Errors
@@ -53,7 +39,7 @@ impl GarmentOffer {
     pub fn of_mesh(own: &OwnMesh) -> Result<Option<Self>, FittingError> {
         let Some(mesh) = &own.sizes else { return Ok(None) };
         let sizes = made(&mesh.table, |size| own.finished_in(mesh, size)).map_err(FittingError::input)?;
-        let ease = ranges(own::comfort(own, mesh.kind).map_err(FittingError::input)?);
+        let ease = ranges(own::comfort(own, mesh.kind));
         let garment = own.measures.name.clone().unwrap_or_else(|| own.path.clone());
         Ok(Some(Self { garment, kind: mesh.kind, table: mesh.table.clone(), sizes, ease, thickness_m: 0.0 }))
     }
@@ -171,8 +157,7 @@ fn in_sizes(package: &PatternPackage, sizes: &PatternSizes) -> Result<GarmentOff
         eases.extend(zones.iter().map(|z| (z.zone, z.girth_m - z.zone.of(&own))));
         made.push(MadeSize { code: size.size.clone(), zones });
     }
-    let usual = own::comfort_of(sizes.kind).map_err(FittingError::input)?;
-    let around = usual.into_iter().map(|(zone, [least, most])| {
+    let around = sizes.kind.comfort().iter().map(|&(zone, [least, most])| {
         let at: Vec<f32> = eases.iter().filter(|(at, _)| *at == zone).map(|(_, ease)| *ease).collect();
         let mean = at.iter().sum::<f32>() / at.len().max(1) as f32;
         let shift = if at.is_empty() { 0.0 } else { mean - 0.5 * (least + most) };
@@ -192,7 +177,7 @@ fn as_drafted(package: &PatternPackage, wearer: &Body) -> Result<GarmentOffer, F
     let table = if wearer.sex == Sex::Male && men.designation(found.kind).is_some() { men } else { women };
     let primary = table.designation(found.kind).map_or_else(Vec::new, |d| d.primary.clone());
     let sizes = vec![made_size(AS_DRAFTED.to_owned(), &found.judged(&primary), wearer)];
-    let ease = ranges(own::comfort_of(found.kind).map_err(FittingError::input)?);
+    let ease = ranges(found.kind.comfort().iter().copied());
     Ok(GarmentOffer { garment: package.name.clone(), kind: found.kind, table, sizes, ease, thickness_m: 0.0 })
 }
 

@@ -38,9 +38,9 @@ pub struct BodySection {
 }
 
 impl BodySection {
-    /// The outline of the given regions, of those points alone that `near` admits (what belongs to a limb is a matter
-    /// of where, too: regions end in a slanted line). `None` where the plane misses them.
-    pub fn of(body: &Body, regions: &[Region], plane: SectionPlane, near: impl Fn(Vec3) -> bool) -> Option<Self> {
+    /// The outline of the given regions, of those points alone that `near` admits. `None` where the plane misses them.
+    fn of(body: &Body, regions: &[Region], height: f32, near: impl Fn(Vec3) -> bool) -> Option<Self> {
+        let plane = SectionPlane::level(height);
         let keep = |t: usize| body.mesh.triangles[t].iter().all(|&v| regions.contains(&body.regions[v as usize]));
         let normal = plane.u.cross(plane.v);
         let flat = |p: Vec3| Vec2::new((p - plane.origin).dot(plane.u), (p - plane.origin).dot(plane.v));
@@ -52,12 +52,12 @@ impl BodySection {
 
     /// The torso without arms at a height; below the crotch both legs together.
     pub fn trunk(body: &Body, height: f32) -> Option<Self> {
-        Self::of(body, &[Region::Torso, Region::LeftLeg, Region::RightLeg], SectionPlane::level(height), |_| true)
+        Self::of(body, &[Region::Torso, Region::LeftLeg, Region::RightLeg], height, |_| true)
     }
 
     /// The left leg at a height; above the crotch, the left half of the trunk.
     pub fn left_leg(body: &Body, height: f32) -> Option<Self> {
-        Self::of(body, &[Region::Torso, Region::LeftLeg], SectionPlane::level(height), |p| p.x >= 0.0)
+        Self::of(body, &[Region::Torso, Region::LeftLeg], height, |p| p.x >= 0.0)
     }
 
     /// Length of the outline (m).
@@ -111,23 +111,6 @@ impl BodySection {
             .map(|s| self.plane.at(along(&line, s)))
             .collect()
     }
-
-    /// `columns + 1` points around the widened outline from one edge of an opening to the other; `columns` is a multiple of 4.
-    /// The opening (m) lies where the direction `from` leaves the middle, half of it to either side. Each quarter of the outline
-    /// has a quarter of the columns, so that the sides lie where those of a closed ring do.
-    pub fn open_ring(&self, fit: RingFit, opening: f32, columns: usize, from: Vec2) -> Vec<Vec3> {
-        let mut line = self.widened(fit.girth, fit.gap);
-        line.reverse(); // as for a closed ring
-        let line = start_at(&line, self.middle(), from);
-        let length = closed_length(&line);
-        let first = (2.0 * opening / length).min(1.0); // the edge's place in its quarter (1)
-        let place = |c: usize| {
-            let quarters = c as f32 / (columns / 4) as f32;
-            let in_front = |q: f32| if q < 1.0 { first + (1.0 - first) * q } else { q };
-            if quarters <= 2.0 { in_front(quarters) } else { 4.0 - in_front(4.0 - quarters) }
-        };
-        (0..=columns).map(|c| self.plane.at(along(&line, 0.25 * length * place(c)))).collect()
-    }
 }
 
 /// How wide a ring is: its girth as cut, and the gap that it keeps from the body (m). The gap is negative where cloth
@@ -176,24 +159,6 @@ fn along(line: &[Vec2], s: f32) -> Vec2 {
     line[0]
 }
 
-/// `count` points evenly along an open line, its ends included.
-pub fn resample(line: &[Vec3], count: usize) -> Vec<Vec3> {
-    if line.len() < 2 {
-        return vec![line.first().copied().unwrap_or_default(); count];
-    }
-    let mut sums = vec![0.0f32];
-    for pair in line.windows(2) {
-        sums.push(sums[sums.len() - 1] + pair[0].distance(pair[1]));
-    }
-    let total = sums[sums.len() - 1];
-    let at = |s: f32| {
-        let k = sums.partition_point(|&x| x < s).clamp(1, line.len() - 1);
-        let span = sums[k] - sums[k - 1];
-        line[k - 1].lerp(line[k], if span > 0.0 { (s - sums[k - 1]) / span } else { 0.0 })
-    };
-    (0..count).map(|i| at(total * i as f32 / (count - 1).max(1) as f32)).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -216,26 +181,8 @@ mod tests {
     }
 
     #[test]
-    fn an_open_ring_lacks_what_its_opening_measures_and_keeps_its_sides() {
-        let ring = circle(0.12).open_ring(RingFit { girth: 0.9, gap: -1.0 }, 0.06, 80, Vec2::Y);
-        assert_eq!(ring.len(), 81);
-        let length: f32 = ring.windows(2).map(|w| w[0].distance(w[1])).sum();
-        assert!((length - 0.84).abs() < 2e-3, "{length}");
-        assert!((ring[0].x - 0.03).abs() < 1e-3 && (ring[80].x + 0.03).abs() < 1e-3, "{} {}", ring[0], ring[80]);
-        assert!(ring[20].z.abs() < 2e-3 && ring[60].z.abs() < 2e-3 && ring[40].x.abs() < 2e-3);
-    }
-
-    #[test]
     fn a_gap_keeps_cloth_off_the_body() {
         let ring = circle(0.12).ring(RingFit { girth: 0.3, gap: 0.005 }, 100, Vec2::Y, 0.0);
         assert!(ring.iter().all(|p| Vec2::new(p.x, p.z).length() > 0.1245));
-    }
-
-    #[test]
-    fn resampling_keeps_the_ends_and_evens_the_steps() {
-        let line = [Vec3::ZERO, Vec3::X * 0.1, Vec3::X, Vec3::new(1.0, 1.0, 0.0)];
-        let points = resample(&line, 21);
-        assert_eq!((points[0], points[20]), (line[0], line[3]));
-        assert!(points.windows(2).all(|w| (w[0].distance(w[1]) - 0.1).abs() < 1e-5));
     }
 }

@@ -1,10 +1,9 @@
-//! Meshes of the user's own in the wardrobe: put on a shopper in a size, and baked.
+//! A mesh of the user's own put on a shopper in a size, and baked.
 
 use std::path::Path;
 
-use super::WardrobeError;
-use crate::adapt::wear::WornMesh;
-use crate::adapt::{MeshReport, OwnMesh};
+use super::wear::WornMesh;
+use super::{AdaptError, MeshReport, OwnMesh};
 use crate::sizes::{GarmentKind, Girth};
 use toile_bake::bake;
 use toile_base::body::Body;
@@ -43,14 +42,14 @@ pub struct DraftedMesh {
 ///
 /// # Errors
 /// A size of a mesh that has none, a fabric that there is not.
-pub fn draft(own: &OwnMesh, size: Option<&str>, shopper: &Body) -> Result<DraftedMesh, WardrobeError> {
+pub fn draft(own: &OwnMesh, size: Option<&str>, shopper: &Body) -> Result<DraftedMesh, AdaptError> {
     let fabric = crate::fabric::built_in(own.measures.fabric.as_deref().unwrap_or(FABRIC))?;
     let worn = match (size, &own.sizes) {
         (Some(size), Some(sizes)) if size != sizes.made_in => {
             let graded = own.graded(sizes, size)?;
             own.wear_cut(&graded.mesh, &graded.body, shopper)
         }
-        (Some(size), None) => return Err(WardrobeError::NoSizes { name: own.path.clone(), size: size.into() }),
+        (Some(size), None) => return Err(AdaptError::NoSizes { path: own.path.clone(), size: size.into() }),
         _ => own.wear(shopper),
     };
     Ok(DraftedMesh { worn, fabric })
@@ -60,7 +59,7 @@ pub fn draft(own: &OwnMesh, size: Option<&str>, shopper: &Body) -> Result<Drafte
 ///
 /// # Errors
 /// As [`draft`].
-pub fn dress(own: &OwnMesh, size: Option<&str>, shopper: &Body) -> Result<DressedMesh, WardrobeError> {
+pub fn dress(own: &OwnMesh, size: Option<&str>, shopper: &Body) -> Result<DressedMesh, AdaptError> {
     dress_in(own, None, size, shopper)
 }
 
@@ -73,7 +72,7 @@ pub fn dress_in(
     fabric: Option<&Fabric>,
     size: Option<&str>,
     shopper: &Body,
-) -> Result<DressedMesh, WardrobeError> {
+) -> Result<DressedMesh, AdaptError> {
     let DraftedMesh { worn, fabric: named } = draft(own, size, shopper)?;
     let fabric = fabric.cloned().unwrap_or(named);
     let file = Path::new(&own.path).file_name().map(|name| name.to_string_lossy().into_owned());
@@ -83,40 +82,17 @@ pub fn dress_in(
     let garments = shapes.iter().enumerate().map(|(k, shape)| {
         let name = if several { format!("{name} ({})", k + 1) } else { name.clone() };
         let baked = bake(&name, size.unwrap_or(UNKNOWN), shape, &fabric);
-        let mut garment = baked.map_err(|source| WardrobeError::Mesh { name: own.path.clone(), source })?;
+        let mut garment = baked.map_err(|source| AdaptError::Cloth { path: own.path.clone(), source })?;
         garment.layer = own.measures.layer.unwrap_or(LAYER);
         Ok(garment)
     });
-    let garments = garments.collect::<Result<_, WardrobeError>>()?;
+    let garments = garments.collect::<Result<_, AdaptError>>()?;
     Ok(DressedMesh { garments, vertices: worn.layers, report: worn.report })
 }
 
-/// The ease that a wearer finds good at each zone (m): by the mesh's file of measures, else as garments of its kind in the
-/// wardrobe have it.
-///
-/// # Errors
-/// A garment of the wardrobe that cannot be read.
-pub fn comfort(own: &OwnMesh, kind: GarmentKind) -> Result<Vec<(Girth, [f32; 2])>, WardrobeError> {
-    let like = comfort_of(kind)?;
-    let usual = |zone: Girth| like.iter().find(|(z, _)| *z == zone).map(|(_, range)| *range);
+/// The ease that a wearer finds good at each zone (m): by the mesh's file of measures, else that of its kind.
+pub fn comfort(own: &OwnMesh, kind: GarmentKind) -> Vec<(Girth, [f32; 2])> {
+    let usual = |zone: Girth| kind.comfort().iter().find(|(z, _)| *z == zone).map(|(_, range)| *range);
     let range = |zone: Girth| own.measures.comfort_mm.at(zone).or_else(|| usual(zone));
-    Ok(Girth::ALL.into_iter().filter_map(|zone| range(zone).map(|r| (zone, r))).collect())
-}
-
-/// The ease that a wearer finds good at each zone (m), as garments of a kind in the wardrobe have it; a skirt's is that of
-/// trousers, which sit on the waist as it does.
-///
-/// # Errors
-/// As [`comfort`].
-pub fn comfort_of(kind: GarmentKind) -> Result<Vec<(Girth, [f32; 2])>, WardrobeError> {
-    let kind = if kind == GarmentKind::Skirt { GarmentKind::Trousers } else { kind };
-    let mut like = None;
-    for name in super::names() {
-        let style = super::style(name)?;
-        if style.kind == kind {
-            like = Some(style.comfort_mm);
-        }
-    }
-    let range = |zone: Girth| like.and_then(|comfort| comfort.at(zone));
-    Ok(Girth::ALL.into_iter().filter_map(|zone| range(zone).map(|r| (zone, r))).collect())
+    Girth::ALL.into_iter().filter_map(|zone| range(zone).map(|r| (zone, r))).collect()
 }
