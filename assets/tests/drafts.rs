@@ -16,7 +16,7 @@ const STRAIN_P99: f32 = 0.06;
 const OPEN_M: f64 = 0.04;
 
 fn hung(name: &str, size: &str) -> (PatternPackage, Body, DrapedPattern) {
-    let package = drafting::style(name).unwrap().package().unwrap();
+    let package = drafting::package(name).unwrap();
     let body = package.body_of(size).unwrap().unwrap();
     let pattern = package.sized(size, &body.measures).unwrap();
     let draped = package.drape(&pattern, &body, &toile_assets::fabric::built_in(&package.fabric).unwrap()).unwrap();
@@ -114,14 +114,14 @@ fn a_scarf_lies_around_the_neck_and_is_held_by_nothing() {
 #[test]
 fn a_dress_comes_back_from_its_bytes() {
     let body = toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
-    let dress = drafting::style("strap-dress").unwrap().package().unwrap().dress("38", &body).unwrap();
+    let dress = drafting::package("strap-dress").unwrap().dress("38", &body).unwrap();
     assert_eq!(Garment::from_bytes(&dress.to_bytes()).unwrap(), dress);
 }
 
 #[test]
 fn what_is_tucked_in_gets_the_width_at_which_it_lies_and_the_rest_keeps_its_own() {
     let shopper = toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
-    let shirt = drafting::style("tee").unwrap().package().unwrap().dress("38", &shopper).unwrap();
+    let shirt = drafting::package("tee").unwrap().dress("38", &shopper).unwrap();
     let mut same = shirt.clone();
     same.gather();
     assert_eq!(same, shirt, "nothing is tucked in");

@@ -301,7 +301,7 @@ fn in_mesh_order(garment: &Garment) -> Vec<Vec3> {
 
 #[test]
 fn what_hangs_on_the_body_of_its_size_comes_over_to_another() {
-    let package = drafting::style("pencil-skirt").unwrap().package().unwrap();
+    let package = drafting::package("pencil-skirt").unwrap();
     let hung = package.hang(None, "38").unwrap().expect("38 is a size of its table");
     for size in ["38", "40"] {
         let wearer = women(size);
@@ -326,7 +326,7 @@ fn what_hangs_on_the_body_of_its_size_comes_over_to_another() {
 #[test]
 fn what_lies_over_an_arm_is_not_carried_by_the_shoulder_and_meets_the_arm() {
     let wearer = women("40");
-    let poncho = drafting::style("poncho").unwrap().package().unwrap().dress("40", &wearer).unwrap();
+    let poncho = drafting::package("poncho").unwrap().dress("40", &wearer).unwrap();
     let tip = wearer.skeleton.at(Joint::LeftShoulder).x.abs();
     let farthest = poncho.fixed.iter().map(|i| poncho.start[*i as usize].x.abs()).fold(0.0, f32::max);
     assert!(farthest < tip + 0.02, "{farthest} m of a shoulder at {tip} m");

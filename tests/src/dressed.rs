@@ -1,9 +1,9 @@
 //! The scene on which the world is tested: the shopper of the embedded session, her joints as a perfect sensor sees
 //! them, and the wardrobe in the size nearest to her.
 
-use toile_assets::scene;
-use toile_assets::sizes::SizeBody;
-use toile_assets::wardrobe::{self, style::Style};
+use toile_assets::draping::PatternPackage;
+use toile_assets::sizes::{SizeBody, SizeTable};
+use toile_assets::{drafting, scene};
 use toile_base::body::Body;
 use toile_base::clock::SECOND_NS;
 use toile_base::frame::Joints;
@@ -45,8 +45,8 @@ pub fn track(body: &Body, from: f32, seconds: f32) -> Vec<Joints> {
 /// # Panics
 /// Where there is no such garment.
 pub fn dress(name: &str, body: &Body) -> Garment {
-    let style = wardrobe::style(name).expect("a garment of the wardrobe");
-    style.dress(&nearest_size(&style, body), body).expect("a garment that can be worn")
+    let package = drafting::package(name).expect("a garment of the wardrobe");
+    package.dress(&nearest_size(&package, body), body).expect("a garment that can be worn")
 }
 
 /// The same with threads so far apart that a step costs little: for rules that hold on any mesh.
@@ -54,23 +54,23 @@ pub fn dress(name: &str, body: &Body) -> Garment {
 /// # Panics
 /// Where there is no such garment.
 pub fn dress_coarsely(name: &str, body: &Body) -> Garment {
-    let mut style = wardrobe::style(name).expect("a garment of the wardrobe");
-    style.spacing_mm = 40.0;
-    style.columns = 40;
-    style.dress(&nearest_size(&style, body), body).expect("a garment that can be worn")
+    let mut package = drafting::package(name).expect("a garment of the wardrobe");
+    package.spacing_mm = 40.0;
+    package.dress(&nearest_size(&package, body), body).expect("a garment that can be worn")
 }
 
-fn nearest_size(style: &Style, body: &Body) -> String {
-    let table = style.sizes().expect("a table of the wardrobe");
+fn nearest_size(package: &PatternPackage, body: &Body) -> String {
+    let sizes = package.sizes.as_ref().expect("a garment in sizes");
+    let table = SizeTable::embedded(&sizes.table).expect("a table of the wardrobe");
     let m = &body.measures;
     let distance = |size: &SizeBody| {
         let girths =
             [(size.chest_girth, m.chest_girth), (size.waist_girth, m.waist_girth), (size.hip_girth, m.hip_girth)];
         girths.iter().map(|(a, b)| (a - b).abs()).sum::<f32>()
     };
-    let of = |code: &&str| distance(&table.size_body(code).expect("a code of its own table"));
-    let nearest = table.codes().into_iter().min_by(|a, b| of(a).total_cmp(&of(b)));
-    nearest.expect("a table with sizes").to_owned()
+    let of = |code: &&String| distance(&table.size_body(code).expect("a code of its own table"));
+    let nearest = sizes.girths.iter().map(|girths| &girths.size).min_by(|a, b| of(a).total_cmp(&of(b)));
+    nearest.expect("a garment in sizes").clone()
 }
 
 /// A world with these garments on a body, not yet dressed.

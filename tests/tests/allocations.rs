@@ -6,7 +6,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::hint::black_box;
 
-use toile_assets::wardrobe;
+use toile_assets::drafting;
 use toile_base::clock::SECOND_NS;
 use toile_base::filter::Filter;
 use toile_engine::body::Poser;
@@ -93,7 +93,7 @@ const SENSOR_FRAMES: u64 = 45;
 
 #[test]
 fn no_garment_of_the_wardrobe_costs_an_allocation_a_step() {
-    for name in wardrobe::names() {
+    for name in drafting::names() {
         let body = dressed::shopper();
         // The sensor's frames are its own thread's business and are made beforehand.
         let first = 40;
@@ -135,7 +135,7 @@ impl Renderer for Glance {
 #[test]
 fn no_turn_of_the_loop_costs_an_allocation_whatever_happens() {
     let body = dressed::shopper();
-    let garment = dressed::dress_coarsely("sun-dress", &body);
+    let garment = dressed::dress_coarsely("strap-dress", &body);
     let seen: Vec<_> = (40..100).map(|i| dressed::joints(&body, i * SECOND_NS / dressed::SENSOR_HZ)).collect();
     let (mut world, reader) = dressed::world_and_reader(body, vec![garment]);
     world.dress(&seen[0]);

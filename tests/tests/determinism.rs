@@ -13,7 +13,7 @@ use toile_tests::dressed;
 const STEPS: u64 = 240;
 
 fn play(track: &[Joints]) -> World {
-    let mut world = dressed::dressed(&["sun-dress"], track);
+    let mut world = dressed::dressed(&["strap-dress"], track);
     let start = track[0].time_ns;
     for tick in 0..STEPS {
         world.step(&sample(track, start + ticks_to_ns(tick)).expect("a track with frames"));
@@ -42,7 +42,7 @@ fn two_runs_end_in_the_same_bits_and_another_input_in_others() {
 
 /// Two seconds in which contact is given up and taken back, as quality control does, measured every so many steps.
 fn measured_every(steps: u64, track: &[Joints]) -> World {
-    let mut world = dressed::dressed(&["sun-dress"], track);
+    let mut world = dressed::dressed(&["strap-dress"], track);
     world.measure_every(steps);
     let start = track[0].time_ns;
     for tick in 0..STEPS {

@@ -17,7 +17,7 @@ const AT_EDGE_M: f32 = 0.04;
 /// Trousers, and a T-shirt over them or tucked in, on the shopper who stands.
 fn standing(tucked: bool) -> World {
     let body = dressed::shopper();
-    let mut garments = vec![dressed::dress("wide-trousers", &body), dressed::dress("t-shirt", &body)];
+    let mut garments = vec![dressed::dress("wide-leg-trousers", &body), dressed::dress("tee", &body)];
     if tucked {
         tuck_in(&mut garments, 1).unwrap();
     }

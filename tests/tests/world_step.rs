@@ -85,7 +85,7 @@ fn a_hanging_strip_stretches_by_its_weight_whatever_the_substeps() {
 /// The scene's shopper in a sun dress of a coarse mesh, dressed as she stands at the begin of a track.
 fn coarse(track: &[Joints]) -> World {
     let body = dressed::shopper();
-    let garment = dressed::dress_coarsely("sun-dress", &body);
+    let garment = dressed::dress_coarsely("strap-dress", &body);
     let mut world = dressed::world(body, vec![garment]);
     world.dress(&track[0]);
     world
@@ -203,7 +203,7 @@ fn a_shopper_who_is_suddenly_elsewhere_keeps_her_dress() {
 /// Bounds of calm motion for each garment: the 99th percentile of strain, averaged over the steps. Trousers crumple
 /// between the thighs, and a sleeve is stretched over the armpit where it meets the yoke that sticks to the trunk.
 const CALM_STRAIN_P99: [(&str, f32); 4] =
-    [("sun-dress", 0.03), ("t-shirt", 0.18), ("wide-trousers", 0.05), ("jacket", 0.18)];
+    [("strap-dress", 0.03), ("tee", 0.18), ("wide-leg-trousers", 0.05), ("blazer", 0.18)];
 
 /// Deepest penetration in calm motion (m).
 const CALM_PENETRATION_M: f32 = 0.010;
@@ -212,7 +212,7 @@ const CALM_PENETRATION_M: f32 = 0.010;
 fn calm_motion_stretches_little_and_stays_outside_of_the_body() {
     // She stands, then lifts the arms: no fast motion yet.
     let track = dressed::track(&dressed::shopper(), 1.0, 1.5);
-    assert_eq!(CALM_STRAIN_P99.map(|(name, _)| name)[..], toile_assets::wardrobe::names()[..]);
+    assert_eq!(CALM_STRAIN_P99.map(|(name, _)| name)[..], toile_assets::drafting::names()[..]);
     std::thread::scope(|scope| {
         for (name, most) in CALM_STRAIN_P99 {
             let track = &track;

@@ -195,7 +195,7 @@ mod tests {
 
     /// A garment of our own on a body, as its mesh would be exported.
     fn worn(name: &str, body: &Body) -> ForeignMesh {
-        let package = drafting::style(name).unwrap().package().unwrap();
+        let package = drafting::package(name).unwrap();
         let shape = package.draft("42", body, &fabric::built_in(&package.fabric).unwrap()).unwrap();
         ForeignMesh { positions: shape.worn, faces: shape.faces, ..ForeignMesh::default() }
     }

@@ -302,7 +302,7 @@ mod tests {
     }
 
     fn tee() -> (Body, Garment) {
-        let package = drafting::style("tee").unwrap().package().unwrap();
+        let package = drafting::package("tee").unwrap();
         let body = package.body_of("38").unwrap().unwrap();
         let garment = package.dress("38", &body).unwrap();
         assert_eq!(body.sex, Sex::Female);

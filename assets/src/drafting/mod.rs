@@ -24,6 +24,7 @@ pub use styles::{DraftStyle, STYLES};
 
 use crate::draping::{PatternPackage, PatternSizes, SizeGirths, SizedDraft};
 use crate::sizes::{Population, SizeError, SizeTable};
+use thiserror::Error;
 use toile_base::body::Sex;
 
 /// Names of the garments that are drafted here.
@@ -39,9 +40,45 @@ const SUCCESSORS: [(&str, &str); 4] = [
     ("jacket", "blazer"),
 ];
 
+/// Why no garment of the wardrobe has a name.
+#[derive(Debug, Error)]
+pub enum WardrobeError {
+    /// A garment of an earlier version.
+    #[error("the garment {name} is no longer built in; ask for {successor}, which took its place")]
+    Replaced {
+        /// The name asked for.
+        name: String,
+        /// The garment that took its place.
+        successor: &'static str,
+    },
+    /// No such garment.
+    #[error("there is no garment named {name}; choose one of {known}, or give the path of an OBJ file")]
+    Unknown {
+        /// The name asked for.
+        name: String,
+        /// The names there are.
+        known: String,
+    },
+    /// A size table that cannot be used.
+    #[error(transparent)]
+    Size(#[from] SizeError),
+}
+
 /// The garment that took the place of one of an earlier version.
 pub fn successor(name: &str) -> Option<&'static str> {
     SUCCESSORS.iter().find(|(old, _)| *old == name).map(|(_, new)| *new)
+}
+
+/// A garment that is drafted here, in all of its sizes.
+///
+/// # Errors
+/// A name that no garment has.
+pub fn package(name: &str) -> Result<PatternPackage, WardrobeError> {
+    match (style(name), successor(name)) {
+        (Some(style), _) => Ok(style.package()?),
+        (None, Some(successor)) => Err(WardrobeError::Replaced { name: name.into(), successor }),
+        (None, None) => Err(WardrobeError::Unknown { name: name.into(), known: names().join(", ") }),
+    }
 }
 
 /// A garment that is drafted here, by its name.

@@ -1,6 +1,6 @@
 //! Rules that every draft keeps, in every size of its table.
 
-use super::{STYLES, names, style};
+use super::{STYLES, SUCCESSORS, names, style, successor};
 use crate::draping::PatternPackage;
 use crate::import::pattern::parse;
 use crate::pattern::Pattern;

@@ -69,7 +69,7 @@ const LINES: [&[&str]; 17] = [
     &["plan", "@.toml"],
     &["run", "@.toml"],
     &["bake", "@.obj"],
-    &["bake", "t-shirt", "--fabric", "@.toml"],
+    &["bake", "tee", "--fabric", "@.toml"],
     &["body", "@.glb"],
     &["replay", "@.csv"],
     &["kiosk", "--headless", "--seconds", "1", "--config", "@.toml"],

@@ -233,9 +233,9 @@ fn a_mesh_with_a_fault_that_can_be_repaired_is_worn_and_the_repair_is_told() {
 #[test]
 fn an_unknown_garment_or_size_is_told_what_there_is() {
     let scratch = Scratch::new("names");
-    refused(&scratch, &["--garment", "crinoline"], &["crinoline", "sun-dress", "t-shirt", "wide-trousers", "choose"]);
-    refused(&scratch, &["--garment", "sun-dress", "--garment", "crinoline"], &["crinoline", "choose"]);
-    refused(&scratch, &["--garment", "sun-dress", "--size", "999"], &["999", "40", "choose"]);
+    refused(&scratch, &["--garment", "crinoline"], &["crinoline", "strap-dress", "tee", "wide-leg-trousers", "choose"]);
+    refused(&scratch, &["--garment", "strap-dress", "--garment", "crinoline"], &["crinoline", "choose"]);
+    refused(&scratch, &["--garment", "strap-dress", "--size", "999"], &["999", "40", "choose"]);
     fs::write(scratch.path().join("band.obj"), band(24)).unwrap();
     refused(&scratch, &["--garment", "band.obj", "--size", "40"], &["band.obj", "40", "leave the size out"]);
 }
@@ -245,18 +245,18 @@ fn what_cannot_be_tucked_in_is_refused_with_the_cure() {
     let scratch = Scratch::new("tucked");
     refused(
         &scratch,
-        &["--garment", "t-shirt", "--tuck", "t-shirt"],
+        &["--garment", "tee", "--tuck", "tee"],
         &["cannot be tucked in", "waistband", "wear trousers"],
     );
-    let trousers = ["--garment", "wide-trousers"];
+    let trousers = ["--garment", "wide-leg-trousers"];
     refused(
         &scratch,
-        &[&trousers[..], &["--tuck", "t-shirt"]].concat(),
-        &["t-shirt", "not worn", "name one of wide-trousers"],
+        &[&trousers[..], &["--tuck", "tee"]].concat(),
+        &["tee", "not worn", "name one of wide-leg-trousers"],
     );
-    refused(&scratch, &[&trousers[..], &["--tuck", "wide-trousers"]].concat(), &["wide-trousers", "do not tuck it in"]);
-    let dress = [&trousers[..], &["--garment", "sun-dress", "--tuck", "sun-dress"]].concat();
-    refused(&scratch, &dress, &["sun-dress", "below the waistband", "shorter"]);
+    refused(&scratch, &[&trousers[..], &["--tuck", "wide-leg-trousers"]].concat(), &["wide-leg-trousers", "do not tuck it in"]);
+    let dress = [&trousers[..], &["--garment", "strap-dress", "--tuck", "strap-dress"]].concat();
+    refused(&scratch, &dress, &["strap-dress", "below the waistband", "shorter"]);
 }
 
 #[test]

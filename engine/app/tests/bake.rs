@@ -8,11 +8,11 @@ use serde_json::Value;
 #[test]
 fn bake_reports_what_a_garment_becomes() {
     let scratch = Scratch::new("bake");
-    let output = scratch.toile(&["bake", "sun-dress", "--size", "40", "--fabric", "cotton-jersey", "--json"]);
+    let output = scratch.toile(&["bake", "strap-dress", "--size", "40", "--fabric", "cotton-jersey", "--json"]);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     assert!(output.stderr.is_empty());
     let json: Value = serde_json::from_str(&stdout(&output)).expect("stdout is exactly one JSON object");
-    assert_eq!((&json["schema"], &json["garment"]), (&"toile.bake/1".into(), &"sun-dress".into()));
+    assert_eq!((&json["schema"], &json["garment"]), (&"toile.bake/1".into(), &"strap-dress".into()));
     assert_eq!((&json["size"], &json["fabric"]), (&"40".into(), &"cotton-jersey".into()));
     let number = |key: &str| json.pointer(key).and_then(Value::as_f64).unwrap_or_else(|| panic!("{key}: {json}"));
     let covered: f64 = ["warp", "weft", "hoops", "bias", "loose"].map(|k| number(&format!("/edges/{k}"))).iter().sum();
@@ -24,10 +24,10 @@ fn bake_reports_what_a_garment_becomes() {
     assert_eq!(json["solvers"][0]["solver"], "semi-implicit");
     assert_eq!(json["warnings"].as_array().map(Vec::len), Some(0), "{}", json["warnings"]);
 
-    let output = scratch.toile(&["bake", "sun-dress"]);
+    let output = scratch.toile(&["bake", "strap-dress"]);
     assert_eq!(output.status.code(), Some(0));
     let text = stdout(&output);
-    assert!(text.contains("sun-dress, size") && text.contains("down the warp") && !text.contains('\x1b'), "{text}");
+    assert!(text.contains("strap-dress, size") && text.contains("down the warp") && !text.contains('\x1b'), "{text}");
 }
 
 #[test]
@@ -57,13 +57,13 @@ fn bake_tells_what_is_wrong_with_a_mesh_of_the_users() {
     fs::write(folder.join("wool.toml"), "name = 'wool'\n").unwrap();
     fs::write(folder.join("line.obj"), "v 0 0 0\nv 0 1 0\nv 0 2 0\nf 1 2 3\n").unwrap();
     let refused: [(&[&str], &str); 7] = [
-        (&["bake", "crinoline"], "sun-dress"),
+        (&["bake", "crinoline"], "strap-dress"),
         (&["bake", "absent.obj"], "absent.obj"),
         (&["bake", "line.obj"], "no person stands in it"),
-        (&["bake", "sun-dress", "--size", "999"], "999"),
+        (&["bake", "strap-dress", "--size", "999"], "999"),
         (&["bake", "strips.obj", "--size", "40"], "leave the size out"),
-        (&["bake", "sun-dress", "--fabric", "tin"], "toile fabric list"),
-        (&["bake", "sun-dress", "--fabric", "wool.toml"], "wool.toml"),
+        (&["bake", "strap-dress", "--fabric", "tin"], "toile fabric list"),
+        (&["bake", "strap-dress", "--fabric", "wool.toml"], "wool.toml"),
     ];
     for (line, word) in refused {
         let output = scratch.toile(line);

@@ -32,7 +32,7 @@ fn shop(scratch: &Scratch) {
     let sized = ["--table", "freesewing-women", "--drafted-for", "34", "--draft", &large, "--spacing", "30"];
     let line = [&["tailor", &draft, "--seams", &seams, "--out", "skirt/sandy.json", "--json"][..], &sized].concat();
     json(scratch, &line);
-    let dress = "article = \"SD-2\"\ngarment = \"sun-dress\"\nname = { en = \"Our dress\" }\nlayer = 3\n";
+    let dress = "article = \"SD-2\"\ngarment = \"strap-dress\"\nname = { en = \"Our dress\" }\nlayer = 3\n";
     let dress = garment(scratch, "dress", dress);
     fs::create_dir_all(scratch.path().join("shop")).unwrap();
     for (folder, out) in [(skirt, "shop/skirt.toile"), (dress, "shop/dress.toile")] {
@@ -148,7 +148,7 @@ fn a_theme_is_checked_and_one_that_cannot_be_read_is_refused() {
 fn what_cannot_be_packed_is_refused_in_one_sentence() {
     let scratch = Scratch::new("catalogue-bad");
     garment(&scratch, "empty", "article = \"A\"\ngarment = \"gone.json\"\nname = { en = \"Gone\" }\n");
-    garment(&scratch, "unnamed", "article = \"A\"\ngarment = \"sun-dress\"\n");
+    garment(&scratch, "unnamed", "article = \"A\"\ngarment = \"strap-dress\"\n");
     garment(&scratch, "wrong", "article = \"A\"\ngarment = \"p.json\"\nname = { en = \"Wrong\" }\n");
     fs::write(scratch.path().join("wrong/p.json"), "{}").unwrap();
     let refused: [(&[&str], &str); 5] = [

@@ -251,7 +251,7 @@ fn joints_that_arrive_over_the_loopback_are_a_shopper() {
 fn what_cannot_be_used_is_refused_in_one_sentence() {
     let _beside = beside_others();
     let scratch = Scratch::new("kiosk-bad");
-    fs::write(scratch.path().join("bad.toml"), "[wear]\ngarmets = [\"t-shirt\"]\n").unwrap();
+    fs::write(scratch.path().join("bad.toml"), "[wear]\ngarmets = [\"tee\"]\n").unwrap();
     fs::write(scratch.path().join("other.toml"), "[wear]\ngarments = [\"tent\"]\n").unwrap();
     for (args, code, expected) in [
         (&["--headless", "--config", "bad.toml"][..], 4, "bad.toml:2: [wear] has no key \"garmets\""),

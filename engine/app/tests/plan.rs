@@ -19,7 +19,7 @@ fn number(value: &Value) -> f64 {
 #[test]
 fn the_embedded_shopper_is_planned_before_anything_is_played() {
     let scratch = Scratch::new("plan");
-    let (code, found, words) = plan(&scratch, &["--garment", "t-shirt", "--garment", "wide-trousers", "--quick"]);
+    let (code, found, words) = plan(&scratch, &["--garment", "tee", "--garment", "wide-leg-trousers", "--quick"]);
     assert_eq!(code, Some(0), "{words}");
     assert_eq!((found["schema"].as_str(), &found["played"]), (Some("toile.plan/1"), &Value::Null));
     let garments = found["garments"].as_array().unwrap();
@@ -45,9 +45,9 @@ fn the_embedded_shopper_is_planned_before_anything_is_played() {
         row.unwrap_or_else(|| panic!("no {part} of {garment} in {rows:?}")).clone()
     };
     let touched = |row: &Value| row["touches"].to_string();
-    let sleeve = row("t-shirt", "left arm");
+    let sleeve = row("tee", "left arm");
     assert!(touched(&sleeve).contains("left arm") && !touched(&sleeve).contains("leg"), "{sleeve}");
-    let leg = row("wide-trousers", "left leg");
+    let leg = row("wide-leg-trousers", "left leg");
     assert!(touched(&leg).contains("left leg") && !touched(&leg).contains("arm"), "{leg}");
     assert!(number(&sleeve["mean"]) <= number(&sleeve["by_length"]));
     assert!(number(&sleeve["by_length"]) <= number(&sleeve["by_part"]));
@@ -97,7 +97,7 @@ fn what_does_not_exist_is_named() {
         (vec!["plan", "--garment", "toga"], 4, "toga"),
         (vec!["plan", "no.toml"], 4, "no.toml"),
         (vec!["plan", "--example", "none"], 2, "none"),
-        (vec!["plan", "a.toml", "--garment", "t-shirt"], 2, "--garment"),
+        (vec!["plan", "a.toml", "--garment", "tee"], 2, "--garment"),
     ] {
         let output = scratch.toile(&args);
         let message = String::from_utf8(output.stderr).unwrap();

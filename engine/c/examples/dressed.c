@@ -23,7 +23,7 @@ int main(int argc, char **argv)
     toile_fit fit;
     toile_fit_summary says;
     check(toile_body_from_measures(TOILE_SEX_FEMALE, mm, 4, &body));
-    check(toile_garment_open(argc > 1 ? argv[1] : "t-shirt", NULL, NULL, &shirt)); /* or "shirt.obj" */
+    check(toile_garment_open(argc > 1 ? argv[1] : "tee", NULL, NULL, &shirt)); /* or "shirt.obj" */
     check(toile_recommend(body, shirt, &fit));
     check(toile_fit_read(fit, &says));
     printf("size %s: %s\n", says.size, says.verdict);

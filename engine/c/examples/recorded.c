@@ -23,7 +23,7 @@ int main(int argc, char **argv)
         check(toile_recording_open(argv[1], NULL, &recording)); /* MCAP, Kinect CSV, BVH, ... */
     else
         check(toile_recording_embedded(&recording));
-    check(toile_garment_open("sun-dress", NULL, NULL, &dress));
+    check(toile_garment_open("strap-dress", NULL, NULL, &dress));
 
     toile_try_on_options options = {0}; /* nothing is known of the person, quality shop */
     options.width = 120;

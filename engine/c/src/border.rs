@@ -273,7 +273,7 @@ mod tests {
 
     #[test]
     fn texts_are_utf8() {
-        assert_eq!(Text(c"sun-dress".as_ptr()).of("name").unwrap(), "sun-dress");
+        assert_eq!(Text(c"strap-dress".as_ptr()).of("name").unwrap(), "strap-dress");
         assert!(Text(c"a\xff".as_ptr()).of("name").unwrap_err().sentence.contains("not UTF-8 from byte 1"));
         assert!(Text(std::ptr::null()).of("name").unwrap_err().sentence.contains("name is null"));
     }

@@ -92,13 +92,13 @@ fn the_header_is_c_and_cpp() {
 #[test]
 fn a_body_is_dressed_in_c_with_both_libraries() {
     let said =
-        [Linked::Static, Linked::Shared].map(|linked| ran(&compiled("examples/dressed.c", linked), &["t-shirt", "12"]));
+        [Linked::Static, Linked::Shared].map(|linked| ran(&compiled("examples/dressed.c", linked), &["tee", "12"]));
     assert!(said[0].starts_with("size ") && said[0].contains("vertices"), "{}", said[0]);
     assert_eq!(said[0], said[1], "both libraries give the same bits");
     // The same in Rust.
     let mm = [("stature", 1720.0), ("chest", 920.0), ("waist", 760.0), ("hip", 1000.0)];
     let body = toile_sdk::Body::from_measures_mm(toile_sdk::Sex::Female, &mm).unwrap();
-    let mut scene = toile_sdk::Scene::dress(&body, &[toile_sdk::Garment::open("t-shirt").unwrap()]).unwrap();
+    let mut scene = toile_sdk::Scene::dress(&body, &[toile_sdk::Garment::open("tee").unwrap()]).unwrap();
     scene.step_many(12);
     assert!(said[0].contains(&format!("state {:016x}", scene.state_hash())), "{}", said[0]);
 }
@@ -106,7 +106,7 @@ fn a_body_is_dressed_in_c_with_both_libraries() {
 #[test]
 fn a_recording_is_tried_on_in_c() {
     let said = ran(&compiled("examples/recorded.c", Linked::Shared), &[]);
-    assert!(said.contains("waist_girth: ") && said.contains("sun-dress in size "), "{said}");
+    assert!(said.contains("waist_girth: ") && said.contains("strap-dress in size "), "{said}");
     let picture = std::fs::read(Path::new(env!("CARGO_TARGET_TMPDIR")).join("recorded.png")).unwrap();
     assert!(picture.starts_with(b"\x89PNG"));
 }

@@ -4,7 +4,7 @@
 
 use std::error::Error;
 
-use toile_assets::{scene, wardrobe};
+use toile_assets::{drafting, scene};
 use toile_base::body::Body;
 use toile_base::clock::ticks_to_ns;
 use toile_base::frame::Joints;
@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (sex, measures) = scene::SHOPPER;
     let body = toile_assets::body::build(sex, &measures)?;
     let rig = toile_assets::rig::fit(&body);
-    let dress = wardrobe::style("sun-dress")?.dress("38", &body)?;
+    let dress = drafting::package("strap-dress")?.dress("38", &body)?;
     println!(
         "{} in {}: {} particles on a body of {:.3} m",
         dress.name,

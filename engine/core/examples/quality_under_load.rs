@@ -8,7 +8,7 @@
 
 use std::error::Error;
 
-use toile_assets::{scene, wardrobe};
+use toile_assets::{drafting, scene};
 use toile_base::clock::SECOND_NS;
 use toile_base::frame::Joints;
 use toile_engine::body::JointFrames;
@@ -76,9 +76,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let frames: Vec<Joints> = (0..240).map(seen).collect();
     // Threads 40 mm apart: the load is what is shown here, not the dress.
-    let mut style = wardrobe::style("sun-dress")?;
-    (style.spacing_mm, style.columns) = (40.0, 40);
-    let dress = style.dress("38", &body)?;
+    let mut package = drafting::package("strap-dress")?;
+    package.spacing_mm = 40.0;
+    let dress = package.dress("38", &body)?;
     let wind = Some(Wind { velocity: glam::Vec3A::X, drag: 1.2, lift: 0.6 });
     let rig = toile_assets::rig::fit(&body);
     let (mut world, _snapshots) = World::new(body, &rig, vec![dress], Settings { wind, ..Settings::default() })?;

@@ -7,7 +7,7 @@
 use std::error::Error;
 use std::path::PathBuf;
 
-use toile_assets::{scene, wardrobe};
+use toile_assets::{drafting, scene};
 use toile_base::clock::{SECOND_NS, ns_to_ticks, ticks_to_ns};
 use toile_base::frame::Joints;
 use toile_base::skeleton::Joint;
@@ -46,7 +46,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (sex, measures) = scene::SHOPPER;
     let body = toile_assets::body::build(sex, &measures)?;
     let rig = toile_assets::rig::fit(&body);
-    let dress = wardrobe::style("sun-dress")?.dress("38", &body)?;
+    let dress = drafting::package("strap-dress")?.dress("38", &body)?;
     let (mut world, _reader) = World::new(body, &rig, vec![dress], Settings::default())?;
     world.dress(first);
 

@@ -4,7 +4,7 @@
 
 use std::error::Error;
 
-use toile_assets::{scene, wardrobe};
+use toile_assets::{drafting, scene};
 use toile_base::clock::SECOND_NS;
 use toile_base::frame::Joints;
 use toile_base::skeleton::Joint;
@@ -31,7 +31,7 @@ const MOVED: (u64, f32) = (30, 1e-3);
 fn staged(size: &str, first: &Joints, workers: usize) -> Result<WorldScene, Box<dyn Error>> {
     let body = toile_assets::body::build(scene::SHOPPER.0, &scene::SHOPPER.1)?;
     let rig = toile_assets::rig::fit(&body);
-    let dress = wardrobe::style("sun-dress")?.dress(size, &body)?;
+    let dress = drafting::package("strap-dress")?.dress(size, &body)?;
     let (mut world, _snapshots) = World::new(body, &rig, vec![dress], Settings { workers, ..Settings::default() })?;
     world.dress(first);
     Ok(WorldScene::new(world))

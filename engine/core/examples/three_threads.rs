@@ -7,7 +7,7 @@
 use std::error::Error;
 use std::time::Duration;
 
-use toile_assets::{scene, wardrobe};
+use toile_assets::{drafting, scene};
 use toile_base::clock::{SECOND_NS, ticks_to_ns};
 use toile_base::frame::Joints;
 use toile_base::limits::STEP_HZ;
@@ -76,7 +76,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // At load, on this thread.
     let body = toile_assets::body::build(scene::SHOPPER.0, &scene::SHOPPER.1)?;
     let rig = toile_assets::rig::fit(&body);
-    let dress = wardrobe::style("sun-dress")?.dress("38", &body)?;
+    let dress = drafting::package("strap-dress")?.dress("38", &body)?;
     let skeleton = body.skeleton.clone();
     let (mut world, snapshots) = World::new(body, &rig, vec![dress], Settings { workers: 1, ..Settings::default() })?;
     let first = Camera { skeleton: skeleton.clone(), origin_ns: 0, frames: 0 }.read();

@@ -104,7 +104,7 @@ fn a_pattern_without_sizes_is_judged_by_its_own_lengths() {
 #[test]
 fn what_is_worn_beneath_takes_its_thickness_all_around() {
     let (body, measured) = wearer("38", 0.005);
-    let [shirt, jacket] = ["t-shirt", "jacket"].map(|name| GarmentSource::find(name).unwrap());
+    let [shirt, jacket] = ["tee", "blazer"].map(|name| GarmentSource::find(name).unwrap());
     let beneath = vec![shirt.offer(&body).unwrap().unwrap()];
     let thickness = shirt.fabric().unwrap().thickness_mm * 1e-3;
     let ease = |beneath: &[_]| {

@@ -67,7 +67,7 @@ fn shop(folder: &Path) {
     let source = folder.join("source");
     fs::create_dir_all(&source).unwrap();
     let patterns = ["tee", "straight-skirt", "shorts"].map(|name| {
-        let mut package = drafting::style(name).unwrap().package().unwrap();
+        let mut package = drafting::package(name).unwrap();
         // Coarse, so that thirty of them are soon on.
         package.spacing_mm = 36.0;
         package.text()

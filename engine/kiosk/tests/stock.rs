@@ -27,7 +27,7 @@ impl Shop {
         let shop = Self(path);
         shop.write("catalogue.toml", "shop = \"Corner shop\"\n");
         for (file, article) in [("a", "A-1"), ("b", "B-1"), ("c", "C-1")] {
-            shop.write(&format!("{file}.toile"), packed(&shop.0, article, "t-shirt", "20.00 EUR"));
+            shop.write(&format!("{file}.toile"), packed(&shop.0, article, "tee", "20.00 EUR"));
         }
         shop
     }
@@ -123,11 +123,11 @@ fn what_is_added_replaced_and_removed_is_offered_and_what_is_the_same_is_not_rea
     let shop = Shop::new("changes");
     let mut watched = Watched::start(shop.config());
     watched.nothing();
-    shop.write("d.toile", packed(&shop.0, "D-1", "jacket", "90.00 EUR"));
+    shop.write("d.toile", packed(&shop.0, "D-1", "blazer", "90.00 EUR"));
     let added = watched.change("a fourth garment");
     assert_eq!((articles(&added), added.hung), (vec!["A-1", "B-1", "C-1", "D-1"], 4));
     assert!(added.mannequin.is_none(), "the first garment is as it was");
-    shop.write("b.toile", packed(&shop.0, "B-1", "t-shirt", "15.00 EUR"));
+    shop.write("b.toile", packed(&shop.0, "B-1", "tee", "15.00 EUR"));
     let cheaper = watched.change("another price");
     let price = |change: &StockChange<usize>, place: usize| {
         change.stock.catalogue.as_ref().unwrap().items[place].manifest.price.as_ref().unwrap().to_string()
@@ -136,7 +136,7 @@ fn what_is_added_replaced_and_removed_is_offered_and_what_is_the_same_is_not_rea
     fs::remove_file(shop.folder().join("c.toile")).unwrap();
     assert_eq!(articles(&watched.change("a garment less")), ["A-1", "B-1", "D-1"]);
     // What is worn first is another one now: the mannequin has it on.
-    shop.write("a.toile", packed(&shop.0, "A-2", "sun-dress", "50.00 EUR"));
+    shop.write("a.toile", packed(&shop.0, "A-2", "strap-dress", "50.00 EUR"));
     let other = watched.change("another first garment");
     assert_eq!(articles(&other), ["A-2", "B-1", "D-1"]);
     let mannequin = other.mannequin.expect("a mannequin in the new dress");
@@ -150,7 +150,7 @@ fn what_is_added_replaced_and_removed_is_offered_and_what_is_the_same_is_not_rea
 fn what_is_broken_is_left_out_by_name_and_comes_back_when_it_is_whole() {
     let shop = Shop::new("broken");
     let mut watched = Watched::start(shop.config());
-    let whole = packed(&shop.0, "B-1", "t-shirt", "20.00 EUR");
+    let whole = packed(&shop.0, "B-1", "tee", "20.00 EUR");
     // Half-written, and not by way of a rename.
     fs::write(shop.folder().join("b.toile"), &whole[..whole.len() / 2]).unwrap();
     assert_eq!(articles(&watched.change("half a package")), ["A-1", "C-1"]);
@@ -162,7 +162,7 @@ fn what_is_broken_is_left_out_by_name_and_comes_back_when_it_is_whole() {
     assert_eq!(articles(&watched.change("the whole package")), ["A-1", "B-1", "C-1"]);
     assert!(watched.watch.figures().left_out.is_empty());
     // An article twice: the first keeps it.
-    shop.write("d.toile", packed(&shop.0, "A-1", "jacket", "90.00 EUR"));
+    shop.write("d.toile", packed(&shop.0, "A-1", "blazer", "90.00 EUR"));
     assert_eq!(articles(&watched.change("a double")), ["A-1", "B-1", "C-1"]);
     watched.line("its article number A-1 is that of a.toile");
 }
@@ -206,18 +206,18 @@ fn a_file_that_is_named_is_watched_without_a_catalogue_too() {
     let file = shop.folder().join("b.toile").display().to_string();
     let mut config = shop.config();
     (config.wear.catalogue, config.wear.is_named) = (None, true);
-    config.wear.garments = vec!["wide-trousers".into(), file.clone()];
+    config.wear.garments = vec!["wide-leg-trousers".into(), file.clone()];
     let mut watched = Watched::start(config.clone());
-    shop.write("b.toile", packed(&shop.0, "B-2", "jacket", "90.00 EUR"));
+    shop.write("b.toile", packed(&shop.0, "B-2", "blazer", "90.00 EUR"));
     let change = watched.change("another garment");
-    assert_eq!(change.stock.first.names(), ["wide-trousers", file.as_str()]);
+    assert_eq!(change.stock.first.names(), ["wide-leg-trousers", file.as_str()]);
     assert!(change.mannequin.is_some());
     fs::remove_file(&file).unwrap();
     let change = watched.change("one garment less");
-    assert_eq!(change.stock.first.names(), ["wide-trousers"]);
+    assert_eq!(change.stock.first.names(), ["wide-leg-trousers"]);
     assert!(watched.watch.figures().to_string().contains("left out: b.toile"));
     // Nothing that is built in changes: nothing is watched.
-    config.wear.garments = vec!["wide-trousers".into()];
+    config.wear.garments = vec!["wide-leg-trousers".into()];
     assert!(!Stock::read(&config).unwrap().is_of_files());
 }
 
@@ -252,7 +252,7 @@ fn a_hundred_changes_leave_no_more_memory_taken_than_ten() {
     let mut after_ten = 0;
     for i in 0..100 {
         shop.write("catalogue.toml", format!("# {i}\nshop = \"Corner shop\"\n[theme]\nlogo = \"logo.png\"\n"));
-        shop.write("c.toile", packed(&shop.0, "C-1", "t-shirt", &format!("{i}.00 EUR")));
+        shop.write("c.toile", packed(&shop.0, "C-1", "tee", &format!("{i}.00 EUR")));
         held = Some(watched.change("a change"));
         if i == 10 {
             after_ten = resident_kb();

@@ -9,7 +9,7 @@ import numpy as np
 import toile
 
 body = toile.Body.from_measures("female", stature=1720, chest=920, waist=760, hip=1000)
-garment = toile.Garment(sys.argv[1] if len(sys.argv) > 1 else "t-shirt")  # or "shirt.obj", "shirt.json", "shirt.toile"
+garment = toile.Garment(sys.argv[1] if len(sys.argv) > 1 else "tee")  # or "shirt.obj", "shirt.json", "shirt.toile"
 if garment.sizes:
     fit = toile.recommend(body, garment)
     print(f"size {fit.size}: {fit.verdict}")

@@ -16,7 +16,7 @@ def body():
 
 @pytest.fixture(scope="session")
 def shirt():
-    return toile.Garment("t-shirt")
+    return toile.Garment("tee")
 
 
 @pytest.fixture(scope="session")

@@ -38,16 +38,16 @@ def test_the_average_body_is_the_one_of_its_measures():
 
 
 def test_a_garment_says_what_it_is(shirt):
-    assert shirt.name == "t-shirt" and shirt.size is None
+    assert shirt.name == "tee" and shirt.size is None
     assert len(shirt.sizes) > 2 and shirt.fabric in toile.fabric_names()
-    assert "t-shirt" in toile.garment_names()
-    own = toile.Garment("t-shirt", size=shirt.sizes[0], fabric="jersey-dots")
+    assert "tee" in toile.garment_names()
+    own = toile.Garment("tee", size=shirt.sizes[0], fabric="jersey-dots")
     assert own.size == shirt.sizes[0] and own.fabric == "jersey-dots"
 
 
 def test_a_recommendation_is_of_plain_objects(body, shirt):
     fit = toile.recommend(body, shirt)
-    assert fit.size in shirt.sizes and fit.garment == "t-shirt"
+    assert fit.size in shirt.sizes and fit.garment == "tee"
     assert [chance.size for chance in fit.sizes] == list(shirt.sizes)
     assert sum(chance.probability for chance in fit.sizes) == pytest.approx(1, abs=1e-4)
     assert fit.zones and all(isinstance(zone.ease_mm, float) and zone.sigma_mm > 0 for zone in fit.zones)
@@ -58,7 +58,7 @@ def test_a_recommendation_is_of_plain_objects(body, shirt):
 
 
 def test_a_smaller_size_has_less_ease(body, shirt):
-    eases = [toile.Garment("t-shirt", size=size).fit(body).zones[0].ease_mm for size in shirt.sizes]
+    eases = [toile.Garment("tee", size=size).fit(body).zones[0].ease_mm for size in shirt.sizes]
     assert eases == sorted(eases) and eases[0] < eases[-1]
 
 

@@ -54,7 +54,7 @@ def test_measures_have_their_errors(recording, measured):
     known = toile.measure(recording, toile.Shopper(sex="female", by_tape={"waist": 760}))
     assert known.measures["waist_girth"].mm == pytest.approx(760, abs=1)
     assert known.measures["waist_girth"].sigma_mm < measured.measures["waist_girth"].sigma_mm
-    body = measured.body(toile.Garment("t-shirt"))
+    body = measured.body(toile.Garment("tee"))
     assert body.measure("stature") == pytest.approx(stature.mm, abs=30)
 
 

@@ -220,9 +220,9 @@ def test_a_scene_file_gives_the_programs_bits(tmp_path):
 
 @pytest.mark.skipif(program() is None, reason="the program is not built: cargo build --release -p toile")
 def test_a_try_on_gives_the_programs_bits(tmp_path):
-    line = [program(), "try-on", "--garment", "t-shirt", "--json", "--quiet", "--out", str(tmp_path / "out")]
+    line = [program(), "try-on", "--garment", "tee", "--json", "--quiet", "--out", str(tmp_path / "out")]
     said = json.loads(subprocess.run(line, check=True, capture_output=True, text=True).stdout)
-    tried = toile.try_on(toile.Recording.embedded(), toile.Garment("t-shirt"), picture=(64, 96))
+    tried = toile.try_on(toile.Recording.embedded(), toile.Garment("tee"), picture=(64, 96))
     hashes = {f"{tried.scene.state_hash:016x}", f"0x{tried.scene.state_hash:016x}", str(tried.scene.state_hash)}
     assert found(said, "state_hash") & hashes, (found(said, "state_hash"), hashes)
     assert list(tried.pictures) == list(tried.fit_maps) == ["front", "side", "back"]

@@ -8,7 +8,7 @@ use toile_sdk::{Error, Garment, Recording, TryOnOptions, try_on};
 
 fn main() -> Result<(), Error> {
     let folder = std::env::args_os().nth(1).map_or_else(std::env::temp_dir, PathBuf::from);
-    let garments = [Garment::open("wide-trousers")?, Garment::open("t-shirt")?];
+    let garments = [Garment::open("wide-leg-trousers")?, Garment::open("tee")?];
     let options = TryOnOptions { picture: Some([300, 500]), ..TryOnOptions::default() };
     let tried = try_on(&Recording::embedded()?, &garments, &options)?;
     for fit in tried.fits.iter().flatten() {

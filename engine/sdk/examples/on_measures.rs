@@ -12,7 +12,7 @@ fn main() -> Result<(), Error> {
         println!("{name:<18} {mm:7.1} mm");
     }
 
-    let mut garment = Garment::open(words.next().as_deref().unwrap_or("sun-dress"))?;
+    let mut garment = Garment::open(words.next().as_deref().unwrap_or("strap-dress"))?;
     println!("{} of {}, in {}", garment.name(), garment.fabric()?, garment.sizes()?.join(", "));
     if let Some(size) = words.next() {
         garment = garment.in_size(&size)?;

@@ -13,7 +13,7 @@ const LONGEST: u64 = 360;
 fn main() -> Result<(), Error> {
     let mut words = std::env::args().skip(1);
     let recording = words.next().map_or_else(Recording::embedded, Recording::open)?;
-    let garments = [Garment::open(words.next().as_deref().unwrap_or("wide-trousers"))?];
+    let garments = [Garment::open(words.next().as_deref().unwrap_or("wide-leg-trousers"))?];
     let measured = recording.measure(&Shopper::default())?;
     for m in measured.measures() {
         println!("{:<18} {:6.0} mm, sigma {:3.0}{}", m.name, m.mm, m.sigma_mm, if m.seen { "" } else { " (expected)" });

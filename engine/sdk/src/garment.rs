@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use toile_assets::draping::{AS_DRAFTED, TO_MEASURE};
 use toile_assets::file::{self, FileKind};
-use toile_assets::{drafting, wardrobe};
+use toile_assets::drafting;
 use toile_base::body::{Measures, Sex};
 use toile_base::fabric::Fabric;
 use toile_fitting::dress::garment_source::{GarmentSource, SourceKind};
@@ -30,7 +30,7 @@ pub struct Garment {
 
 /// Names of the garments that are built in.
 pub fn garment_names() -> Vec<&'static str> {
-    wardrobe::names().into_iter().chain(drafting::names()).collect()
+    drafting::names()
 }
 
 /// Names of the fabrics that are built in.
@@ -98,7 +98,6 @@ impl Garment {
     pub fn sizes(&self) -> Result<Vec<String>> {
         let owned = |codes: Vec<&str>| codes.into_iter().map(str::to_owned).collect();
         Ok(match &self.source.kind {
-            SourceKind::Style(style) => owned(style.sizes().map_err(Error::input)?.codes()),
             SourceKind::Mesh(own) => own.sizes.as_ref().map_or_else(Vec::new, |sizes| owned(sizes.table.codes())),
             SourceKind::Pattern(package) => match package.graded().map_err(Error::input)? {
                 Some(graded) => {

@@ -7,7 +7,7 @@
 //!
 //! let mm = [("stature", 1720.0), ("chest", 920.0), ("waist", 760.0), ("hip", 1000.0)];
 //! let body = Body::from_measures_mm(Sex::Female, &mm)?;
-//! let garment = Garment::open("t-shirt")?.in_fabric("jersey-dots")?; // or "shirt.obj", "shirt.json", "shirt.toile"
+//! let garment = Garment::open("tee")?.in_fabric("jersey-dots")?; // or "shirt.obj", "shirt.json", "shirt.toile"
 //!
 //! let fit = recommend(&body, &garment)?;
 //! println!("size {}: {}", fit.size, fit.verdict);
@@ -34,7 +34,7 @@
 //! for measure in measured.measures() {
 //!     println!("{}: {:.0} mm, sigma {:.0}", measure.name, measure.mm, measure.sigma_mm);
 //! }
-//! let garments = [Garment::open("sun-dress")?];
+//! let garments = [Garment::open("strap-dress")?];
 //! let body = measured.body_for(&garments)?;
 //! let motion = Motion::Track(recording.track(&measured)?);
 //! let mut scene = Scene::dress_with(&body, &garments, &DressOptions { motion, ..DressOptions::default() })?;

@@ -37,11 +37,11 @@ fn measures_that_no_body_has() {
 
 #[test]
 fn garments_that_there_are_not() {
-    refused(Garment::open("sun-drses"), Input, &["sun-drses", "sun-dress"]);
+    refused(Garment::open("sun-drses"), Input, &["sun-drses", "strap-dress"]);
     refused(Garment::open("there-is-no-such.obj"), Input, &["there-is-no-such.obj"]);
     refused(Garment::open("there-is-no-such.json"), Input, &["there-is-no-such.json"]);
-    refused(Garment::open("t-shirt:coton-lawn"), Input, &["coton-lawn", "cotton-lawn"]);
-    let shirt = || Garment::open("t-shirt").unwrap();
+    refused(Garment::open("tee:coton-lawn"), Input, &["coton-lawn", "cotton-lawn"]);
+    let shirt = || Garment::open("tee").unwrap();
     refused(shirt().in_size("gigantic"), Input, &["gigantic", "choose one of"]);
     refused(shirt().in_fabric("coton-lawn"), Input, &["coton-lawn", "cotton-lawn"]);
     refused(shirt().in_fabric("there-is-no-such.toml"), Input, &["there-is-no-such.toml"]);
@@ -73,7 +73,7 @@ fn recordings_without_a_person() {
 #[test]
 fn dressing_that_cannot_be() {
     let body = Body::average(Sex::Female).unwrap();
-    let shirt = Garment::open("t-shirt").unwrap();
+    let shirt = Garment::open("tee").unwrap();
     refused(Scene::dress(&body, &vec![shirt.clone(); 40]), Input, &["40 garments", "leave some out"]);
     let with = |options: DressOptions| Scene::dress_with(&body, std::slice::from_ref(&shirt), &options);
     let motion = |motion: Motion| with(DressOptions { motion, ..DressOptions::default() });
@@ -83,7 +83,7 @@ fn dressing_that_cannot_be() {
         refused(with(DressOptions { wind, ..DressOptions::default() }), Input, &["wind", "m/s"]);
     }
     let tuck = vec!["socks".to_owned()];
-    refused(with(DressOptions { tuck, ..DressOptions::default() }), Input, &["socks", "t-shirt"]);
+    refused(with(DressOptions { tuck, ..DressOptions::default() }), Input, &["socks", "tee"]);
     refused(motion(Motion::Track(Vec::new())), Input, &["track", "give one"]);
     refused(motion(Motion::Joints(Box::new(Joints::absent(0)))), Input, &["hips"]);
     let mut frame = Joints::seen(0, [Vec3::Y; 23]);
@@ -96,7 +96,7 @@ fn dressing_that_cannot_be() {
 #[test]
 fn reading_what_is_not_there() {
     let body = Body::average(Sex::Female).unwrap();
-    let mut scene = Scene::dress(&body, &[Garment::open("t-shirt").unwrap()]).unwrap();
+    let mut scene = Scene::dress(&body, &[Garment::open("tee").unwrap()]).unwrap();
     refused(scene.positions(1), Usage, &["no garment 1", "has 1"]);
     refused(scene.faces(7), Usage, &["no garment 7"]);
     refused(scene.stats(1), Usage, &["no garment 1"]);

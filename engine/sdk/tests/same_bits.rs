@@ -16,7 +16,7 @@ use toile_sdk::{Body, DressOptions, Garment, Recording, Scene, Sex, TryOnOptions
 fn a_try_on_is_the_programs_own() {
     let session = session::open(None, None).unwrap();
     let measured = measured::measure(&session, ShopperFacts::default()).unwrap();
-    let source = GarmentSource::find("t-shirt").unwrap();
+    let source = GarmentSource::find("tee").unwrap();
     let sex = measured.sex(garment_source::population([&source]).unwrap());
     let (body, _) = measured::build_body(sex, &measured.best, Some(sex).into()).unwrap();
     let worn = source.put_on(None, &measured.best, &body, &[]).unwrap();
@@ -30,7 +30,7 @@ fn a_try_on_is_the_programs_own() {
         world.step(&player.step());
     }
 
-    let garments = [Garment::open("t-shirt").unwrap()];
+    let garments = [Garment::open("tee").unwrap()];
     let mut tried = try_on(&Recording::embedded().unwrap(), &garments, &TryOnOptions::default()).unwrap();
     assert_eq!((tried.scene.steps(), tried.scene.state_hash()), (world.tick(), world.state_hash()));
     let own = tried.fits[0].as_ref().unwrap();
@@ -52,7 +52,7 @@ fn a_try_on_is_the_programs_own() {
 #[test]
 fn one_worker_gives_the_bits_of_two() {
     let body = Body::average(Sex::Female).unwrap();
-    let garments = [Garment::open("sun-dress").unwrap()];
+    let garments = [Garment::open("strap-dress").unwrap()];
     let hash = |workers| {
         let mut scene =
             Scene::dress_with(&body, &garments, &DressOptions { workers, ..DressOptions::default() }).unwrap();
@@ -93,12 +93,12 @@ fn a_recommendation_is_for_the_body_as_it_is() {
     };
     let direct = toile_assets::body::build(Sex::Female, &direct).unwrap();
     assert_eq!(body.positions(), direct.mesh.positions, "the same body, to the bit");
-    let fit = recommend(&body, &Garment::open("sun-dress").unwrap()).unwrap();
-    let style = toile_assets::wardrobe::style("sun-dress").unwrap();
-    let finished = style.finished(&style.sizes().unwrap().size_body(&fit.size).unwrap());
+    let fit = recommend(&body, &Garment::open("strap-dress").unwrap()).unwrap();
+    let sizes = toile_assets::drafting::package("strap-dress").unwrap().sizes.unwrap();
+    let finished = sizes.girths.iter().find(|girths| girths.size == fit.size).unwrap();
     for zone in &fit.zones {
-        let (_, girth) = finished.iter().find(|(of, _)| of.name() == zone.zone).unwrap();
-        let ease = f64::from(*girth) * 1e3 - body.measure_mm(zone.zone).unwrap();
+        let of = Girth::ALL.into_iter().find(|girth| girth.name() == zone.zone).unwrap();
+        let ease = finished.at(of).unwrap() * 1e3 - body.measure_mm(zone.zone).unwrap();
         assert!((ease - zone.ease_mm).abs() < 0.01, "{}: {ease} and {}", zone.zone, zone.ease_mm);
         assert!((zone.sigma_mm - 5.0).abs() < 1.0, "by tape: {}", zone.sigma_mm);
     }
@@ -120,7 +120,7 @@ fn what_a_thread_makes_another_may_have() {
     send::<toile_sdk::Picture>();
     send::<toile_sdk::Error>();
     let body = Body::average(Sex::Male).unwrap();
-    let made = std::thread::spawn(move || Scene::dress(&body, &[Garment::open("t-shirt").unwrap()]).unwrap());
+    let made = std::thread::spawn(move || Scene::dress(&body, &[Garment::open("tee").unwrap()]).unwrap());
     let mut scene = made.join().unwrap();
     scene.step();
     assert!(scene.positions(0).unwrap().iter().all(|p: &Vec3| p.is_finite()));

@@ -36,7 +36,7 @@ const EASE: [EaseRange; 3] = [
 fn with(test: impl Fn(&Offer)) {
     let table = SizeTable::embedded("women").unwrap();
     let sizes = dress(&table);
-    test(&Offer { garment: "sun-dress", kind: GarmentKind::Dress, table: &table, sizes: &sizes, ease: &EASE });
+    test(&Offer { garment: "strap-dress", kind: GarmentKind::Dress, table: &table, sizes: &sizes, ease: &EASE });
 }
 
 #[test]

@@ -24,7 +24,7 @@ const RUNS: usize = 8;
 fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let word = |i: usize, usual: &'static str| words.get(i).cloned().unwrap_or_else(|| usual.to_owned());
-    let (folder, garment, size) = (word(0, "."), word(1, "sun-dress"), word(2, "38"));
+    let (folder, garment, size) = (word(0, "."), word(1, "strap-dress"), word(2, "38"));
     let scene = Dressed::new(&garment, &size);
     let gpu = Gpu::offscreen(&AdapterChoice::Fastest)?;
     eprintln!("{gpu}; {} triangles", scene.body_triangles.len() + scene.garment.triangles.len());

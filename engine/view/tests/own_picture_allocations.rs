@@ -8,7 +8,7 @@ use std::cell::Cell;
 
 use glam::{Affine3A, Mat3, Vec2, Vec3};
 use toile_assets::scene::{SHOPPER, shopper};
-use toile_assets::wardrobe;
+use toile_assets::drafting;
 use toile_base::frame::{DepthFrame, Intrinsics, Joints};
 use toile_engine::body::JointFrames;
 use toile_engine::cloth::Settings;
@@ -89,7 +89,7 @@ fn camera(lens: Option<BrownConrady>) -> ColourCamera {
 #[test]
 fn a_picture_costs_no_allocation_once_one_was_drawn() {
     let body = toile_assets::body::build(SHOPPER.0, &SHOPPER.1).unwrap();
-    let dress = wardrobe::style("sun-dress").unwrap().dress("38", &body).unwrap();
+    let dress = drafting::package("strap-dress").unwrap().dress("38", &body).unwrap();
     let (mut world, mut reader) =
         World::new(body.clone(), &toile_assets::rig::fit(&body), vec![dress], Settings::default()).unwrap();
     let seen = moments(&mut world, &mut || reader.latest().clone());

@@ -23,8 +23,8 @@ use toile_fitting::heap::HeapProbe;
 use toile_fitting::live::crash;
 use toile_perf::soak::scenario::Scenario;
 use toile_perf::soak::{
-    self, LEAST_APART_S, SceneMaker, SceneWeight, Soak, SoakCamera, SoakCheck, SoakError, SoakOptions, SoakPlan,
-    SoakTools,
+    self, LEAST_APART_S, SceneMaker, SceneWeight, Soak, SoakCamera, SoakCheck, SoakError, SoakOptions, SoakOutfit,
+    SoakPlan, SoakTools,
 };
 
 use crate::commands::arguments::CrashArg;
@@ -71,6 +71,9 @@ pub struct SoakArgs {
     /// light: coarse garments, hours in minutes; full: the wardrobe as it is worn (default: full in real time, else light)
     #[arg(long, value_name = "S", value_parser = one_of(SceneWeight::ALL, SceneWeight::name))]
     pub scene: Option<SceneWeight>,
+    /// wardrobe: one garment after the other; dress: the default dress; layers: trousers, a shirt and a blazer over one another
+    #[arg(long, value_name = "O", value_parser = one_of(SoakOutfit::ALL, SoakOutfit::name), default_value = "dress")]
+    pub outfit: SoakOutfit,
     /// joints: a sensor that hands on joints; depth: a depth camera, with the faults that such cameras have
     #[arg(long, value_name = "C", value_parser = one_of(SoakCamera::ALL, SoakCamera::name), default_value = "joints")]
     pub camera: SoakCamera,
@@ -115,7 +118,14 @@ impl SoakArgs {
         }
         let scene = self.scene.unwrap_or(if self.real_time { SceneWeight::Full } else { SceneWeight::Light });
         Ok(SoakOptions {
-            plan: SoakPlan { seed: self.seed, seconds, faults: faults as usize, scene, camera: self.camera },
+            plan: SoakPlan {
+                seed: self.seed,
+                seconds,
+                faults: faults as usize,
+                scene,
+                outfit: self.outfit,
+                camera: self.camera,
+            },
             uptime_hours: self.uptime_hours,
             real_time: self.real_time,
             workers: if self.real_time { self.workers.count() } else { 1 },
@@ -345,7 +355,14 @@ mod tests {
         let SoakOptions { plan, uptime_hours, real_time, workers } = options("soak").unwrap();
         assert_eq!(
             plan,
-            SoakPlan { seed: 1, seconds: 600, faults: 0, scene: SceneWeight::Light, camera: SoakCamera::Joints }
+            SoakPlan {
+                seed: 1,
+                seconds: 600,
+                faults: 0,
+                scene: SceneWeight::Light,
+                outfit: SoakOutfit::Dress,
+                camera: SoakCamera::Joints
+            }
         );
         assert_eq!((uptime_hours, real_time, workers), (0, false, 1));
     }

@@ -26,7 +26,7 @@ pub fn skin() -> Result<Vec<ContactRow>, ContactError> {
     let mut us = [0.0; 2];
     let mut particles = 0;
     for (k, skin) in [false, true].into_iter().enumerate() {
-        let asked = WornOptions { skin, layers: false, folds: false, ..options(&["wide-trousers", "t-shirt"], 1) };
+        let asked = WornOptions { skin, layers: false, folds: false, ..options(&["wide-leg-trousers", "tee"], 1) };
         let mut scene = WornScene::new(&asked, &HeapProbe::none())?;
         particles = scene.garments.iter().map(|g| g.particles()).sum();
         scene.stages_us(METERED);
@@ -40,7 +40,7 @@ pub fn skin() -> Result<Vec<ContactRow>, ContactError> {
 pub fn poses() -> Result<Vec<ContactRow>, ContactError> {
     let mut rows = Vec::new();
     for over in [false, true] {
-        let garments = options(&["wide-trousers", "t-shirt", "sun-dress"], 2);
+        let garments = options(&["wide-leg-trousers", "tee", "strap-dress"], 2);
         let asked = WornOptions { layers: over, folds: over, ..garments };
         for pose in POSES {
             let mut scene = WornScene::new(&asked, &HeapProbe::none())?;

@@ -30,12 +30,12 @@ pub(super) struct Outfit {
 pub(super) const OUTFITS: [Outfit; 2] = [
     Outfit {
         name: "trousers, T-shirt and open jacket",
-        garments: &["wide-trousers", "t-shirt", "jacket"],
+        garments: &["wide-leg-trousers", "tee", "blazer"],
         within_ms: Some([4.5, 6.7]),
     },
     Outfit {
         name: "trousers, T-shirt and dress over them",
-        garments: &["wide-trousers", "t-shirt", "sun-dress"],
+        garments: &["wide-leg-trousers", "tee", "strap-dress"],
         within_ms: None,
     },
 ];

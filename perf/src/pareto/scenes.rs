@@ -14,7 +14,7 @@ use crate::worn::AverageBody;
 
 /// Names of all scenes, in the order in which they are run.
 pub const SCENES: [&str; 8] =
-    ["cantilever", "skirt", IRREGULAR, "sun-dress", "t-shirt", "wide-trousers", "models", "drape"];
+    ["cantilever", "skirt", IRREGULAR, "strap-dress", "tee", "wide-leg-trousers", "models", "drape"];
 
 /// The skirt with an irregular mesh.
 const IRREGULAR: &str = "skirt-irregular";

@@ -22,7 +22,7 @@ mod scene_maker;
 pub use error::SoakError;
 pub use html::page;
 pub use memory::MemorySample;
-pub use options::{LEAST_APART_S, SceneWeight, SoakCamera, SoakOptions, SoakPlan};
+pub use options::{LEAST_APART_S, SceneWeight, SoakCamera, SoakOptions, SoakOutfit, SoakPlan};
 pub use report::{FaultFigures, FaultKindFigures, MemoryFigures, RecoveryTicks, Soak, SoakCheck};
 pub use run::{SoakRun, SoakTools, run};
 pub use scene_maker::SceneMaker;

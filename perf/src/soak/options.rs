@@ -1,6 +1,8 @@
 //! What is soaked, and how it is run.
 
 use serde::{Deserialize, Serialize};
+use toile_assets::drafting;
+use toile_fitting::dress::try_on::shown_first;
 
 /// What is soaked: all that decides on the bits of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -13,6 +15,9 @@ pub struct SoakPlan {
     pub faults: usize,
     /// How heavy the scenes are.
     pub scene: SceneWeight,
+    /// What the shoppers put on.
+    #[serde(default)]
+    pub outfit: SoakOutfit,
     /// What sees the shoppers.
     #[serde(default)]
     pub camera: SoakCamera,
@@ -36,10 +41,39 @@ toile_base::named! {
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
     pub enum SceneWeight {
-        /// Threads so far apart that a step costs some 50 us, and one in sixteen of the body's vertices: for hours in minutes.
+        /// Coarse garments in one substep, and one in sixteen of the body's vertices: for hours in minutes.
         Light = "light",
         /// The wardrobe as shoppers wear it.
         Full = "full",
+    }
+}
+
+toile_base::named! {
+    /// What the shoppers put on.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum SoakOutfit {
+        /// One garment of the wardrobe after the other, in every size.
+        Wardrobe = "wardrobe",
+        /// The dress that the mirror shows first, in every size.
+        #[default]
+        Dress = "dress",
+        /// Trousers, a shirt and a blazer over one another, women's and men's, in every size.
+        Layers = "layers",
+    }
+}
+
+impl SoakOutfit {
+    /// The garments of each choice that a shopper has, inner first.
+    pub fn choices(self) -> Vec<Vec<&'static str>> {
+        match self {
+            Self::Wardrobe => drafting::names().into_iter().map(|name| vec![name]).collect(),
+            Self::Dress => vec![shown_first(None).to_vec()],
+            Self::Layers => vec![
+                vec!["straight-trousers", "shirt", "blazer"],
+                vec!["mens-trousers", "mens-shirt", "mens-blazer"],
+            ],
+        }
     }
 }
 

@@ -11,7 +11,7 @@ use toile_sensors::source::live::fault_injection::CameraFault;
 use super::fault_kind::FaultKind;
 use super::fault_monitor::FaultOutcome;
 use super::memory::{MemorySample, growth};
-use super::options::{SceneWeight, SoakCamera, SoakOptions};
+use super::options::{SceneWeight, SoakCamera, SoakOptions, SoakOutfit};
 use super::run::SoakRun;
 
 /// Longest that the pipeline may take to recover (ticks): 1 s.
@@ -119,6 +119,8 @@ pub struct Soak {
     pub seed: u64,
     /// `light` or `full`.
     pub scene: SceneWeight,
+    /// What the shoppers put on.
+    pub outfit: SoakOutfit,
     /// `joints` or `depth`: what saw the shoppers.
     pub camera: SoakCamera,
     /// On threads and the system's clock.
@@ -185,6 +187,7 @@ impl Soak {
         let mut soak = Self {
             seed: options.plan.seed,
             scene: options.plan.scene,
+            outfit: options.plan.outfit,
             camera: options.plan.camera,
             real_time: options.real_time,
             workers: options.workers,
@@ -222,14 +225,10 @@ impl Soak {
     }
 }
 
-/// Garments in a size that were worn, and how many there are.
+/// Outfits in a size that were worn, and how many there are.
 fn sizes(ran: &SoakRun) -> [usize; 2] {
     let worn: BTreeSet<_> = ran.scenario.requests.iter().take(ran.changes as usize + 1).map(|d| &d.outfit).collect();
-    let all = toile_assets::wardrobe::names().into_iter().filter_map(|name| {
-        let table = toile_assets::wardrobe::style(name).ok()?.sizes().ok()?;
-        Some(table.codes().len())
-    });
-    [worn.len(), all.sum()]
+    [worn.len(), ran.scenario.outfits]
 }
 
 fn faults(outcomes: &[FaultOutcome]) -> FaultFigures {

@@ -3,9 +3,9 @@
 use std::f64::consts::TAU;
 
 use glam::Vec3;
+use toile_assets::drafting;
 use toile_assets::scene;
-use toile_assets::sizes::Population;
-use toile_assets::wardrobe;
+use toile_assets::sizes::{Population, SizeTable};
 use toile_base::body::{Measures, Sex};
 use toile_base::clock::SECOND_NS;
 use toile_base::numeric::random::SplitMix64;
@@ -14,7 +14,7 @@ use toile_engine::body::JointFrames;
 
 use super::error::SoakError;
 use super::fault_kind::FaultKind;
-use super::options::{LEAST_APART_S, SoakPlan};
+use super::options::{LEAST_APART_S, SoakOutfit, SoakPlan};
 
 /// Length of a visit (s), least and most.
 const VISIT_S: [f32; 2] = [60.0, 420.0];
@@ -43,7 +43,7 @@ pub struct SoakFault {
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct WornSize {
     /// Its name in the wardrobe.
-    pub style: &'static str,
+    pub garment: &'static str,
     /// Code of its size.
     pub size: String,
 }
@@ -89,8 +89,8 @@ pub struct SceneRequest {
     pub at_ns: u64,
     /// Whose, a place in the visits.
     pub visit: usize,
-    /// What they put on.
-    pub outfit: WornSize,
+    /// What they put on, inner first.
+    pub outfit: Vec<WornSize>,
     /// Whether they have just come.
     pub afresh: bool,
 }
@@ -106,6 +106,8 @@ pub struct Scenario {
     pub requests: Vec<SceneRequest>,
     /// What goes wrong, in its order.
     pub faults: Vec<SoakFault>,
+    /// Outfits in a size that there are to wear.
+    pub outfits: usize,
 }
 
 impl Scenario {
@@ -116,7 +118,7 @@ impl Scenario {
     pub fn write(plan: SoakPlan) -> Result<Self, SoakError> {
         let faults = faults(&plan)?;
         let mut rng = SplitMix64::new(plan.seed);
-        let wardrobe = Wardrobe::read()?;
+        let wardrobe = Wardrobe::read(plan.outfit)?;
         let (mut visits, mut requests, mut from) = (Vec::new(), Vec::new(), 0);
         let mut order: Vec<usize> = Vec::new();
         while from < plan.seconds * SECOND_NS {
@@ -127,7 +129,7 @@ impl Scenario {
             let first = order.pop().unwrap_or(0);
             let visit = wardrobe.visit(first, from, &mut rng);
             let mut at = from;
-            let mut outfit = wardrobe.outfits[first].0.clone();
+            let mut outfit = wardrobe.outfits[first].worn.clone();
             while at < visit.until_ns.min(plan.seconds * SECOND_NS) {
                 requests.push(SceneRequest { at_ns: at, visit: visits.len(), outfit, afresh: at == from });
                 at += ns(rng.between(WORN_S[0], WORN_S[1]));
@@ -136,7 +138,7 @@ impl Scenario {
             from = visit.until_ns + ns(rng.between(GAP_S[0], GAP_S[1]));
             visits.push(visit);
         }
-        Ok(Self { plan, visits, requests, faults })
+        Ok(Self { plan, visits, requests, faults, outfits: wardrobe.outfits.len() })
     }
 
     /// The shopper before the camera at a time; `None` if it is empty.
@@ -157,22 +159,53 @@ impl Scenario {
     }
 }
 
-/// What there is to wear, with the body that each is cut for.
+/// Garments in sizes that go together.
+struct SizedOutfit {
+    /// Which of the choices it is.
+    choice: usize,
+    worn: Vec<WornSize>,
+    /// The body that the outermost is cut for.
+    body: Measures,
+    population: Population,
+}
+
+/// What there is to wear.
 struct Wardrobe {
-    outfits: Vec<(WornSize, Measures, Population)>,
+    outfits: Vec<SizedOutfit>,
     /// Bones of an average woman and of an average man.
     skeletons: [(f32, Skeleton); 2],
 }
 
+/// The sizes of a garment, smallest first, each with the body that it is cut for.
+fn sizes(garment: &str) -> Result<(Population, Vec<(String, Measures)>), SoakError> {
+    let wrong = |e: &dyn std::fmt::Display| SoakError::Scene { number: 0, reason: e.to_string() };
+    let sizes = drafting::package(garment).map_err(|e| wrong(&e))?.sizes;
+    let sizes = sizes.ok_or_else(|| wrong(&"it has no sizes"))?;
+    let table = SizeTable::embedded(&sizes.table).map_err(|e| wrong(&e))?;
+    let body = |code: &String| table.size_body(code).map(|body| (code.clone(), body.into())).map_err(|e| wrong(&e));
+    let sizes: Result<_, _> = sizes.girths.iter().map(|girths| body(&girths.size)).collect();
+    Ok((table.population, sizes?))
+}
+
+/// How far the girths by which sizes are told apart are from each other (m).
+fn apart(one: &Measures, other: &Measures) -> f32 {
+    (one.chest_girth - other.chest_girth).abs() + (one.hip_girth - other.hip_girth).abs()
+}
+
 impl Wardrobe {
-    fn read() -> Result<Self, SoakError> {
+    fn read(outfit: SoakOutfit) -> Result<Self, SoakError> {
         let wrong = |e: &dyn std::fmt::Display| SoakError::Scene { number: 0, reason: e.to_string() };
         let mut outfits = Vec::new();
-        for name in wardrobe::names() {
-            let table = wardrobe::style(name).map_err(|e| wrong(&e))?.sizes().map_err(|e| wrong(&e))?;
-            for size in table.codes() {
-                let body = table.size_body(size).map_err(|e| wrong(&e))?;
-                outfits.push((WornSize { style: name, size: size.into() }, body.into(), table.population));
+        for (choice, names) in outfit.choices().into_iter().enumerate() {
+            let all = names.iter().map(|name| sizes(name)).collect::<Result<Vec<_>, _>>()?;
+            let Some((population, outermost)) = all.last() else { continue };
+            for (_, body) in outermost {
+                let nearest = |(garment, (_, sizes)): (&&'static str, &(Population, Vec<(String, Measures)>))| {
+                    let size = sizes.iter().min_by(|a, b| apart(&a.1, body).total_cmp(&apart(&b.1, body)));
+                    WornSize { garment, size: size.map_or_else(String::new, |(code, _)| code.clone()) }
+                };
+                let worn = names.iter().zip(&all).map(nearest).collect();
+                outfits.push(SizedOutfit { choice, worn, body: *body, population: *population });
             }
         }
         let average = |sex| {
@@ -184,7 +217,7 @@ impl Wardrobe {
 
     /// A shopper near to the size of an outfit.
     fn visit(&self, outfit: usize, from_ns: u64, rng: &mut SplitMix64) -> SoakVisit {
-        let (_, near, population) = &self.outfits[outfit];
+        let SizedOutfit { body: near, population, .. } = &self.outfits[outfit];
         let sex = match population {
             Population::Men => Sex::Male,
             Population::Mixed if rng.uniform() < 0.5 => Sex::Male,
@@ -206,21 +239,17 @@ impl Wardrobe {
         SoakVisit { from_ns, until_ns, sex, measures: [own, *near], skeleton, pace, place }
     }
 
-    /// Something to change into: of the sizes of a garment the nearest, or one beside it.
-    fn near(&self, sex: Sex, measures: &Measures, rng: &mut SplitMix64) -> WornSize {
-        let fits = |p: &Population| *p == Population::Mixed || (*p == Population::Men) == (sex == Sex::Male);
-        let names: Vec<&str> = wardrobe::names().into_iter().filter(|n| self.of(n).any(|o| fits(&o.2))).collect();
-        let name = names[rng.next_u64() as usize % names.len()];
-        let sizes: Vec<_> = self.of(name).collect();
-        let off =
-            |m: &Measures| (m.chest_girth - measures.chest_girth).abs() + (m.hip_girth - measures.hip_girth).abs();
-        let nearest = (0..sizes.len()).min_by(|a, b| off(&sizes[*a].1).total_cmp(&off(&sizes[*b].1))).unwrap_or(0);
+    /// Something to change into: of the sizes of a choice the nearest, or one beside it.
+    fn near(&self, sex: Sex, measures: &Measures, rng: &mut SplitMix64) -> Vec<WornSize> {
+        let fits = |p: Population| p == Population::Mixed || (p == Population::Men) == (sex == Sex::Male);
+        let mut choices: Vec<usize> = self.outfits.iter().filter(|o| fits(o.population)).map(|o| o.choice).collect();
+        choices.dedup();
+        let choice = *choices.get(rng.next_u64() as usize % choices.len().max(1)).unwrap_or(&0);
+        let sizes: Vec<&SizedOutfit> = self.outfits.iter().filter(|o| o.choice == choice).collect();
+        let off = |k: &usize| apart(&sizes[*k].body, measures);
+        let nearest = (0..sizes.len()).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0);
         let beside = (nearest + rng.next_u64() as usize % 3).saturating_sub(1).min(sizes.len() - 1);
-        sizes[beside].0.clone()
-    }
-
-    fn of<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a (WornSize, Measures, Population)> {
-        self.outfits.iter().filter(move |o| o.0.style == name)
+        sizes[beside].worn.clone()
     }
 }
 
@@ -265,7 +294,7 @@ mod tests {
     use crate::soak::{SceneWeight, SoakCamera};
 
     fn plan(seed: u64, seconds: u64, faults: usize) -> SoakPlan {
-        SoakPlan { seed, seconds, faults, scene: SceneWeight::Light, camera: SoakCamera::Joints }
+        SoakPlan { seed, seconds, faults, scene: SceneWeight::Light, outfit: SoakOutfit::Dress, camera: SoakCamera::Joints }
     }
 
     fn scenario(seed: u64) -> Scenario {
@@ -275,8 +304,8 @@ mod tests {
     #[test]
     fn eight_hours_see_every_size_and_every_fault_and_nothing_overlaps() {
         let scenario = scenario(7);
-        let worn: BTreeSet<&WornSize> = scenario.requests.iter().map(|d| &d.outfit).collect();
-        assert_eq!(worn.len(), Wardrobe::read().unwrap().outfits.len());
+        let worn: BTreeSet<&[WornSize]> = scenario.requests.iter().map(|d| &d.outfit[..]).collect();
+        assert_eq!(worn.len(), Wardrobe::read(SoakOutfit::Dress).unwrap().outfits.len());
         for kind in FaultKind::of(SoakCamera::Joints) {
             assert_eq!(scenario.faults_of(kind).count(), 50, "{kind:?}");
         }
@@ -285,6 +314,15 @@ mod tests {
         let crowded = faults(&plan(1, 600, 100)).unwrap();
         // A second and a half to recover in, at least.
         assert!(crowded.windows(2).all(|f| f[0].until_ns + SECOND_NS * 3 / 2 <= f[1].from_ns), "{crowded:?}");
+    }
+
+    #[test]
+    fn layers_are_worn_in_sizes_that_go_together_and_every_garment_is_in_the_wardrobe() {
+        let layers = Wardrobe::read(SoakOutfit::Layers).unwrap();
+        assert!(layers.outfits.iter().all(|outfit| outfit.worn.len() == 3));
+        let whole = Wardrobe::read(SoakOutfit::Wardrobe).unwrap();
+        let names: BTreeSet<&str> = whole.outfits.iter().map(|outfit| outfit.worn[0].garment).collect();
+        assert_eq!(names.len(), drafting::names().len());
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Makes scenes when they are asked for, and hands them over; drops those that come back. Tries garments that are broken.
 
-use toile_assets::wardrobe;
+use toile_assets::{drafting, draping};
 use toile_engine::clock::Clock;
 use toile_engine::frame_loop::ThreadLoop;
 use toile_engine::frame_loop::physics_thread::WorldScene;
@@ -26,6 +26,8 @@ pub struct SceneLoop<C> {
     next: usize,
     /// A scene that is made, when it may be handed over (ns), and whether another shopper comes with it.
     made: Option<(u64, DressedScene<WorldScene, ()>, bool)>,
+    /// The text of a package that is whole.
+    dress: String,
     /// When broken garments are tried (ns), and how often that was done.
     broken: Box<[u64]>,
     tried: usize,
@@ -43,9 +45,11 @@ impl<C: Clock> SceneLoop<C> {
     pub fn new(context: RunContext<C>, scene_maker: SceneMaker, handover: SceneHandover<WorldScene, ()>) -> Self {
         let broken =
             context.scenario.faults_of(FaultKind::BrokenGarment).map(|f| context.origin_ns + f.from_ns).collect();
+        let dress = drafting::package("strap-dress").map_or_else(|_| String::new(), |package| package.text());
         Self {
             context,
             scene_maker,
+            dress,
             changer: SceneChanger::new(handover, false, None),
             next: 1,
             made: None,
@@ -96,30 +100,33 @@ impl<C: Clock> SceneLoop<C> {
             return;
         }
         self.tried += 1;
-        for text in broken() {
-            match wardrobe::parse("broken", &text) {
-                Ok(_) => self.accepted += 1,
-                Err(_) => self.refused += 1,
+        for text in broken(&self.dress) {
+            match is_read(text) {
+                true => self.accepted += 1,
+                false => self.refused += 1,
             }
         }
         self.refusal = Some([now, self.context.clock.now_ns()]);
     }
 }
 
-/// Garment files that are refused: cut off, with NaN or a number beyond measure, without a needed key, with an unknown
-/// key, and noise.
-fn broken() -> [String; 6] {
-    let garment = wardrobe::text("sun-dress").unwrap_or_default();
-    let line = |key: &str| garment.lines().find(|l| l.starts_with(key)).unwrap_or_default();
-    let spacing = line("spacing_mm");
+/// Packages that are refused: cut off, with a number beyond measure, without a needed key, with an unknown key, of a fabric that there is
+/// not, and noise.
+fn broken(dress: &str) -> [String; 6] {
+    let with = |key: &str, value: &str| dress.replacen(&format!("\"{key}\": "), &format!("\"{key}\": {value}"), 1);
     [
-        garment[..garment.len() / 3].to_owned(),
-        garment.replace(spacing, "spacing_mm = nan"),
-        garment.replace(spacing, "spacing_mm = 1e30"),
-        garment.replace(line("columns"), ""),
-        format!("{garment}\nunheard_of = 1\n"),
-        garment.chars().rev().collect(),
+        dress[..dress.len() / 3].to_owned(),
+        with("spacing_mm", "1e30"),
+        dress.replacen("\"pattern\"", "\"pattern_of_another\"", 1),
+        dress.replacen('{', "{\"unheard_of\": 1,", 1),
+        with("seams", "7"),
+        dress.chars().rev().collect(),
     ]
+}
+
+/// Whether a package is read, and its pattern too.
+fn is_read(text: String) -> bool {
+    draping::parse_package("broken.json", text, None).is_ok_and(|package| package.parse().is_ok())
 }
 
 impl<C: Clock> ThreadLoop for SceneLoop<C> {
@@ -145,8 +152,10 @@ mod tests {
 
     #[test]
     fn every_broken_garment_is_refused() {
-        for (i, text) in broken().iter().enumerate() {
-            assert!(wardrobe::parse("broken", text).is_err(), "file {i}");
+        let dress = drafting::package("strap-dress").unwrap().text();
+        assert!(is_read(dress.clone()));
+        for (i, text) in broken(&dress).into_iter().enumerate() {
+            assert!(text != dress && !is_read(text), "file {i}");
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use toile_assets::wardrobe;
+use toile_assets::drafting;
 use toile_base::body::Body;
 use toile_base::frame::Joints;
 use toile_base::garment::Garment;
@@ -14,11 +14,10 @@ use toile_fitting::dress::try_on::DressedBody;
 
 use super::error::SoakError;
 use super::options::SceneWeight;
-use super::scenario::{Scenario, SceneRequest};
+use super::scenario::{Scenario, WornSize};
 
-/// Of a light scene: distance between particles along the warp (mm) and their number around the body, the coarsest that a
-/// style may have.
-const LIGHT: (f32, usize) = (60.0, 16);
+/// Of a light scene: distance between particles (mm).
+const LIGHT_MM: f64 = 40.0;
 
 /// Substeps of a light scene.
 const LIGHT_SUBSTEPS: u32 = 1;
@@ -49,11 +48,12 @@ impl SceneMaker {
         let request = scenario.requests.get(number as usize).ok_or_else(|| wrong("the scenario has none".into()))?;
         let light = scenario.plan.scene == SceneWeight::Light;
         let (body, rig) = self.shopper(request.visit).map_err(wrong)?;
-        let garment = garment(request, body, light).map_err(wrong)?;
+        let garments = request.outfit.iter().map(|worn| garment(worn, body, light)).collect::<Result<_, _>>();
+        let garments: Vec<Garment> = garments.map_err(wrong)?;
         let quality = if light { Quality::Draft } else { Quality::default() };
         let settings = Settings { quality, workers: 1, ..Settings::default() };
         let shown = if light { thinned(body) } else { body.clone() };
-        let (mut world, reader) = DressedBody::new(rig.clone(), shown, vec![garment]).build(settings)?;
+        let (mut world, reader) = DressedBody::new(rig.clone(), shown, garments).build(settings)?;
         let at = scenario.visits[request.visit].joints(request.at_ns);
         world.dress(&Joints::seen(request.at_ns, at));
         Ok((world, reader))
@@ -78,12 +78,12 @@ impl SceneMaker {
     }
 }
 
-fn garment(request: &SceneRequest, body: &Body, light: bool) -> Result<Garment, String> {
-    let mut style = wardrobe::style(request.outfit.style).map_err(|e| e.to_string())?;
+fn garment(worn: &WornSize, body: &Body, light: bool) -> Result<Garment, String> {
+    let mut package = drafting::package(worn.garment).map_err(|e| e.to_string())?;
     if light {
-        (style.spacing_mm, style.columns) = LIGHT;
+        package.spacing_mm = LIGHT_MM;
     }
-    let mut garment = style.dress(&request.outfit.size, body).map_err(|e| e.to_string())?;
+    let mut garment = package.dress(&worn.size, body).map_err(|e| e.to_string())?;
     if light {
         garment.substeps = LIGHT_SUBSTEPS;
     }

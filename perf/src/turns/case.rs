@@ -22,11 +22,11 @@ pub const CASES: [(&str, &[&str]); 16] = [
     ("grid of 16,384", &["--verts", "16384"]),
     ("the same, two threads", &["--verts", "16384", "--threads", "2"]),
     ("irregular", &["--mesh", "irregular"]),
-    ("sun dress", &["--garment", "sun-dress"]),
-    ("wide trousers", &["--garment", "wide-trousers"]),
-    ("T-shirt", &["--garment", "t-shirt"]),
-    ("T-shirt, trousers", &["--garment", "t-shirt", "--garment", "wide-trousers"]),
-    ("the same, two threads", &["--garment", "t-shirt", "--garment", "wide-trousers", "--threads", "2"]),
+    ("sun dress", &["--garment", "strap-dress"]),
+    ("wide trousers", &["--garment", "wide-leg-trousers"]),
+    ("T-shirt", &["--garment", "tee"]),
+    ("T-shirt, trousers", &["--garment", "tee", "--garment", "wide-leg-trousers"]),
+    ("the same, two threads", &["--garment", "tee", "--garment", "wide-leg-trousers", "--threads", "2"]),
 ];
 
 impl TurnCase {

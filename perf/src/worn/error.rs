@@ -2,9 +2,10 @@
 
 use thiserror::Error;
 use toile_assets::body::BodyError;
+use toile_assets::drafting::WardrobeError;
+use toile_assets::draping::PackageError;
 use toile_assets::fabric::FabricError;
 use toile_assets::sizes::SizeError;
-use toile_assets::wardrobe::WardrobeError;
 use toile_bake::check::MeshError;
 use toile_engine::colliders::ColliderError;
 use toile_engine::skin::SkinError;
@@ -32,6 +33,9 @@ pub enum WornError {
     /// A garment of the wardrobe.
     #[error(transparent)]
     Wardrobe(#[from] WardrobeError),
+    /// A garment that cannot be cut or laid on the mannequin.
+    #[error(transparent)]
+    Package(#[from] PackageError),
     /// A size table that cannot be used.
     #[error(transparent)]
     Sizes(#[from] SizeError),

@@ -1,7 +1,8 @@
 //! A mannequin of average measures, and garments of the wardrobe in the size nearest to it.
 
+use toile_assets::drafting;
+use toile_assets::draping::PatternPackage;
 use toile_assets::sizes::{Population, SizeTable};
-use toile_assets::wardrobe;
 use toile_bake::Shape;
 use toile_base::body::{Body, Measures, Sex};
 use toile_base::fabric::Fabric;
@@ -24,8 +25,8 @@ impl AverageBody {
     /// # Errors
     /// Where the wardrobe has no such garment.
     pub fn of(garment: &str) -> Result<Self, WornError> {
-        let table = wardrobe::style(garment)?.sizes()?;
-        let sex = if table.population == Population::Men { Sex::Male } else { Sex::Female };
+        let population = drafting::package(garment)?.population()?;
+        let sex = if population == Population::Men { Sex::Male } else { Sex::Female };
         let measures = Measures::average(sex);
         Ok(Self { body: toile_assets::body::build(sex, &measures)?, measures })
     }
@@ -46,24 +47,26 @@ impl AverageBody {
     /// # Errors
     /// Where the wardrobe has no such garment, or cannot cut it.
     pub fn wear(&self, garment: &str) -> Result<(String, Shape, Fabric), WornError> {
-        let style = wardrobe::style(garment)?;
-        let size = nearest(&style.sizes()?, &self.measures)?;
-        let shape = style.draft(&size, &self.body)?;
-        let fabric = toile_assets::fabric::built_in(&style.fabric)?;
+        let package = drafting::package(garment)?;
+        let size = nearest(&package, &self.measures)?;
+        let fabric = toile_assets::fabric::built_in(&package.fabric)?;
+        let shape = package.draft(&size, &self.body, &fabric)?;
         Ok((size, shape, fabric))
     }
 }
 
-/// The size whose body's girths are nearest to some measures.
-fn nearest(table: &SizeTable, to: &Measures) -> Result<String, WornError> {
+/// The size of a garment whose body's girths are nearest to some measures.
+fn nearest(package: &PatternPackage, to: &Measures) -> Result<String, WornError> {
+    let Some(sizes) = &package.sizes else { return Ok(package.own_size().to_owned()) };
+    let table = SizeTable::embedded(&sizes.table)?;
     let mut best = (f32::INFINITY, String::new());
-    for code in table.codes() {
+    for code in sizes.girths.iter().map(|girths| &girths.size) {
         let body = table.size_body(code)?;
         let girths =
             [(body.chest_girth, to.chest_girth), (body.waist_girth, to.waist_girth), (body.hip_girth, to.hip_girth)];
         let off = girths.iter().map(|(a, b)| (a - b).abs()).sum::<f32>() + 0.1 * (body.stature - to.stature).abs();
         if off < best.0 {
-            best = (off, code.to_owned());
+            best = (off, code.clone());
         }
     }
     Ok(best.1)

@@ -1,8 +1,8 @@
 //! Garments on a performing mannequin, ready to be stepped.
 
 use glam::{Affine3A, Vec3};
+use toile_assets::drafting;
 use toile_assets::scene::{self, shopper};
-use toile_assets::wardrobe;
 use toile_bake::bake;
 use toile_base::body::Body;
 use toile_base::garment::{Garment, Part};
@@ -131,7 +131,7 @@ impl WornScene {
         for name in names {
             let (size, shape, fabric) = mannequin.wear(name)?;
             let mut garment = bake(name, &size, &shape, &fabric)?;
-            garment.layer = wardrobe::style(name).map_or(0, |style| style.layer);
+            garment.layer = drafting::style(name).map_or(0, |style| style.layer);
             garments.push(garment);
             sizes.push(size);
         }

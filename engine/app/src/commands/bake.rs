@@ -5,12 +5,10 @@ use std::path::Path;
 use std::time::Instant;
 
 use serde::Serialize;
-use toile_assets::adapt::{OwnMesh, source};
+use toile_assets::adapt::{AdaptError, dress as own};
 use toile_assets::drafting;
-use toile_assets::draping::{self, PatternPackage};
+use toile_assets::draping::PatternPackage;
 use toile_assets::file::{self, FileKind};
-use toile_assets::sizes::Population;
-use toile_assets::wardrobe::{self, WardrobeError, own};
 use toile_bake;
 use toile_bake::Shape;
 use toile_bake::survey::{MeshSurvey, survey};
@@ -20,6 +18,7 @@ use toile_base::garment::Garment;
 use toile_cli::document::Document;
 use toile_cli::exit::AppError;
 use toile_cli::terminal::{self, Paint, Tone};
+use toile_fitting::dress::garment_source::{GarmentSource, SourceKind};
 
 /// Bake a garment, and report what its mesh becomes: fibers, solvers, bending, memory.
 ///
@@ -188,7 +187,7 @@ pub fn run(args: &BakeArgs) -> Result<(), AppError> {
 struct DraftedShape {
     name: String,
     size: String,
-    fabric: String,
+    fabric: Fabric,
     shape: Shape,
     /// What became of a mesh of the user's own.
     notes: Vec<String>,
@@ -197,58 +196,41 @@ struct DraftedShape {
 fn bake(args: &BakeArgs) -> Result<BakeReport, AppError> {
     let named = args.fabric.as_deref().map(fabric).transpose()?;
     let drafted = draft(args)?;
-    let fabric = named.map_or_else(|| toile_assets::fabric::built_in(&drafted.fabric).map_err(AppError::input), Ok)?;
+    let fabric = named.unwrap_or_else(|| drafted.fabric.clone());
     let start = Instant::now();
     let garment = toile_bake::bake(&drafted.name, &drafted.size, &drafted.shape, &fabric)
-        .map_err(|source| AppError::input(WardrobeError::Mesh { name: drafted.name.clone(), source }))?;
+        .map_err(|source| AppError::input(AdaptError::Cloth { path: drafted.name.clone(), source }))?;
     let bake_ms = start.elapsed().as_secs_f64() * 1e3;
     let mut report = report(&garment, survey(&drafted.shape, &fabric), bake_ms);
     report.notes.splice(0..0, drafted.notes);
     Ok(report)
 }
 
-/// Cuts the garment on the body of its size, or reads the mesh.
+/// Cuts the garment on the body of its size, or lays the mesh on the body that it is made for.
 fn draft(args: &BakeArgs) -> Result<DraftedShape, AppError> {
-    let name = &args.garment;
-    if let Some(style) = drafting::style(name) {
-        let package = style.package().map_err(AppError::input)?;
-        let size = args.size.clone().unwrap_or_else(|| package.own_size().to_owned());
-        return draft_pattern(package, Some(size));
-    }
-    if draping::is_pattern(name) && !wardrobe::names().contains(&name.as_str()) {
-        let package = draping::read_package(Path::new(name), None).map_err(AppError::input)?;
-        return draft_pattern(package, args.size.clone());
-    }
-    let is_file = Path::new(name).exists() || source::is_mesh(name);
-    if is_file && !wardrobe::names().contains(&name.as_str()) {
-        if let Some(size) = &args.size {
-            return Err(AppError::input(WardrobeError::NoSizes { name: name.clone(), size: size.clone() }));
+    let source = GarmentSource::find(&args.garment)?;
+    let fabric = source.fabric()?;
+    let own = match source.kind {
+        SourceKind::Mesh(own) => own,
+        SourceKind::Pattern(package) => {
+            // A garment of the wardrobe is shown in the size that its own draft is for.
+            let built_in = drafting::style(&args.garment).is_some();
+            let size = args.size.clone().or_else(|| built_in.then(|| package.own_size().to_owned()));
+            return draft_pattern(*package, size, fabric);
         }
-        let own = OwnMesh::read(Path::new(name)).map_err(AppError::input)?;
-        let sex = own.sex.unwrap_or(Sex::Female);
-        let body = toile_assets::body::build(sex, &Measures::average(sex)).map_err(AppError::internal)?;
-        let drafted = own::draft(&own, None, &body).map_err(AppError::input)?;
-        let (fabric, notes) = (drafted.fabric.name, drafted.worn.report.lines());
-        return Ok(DraftedShape {
-            name: name.clone(),
-            size: own::UNKNOWN.into(),
-            fabric,
-            shape: drafted.worn.shape,
-            notes,
-        });
+    };
+    if let Some(size) = &args.size {
+        return Err(AppError::input(AdaptError::NoSizes { path: own.path.clone(), size: size.clone() }));
     }
-    let style = wardrobe::style(name).map_err(AppError::input)?;
-    let table = style.sizes().map_err(AppError::input)?;
-    let codes = table.codes();
-    let size = args.size.clone().unwrap_or_else(|| codes[codes.len() / 2].to_owned());
-    let wearer = if table.population == Population::Men { Sex::Male } else { Sex::Female };
-    let body = style.body(&size, wearer).map_err(AppError::input)?;
-    let shape = style.draft(&size, &body).map_err(AppError::input)?;
-    Ok(DraftedShape { name: style.name.clone(), size, fabric: style.fabric.clone(), shape, notes: Vec::new() })
+    let sex = own.sex.unwrap_or(Sex::Female);
+    let body = toile_assets::body::build(sex, &Measures::average(sex)).map_err(AppError::internal)?;
+    let drafted = own::draft(&own, None, &body).map_err(AppError::input)?;
+    let notes = drafted.worn.report.lines();
+    Ok(DraftedShape { name: own.path, size: own::UNKNOWN.into(), fabric, shape: drafted.worn.shape, notes })
 }
 
 /// Drapes a pattern or a package on the average woman, or in a size on the body that it is for.
-fn draft_pattern(package: PatternPackage, size: Option<String>) -> Result<DraftedShape, AppError> {
+fn draft_pattern(package: PatternPackage, size: Option<String>, fabric: Fabric) -> Result<DraftedShape, AppError> {
     let average =
         toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).map_err(AppError::internal)?;
     let (size, body) = match size {
@@ -258,9 +240,8 @@ fn draft_pattern(package: PatternPackage, size: Option<String>) -> Result<Drafte
             (size, body)
         }
     };
-    let fabric = toile_assets::fabric::built_in(&package.fabric).map_err(AppError::input)?;
     let shape = package.draft(&size, &body, &fabric).map_err(AppError::input)?;
-    Ok(DraftedShape { name: package.name, size, fabric: package.fabric, shape, notes: Vec::new() })
+    Ok(DraftedShape { name: package.name, size, fabric, shape, notes: Vec::new() })
 }
 
 /// A fabric by its name, or from a file.
@@ -389,18 +370,18 @@ mod tests {
 
     #[test]
     fn every_garment_of_the_wardrobe_is_covered_and_hangs() {
-        for name in wardrobe::names() {
+        for name in drafting::names() {
             let report = bake(&args(name)).unwrap();
             let EdgeCounts { all, warp, weft, hoops, bias, loose } = report.edges;
             assert_eq!(warp + weft + hoops + bias + loose, all, "{name}");
             assert_eq!(report.hanging.free + report.fixed, report.vertices, "{name}");
             assert_eq!(report.tethers, report.hanging.free, "{name}: something hangs from nothing");
             // Long sleeves hang from the armhole, whose cloth is free.
-            let least = if name == "jacket" { 0.25 } else { 0.5 };
+            let least = if name == "blazer" { 0.25 } else { 0.5 };
             assert!(loose * 50 < all && report.hanging.share > least, "{name}: {}", report.hanging.share);
             // Pieces that meet at an angle leave needles; nothing else is wrong with what is built in.
             let known = |w: &str| {
-                w.contains("needles") || w.contains("mm long") || w.contains("hang by fibers") && name == "jacket"
+                w.contains("needles") || w.contains("mm long") || w.contains("hang by fibers") && name == "blazer"
             };
             let wrong = report.warnings.iter().find(|w| !known(w));
             assert_eq!(wrong, None, "{name}");
@@ -413,7 +394,7 @@ mod tests {
 
     #[test]
     fn size_and_fabric_can_be_chosen() {
-        let mut chosen = args("sun-dress");
+        let mut chosen = args("strap-dress");
         (chosen.size, chosen.fabric) = (Some("40".into()), Some("linen-twill".into()));
         let report = bake(&chosen).unwrap();
         assert_eq!((report.size.as_str(), report.fabric.as_str()), ("40", "linen-twill"));

@@ -49,7 +49,7 @@ const WORN: [&str; 5] = ["session", "garments", "size", "quality", "measures"];
 /// refused with exit code 3 and the cure, before anything is played.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(after_help = "Example: see whether a shirt and trousers fit at the finest quality\n  toile plan --garment \
-                        t-shirt --garment wide-trousers --quality fine")]
+                        tee --garment wide-leg-trousers --quality fine")]
 pub struct PlanArgs {
     /// Scene file of `toile run` (default: the shopper of the embedded session, dressed)
     #[arg(value_name = "SCENE.toml", conflicts_with_all = WORN)]

@@ -15,7 +15,7 @@ use glam::Affine3A;
 use toile_assets::adapt::MeshReport;
 use toile_assets::export::{self, glb};
 use toile_assets::import::avatar::MovingBody;
-use toile_assets::{drafting, wardrobe};
+use toile_assets::drafting;
 use toile_base::body::Body;
 use toile_base::limits::STEP_SECONDS;
 use toile_base::skeleton::{BONES, Joint};
@@ -55,7 +55,7 @@ use crate::video::Video;
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(
     after_help = "Example: see how a recorded shopper moves in wide trousers\n  toile try-on --session shopper.csv \
-                        --garment wide-trousers --out fitting"
+                        --garment wide-leg-trousers --out fitting"
 )]
 pub struct TryOnArgs {
     /// Recording to watch: .mcap, Kinect CSV, Kinectron JSON or BVH (default: the embedded session)
@@ -149,7 +149,7 @@ impl TryOnArgs {
     pub fn inputs(&self) -> Inputs {
         let body = self.body_file();
         // A garment that is built in is no file, also where a folder has its name.
-        let is_built_in = |name: &str| wardrobe::names().contains(&name) || drafting::style(name).is_some();
+        let is_built_in = |name: &str| drafting::style(name).is_some();
         let garments = self.garments.iter().filter(|name| !is_built_in(name)).map(Path::new);
         Inputs::new(self.session.as_deref().into_iter().chain(body).chain(garments))
     }

@@ -44,30 +44,11 @@ pub enum SourceKind {
     Pattern(Box<PatternPackage>),
 }
 
-impl SourceKind {
-    /// A garment of the wardrobe; none where none has this name.
-    fn built_in(name: &str) -> Option<Result<Self, FittingError>> {
-        let package = drafting::style(name)?.package();
-        Some(package.map(|package| Self::Pattern(Box::new(package))).map_err(FittingError::input))
-    }
-}
-
 /// A garment and its fabric, where a name has both: `shirt:lawn-gingham`. A path may hold a colon too.
 fn in_fabric(name: &str) -> Option<(&str, &str)> {
     let (garment, fabric) = name.rsplit_once(':')?;
     let is_word = fabric.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-');
     (garment.len() > 1 && is_word && !Path::new(name).exists()).then_some((garment, fabric))
-}
-
-/// The error for a name that no garment has.
-fn unknown(name: &str) -> FittingError {
-    FittingError::Input(match drafting::successor(name) {
-        Some(new) => format!("the garment {name} is no longer built in; ask for {new}, which took its place"),
-        None => {
-            let known = drafting::names().join(", ");
-            format!("there is no garment named {name}; choose one of {known}, or give the path of an OBJ file")
-        }
-    })
 }
 
 /// A garment on the body, and how its size fits; a mesh may have no sizes.
@@ -98,8 +79,7 @@ pub fn population<'a>(sources: impl IntoIterator<Item = &'a GarmentSource>) -> R
 }
 
 impl GarmentSource {
-    /// The garment of a name: one of the wardrobe, one that is drafted, a pattern by its ending, or else a mesh, where a file of that name
-    /// exists. Behind a colon its fabric may stand, one that is built in: `shirt:lawn-gingham`.
+    /// The garment of a name: a pattern by its ending, one of the wardrobe, or else a mesh, where a file of that name exists. Behind a colon its fabric may stand, one that is built in: `shirt:lawn-gingham`.
     ///
     /// # Errors
     /// A name that is none of these, a file that cannot be used.
@@ -113,14 +93,12 @@ impl GarmentSource {
         if name.ends_with(ENDING) {
             return Self::open(path);
         }
-        let kind = if let Some(found) = SourceKind::built_in(name) {
-            found?
-        } else if draping::is_pattern(name) {
+        let kind = if draping::is_pattern(name) {
             SourceKind::Pattern(Box::new(draping::read_package(path, None).map_err(FittingError::input)?))
-        } else if path.exists() || source::is_mesh(name) {
+        } else if drafting::style(name).is_none() && (path.exists() || source::is_mesh(name)) {
             SourceKind::Mesh(Box::new(OwnMesh::read(path).map_err(FittingError::input)?))
         } else {
-            return Err(unknown(name));
+            SourceKind::Pattern(Box::new(drafting::package(name).map_err(FittingError::input)?))
         };
         Ok(Self { name: name.to_owned(), kind, fabric: None, layer: None, photographs: None })
     }
@@ -147,8 +125,8 @@ impl GarmentSource {
     pub fn of_package(mut package: GarmentPackage, shown: &str) -> Result<Self, FittingError> {
         let manifest = package.manifest().map_err(FittingError::input)?;
         let inside = |e: &dyn Display| FittingError::Input(format!("{shown}: {e}"));
-        let kind = if let Some(found) = SourceKind::built_in(&manifest.garment) {
-            found?
+        let kind = if manifest.is_built_in() {
+            SourceKind::Pattern(Box::new(drafting::package(&manifest.garment).map_err(FittingError::input)?))
         } else if manifest.is_pattern() {
             let text = package.text(&manifest.garment, MAX_PACKAGE_BYTES).map_err(FittingError::input)?;
             let seams = manifest.seams.as_deref().map(|seams| package.text(seams, MAX_TOML_BYTES)).transpose();

@@ -447,7 +447,7 @@ mod tests {
 
     #[test]
     fn nobody_wears_forty_shirts() {
-        let request = TryOn::of_shopper(&vec!["t-shirt".to_owned(); 40], None, ShopperFacts::default());
+        let request = TryOn::of_shopper(&vec!["tee".to_owned(); 40], None, ShopperFacts::default());
         let refused = request.open().unwrap_err();
         assert!(
             matches!(&refused, FittingError::Input(text) if text.contains(&format!("at most {MAX_GARMENTS}"))),

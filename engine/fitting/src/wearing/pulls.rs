@@ -217,7 +217,7 @@ mod tests {
 
     /// Of a garment in a size on the body of another.
     fn tried(name: &str, size: &str, on: &str) -> Vec<PosePulls> {
-        let package = drafting::style(name).unwrap().package().unwrap();
+        let package = drafting::package(name).unwrap();
         let body = package.body_of(on).unwrap().unwrap();
         let garment = package.dress(size, &body).unwrap();
         let settings = Settings { workers: 1, ..Settings::default() };

@@ -306,7 +306,7 @@ fn blow(garment: &Garment, settings: &Settings, wind: &Wind, reference: &mut Ref
 
 #[test]
 fn wind_agrees_with_its_reference() {
-    let garments = [skirt(24, Stretch::Inextensible), worn("t-shirt")];
+    let garments = [skirt(24, Stretch::Inextensible), worn("tee")];
     // Of moderate strength, and so strong that the bound holds it.
     for (garment, speed) in garments.iter().flat_map(|g| [(g, 3.0), (g, 900.0)]) {
         let wind = Wind { velocity: Vec3A::new(speed, 0.2, -0.5 * speed), drag: 0.8, lift: 0.3 };
@@ -366,7 +366,7 @@ fn root_compensation_agrees_with_its_reference() {
 
 #[test]
 fn bending_stages_agree_with_their_reference() {
-    let garment = &worn("t-shirt");
+    let garment = &worn("tee");
     let mut seen = Vec::new();
     for (substeps, longer) in [(3, 1.0), (1, 1.0), (1, 2.0), (1, 2.3), (1, 8.0), (1, 60.0)] {
         let step_seconds = longer * Settings::default().step_seconds;
@@ -412,7 +412,7 @@ fn every_kernel_agrees_on_the_skirt() {
 
 #[test]
 fn every_kernel_agrees_on_a_wardrobe_garment() {
-    let (shirt, settings) = (worn("t-shirt"), Settings { tethers: true, ..Settings::default() });
+    let (shirt, settings) = (worn("tee"), Settings { tethers: true, ..Settings::default() });
     for kernel in KERNELS {
         held("shirt", &shirt, &settings, kernel);
     }

@@ -2,7 +2,7 @@
 
 use glam::{Affine3A, DVec3, Quat, Vec3, Vec3A};
 use toile_assets::scene::skirt::{self, Stretch};
-use toile_assets::wardrobe;
+use toile_assets::drafting;
 use toile_bake::bake;
 use toile_base::body::{Measures, Sex};
 use toile_base::garment::Garment;
@@ -29,11 +29,9 @@ pub fn irregular(n: usize, stretch: Stretch) -> Garment {
 
 /// A garment of the wardrobe on the average woman.
 pub fn worn(name: &str) -> Garment {
-    let style = wardrobe::style(name).expect("the garment is built in");
-    let sizes = style.sizes().expect("it has sizes");
-    let size = sizes.codes()[1];
+    let package = drafting::package(name).expect("the garment is built in");
     let body = toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).expect("she can be built");
-    style.dress(size, &body).expect("it fits")
+    package.dress(package.own_size(), &body).expect("it fits")
 }
 
 /// The skirt's body of 16 spheres and 28 capsules, on a floor that its hem reaches.

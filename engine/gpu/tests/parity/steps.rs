@@ -158,7 +158,7 @@ fn every_quality_is_the_cpus() {
 
 #[test]
 fn garments_of_one_scene_do_not_see_each_other() {
-    let garments = [skirt(18, Stretch::Physical), worn("t-shirt"), skirt(26, Stretch::Inextensible)];
+    let garments = [skirt(18, Stretch::Physical), worn("tee"), skirt(26, Stretch::Inextensible)];
     let garments: Vec<&Garment> = garments.iter().collect();
     held(&garments, &Settings::default(), 12);
     // With as many substeps for each, and with fewer than they ask for.
@@ -170,7 +170,7 @@ fn garments_of_one_scene_do_not_see_each_other() {
 fn a_garment_solved_once_a_substep_stands_beside_others() {
     let scattered = irregular(20, Stretch::Physical);
     assert!(scattered.layout().is_scattered());
-    let garments = [skirt(18, Stretch::Inextensible), scattered, worn("t-shirt")];
+    let garments = [skirt(18, Stretch::Inextensible), scattered, worn("tee")];
     let garments: Vec<&Garment> = garments.iter().collect();
     held(&garments[1..2], &Settings::default(), 20);
     held(&garments, &Settings::default(), 12);
@@ -186,12 +186,12 @@ fn blown(wind: bool, carried: bool) -> Settings {
 
 #[test]
 fn what_is_in_the_wind_is_blown_as_on_the_cpu() {
-    held(&[&skirt(18, Stretch::Inextensible), &worn("t-shirt")], &blown(true, false), 20);
+    held(&[&skirt(18, Stretch::Inextensible), &worn("tee")], &blown(true, false), 20);
 }
 
 #[test]
 fn what_is_not_to_feel_the_root_does_not_feel_it_as_on_the_cpu() {
-    let garments = [skirt(18, Stretch::Inextensible), worn("t-shirt")];
+    let garments = [skirt(18, Stretch::Inextensible), worn("tee")];
     let garments: Vec<&Garment> = garments.iter().collect();
     held(&garments, &blown(false, true), 20);
     held(&garments, &blown(true, true), 8);
@@ -199,7 +199,7 @@ fn what_is_not_to_feel_the_root_does_not_feel_it_as_on_the_cpu() {
 
 #[test]
 fn settings_may_change_from_step_to_step() {
-    let garments = [worn("t-shirt"), skirt(16, Stretch::Physical)];
+    let garments = [worn("tee"), skirt(16, Stretch::Physical)];
     let garments: Vec<&Garment> = garments.iter().collect();
     // Bending in stages and as a force, with and without what else pushes the particles.
     let each = [blown(false, false), blown(true, false), blown(true, true), blown(false, true)];

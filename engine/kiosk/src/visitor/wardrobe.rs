@@ -10,7 +10,7 @@ use toile_assets::catalogue::{CatalogueItem, ManifestColour, Price, ShopTheme, W
 use toile_assets::drafting::{self, DraftStyle};
 use toile_assets::file::{self, FileStamp};
 use toile_assets::sizes::{GarmentKind, Population};
-use toile_assets::wardrobe::own;
+use toile_assets::adapt::dress as own;
 use toile_base::body::{Body, Measures, Sex};
 use toile_fitting::dress::garment_source::{GarmentSource, SourceKind};
 use toile_fitting::dress::offer::GarmentOffer;
@@ -22,10 +22,10 @@ use crate::service::stock::{LeftOut, Stock};
 
 /// The garments that hang where no shop brings its own, some of them in a print, each with its name in the pages' texts.
 const STOCK: [(&str, TextKey); 12] = [
-    ("strap-dress", TextKey::GarmentSunDress),
-    ("tee", TextKey::GarmentTShirt),
-    ("wide-leg-trousers", TextKey::GarmentWideTrousers),
-    ("mens-blazer", TextKey::GarmentJacket),
+    ("strap-dress", TextKey::GarmentStrapDress),
+    ("tee", TextKey::GarmentTee),
+    ("wide-leg-trousers", TextKey::GarmentWideLegTrousers),
+    ("mens-blazer", TextKey::GarmentMensBlazer),
     ("circle-skirt:lawn-flowers", TextKey::GarmentCircleSkirt),
     ("slim-trousers", TextKey::GarmentSlimTrousers),
     ("shirt:lawn-gingham", TextKey::GarmentShirt),
@@ -202,14 +202,14 @@ impl WardrobeItem {
         let offer = source.offer(average)?;
         let kind = match &source.kind {
             SourceKind::Mesh(own) => own.measures.kind,
-            SourceKind::Style(_) | SourceKind::Pattern(_) => offer.as_ref().map(|offer| offer.kind),
+            SourceKind::Pattern(_) => offer.as_ref().map(|offer| offer.kind),
         };
         let unsized_code = || vec![own::UNKNOWN.to_owned()];
         let sizes = offer.as_ref().map_or_else(unsized_code, |o| o.sizes.iter().map(|s| s.code.clone()).collect());
         let WornPlace { layer, place, held, covers } = WornPlace::of(kind);
         let layer = match &source.kind {
             SourceKind::Pattern(package) => package.layer.map_or(layer, Layer::of),
-            SourceKind::Style(_) | SourceKind::Mesh(_) => layer,
+            SourceKind::Mesh(_) => layer,
         };
         let colours = palette(kind.unwrap_or(GarmentKind::Dress), source.fabric()?.colour);
         Ok(Self {
@@ -267,7 +267,6 @@ fn title(source: &GarmentSource) -> ItemName {
     let key = STOCK.iter().find(|(name, _)| *name == source.name).map(|(_, key)| *key);
     match (key, &source.kind) {
         (Some(key), _) => ItemName::Word(key),
-        (None, SourceKind::Style(style)) => ItemName::Title(style.title.clone()),
         (None, SourceKind::Pattern(package)) => {
             let drafted = drafting::style(&package.name).map(DraftStyle::title);
             ItemName::Title(drafted.unwrap_or_else(|| package.name.clone()))
@@ -433,10 +432,10 @@ mod tests {
         let folder = std::env::temp_dir().join(format!("toile-hung-{name}-{}", std::process::id()));
         _ = std::fs::remove_dir_all(&folder);
         for (article, garment, more) in [
-            ("DR-1", "sun-dress", "price = \"99.00 EUR\"\n"),
+            ("DR-1", "strap-dress", "price = \"99.00 EUR\"\n"),
             (
                 "JA-2",
-                "jacket",
+                "blazer",
                 "layer = 5\ncolours = [{ name = { en = \"Moss\", de = \"Moos\" }, srgb = [0.3, 0.4, 0.2] }]\n",
             ),
         ] {
@@ -478,7 +477,7 @@ mod tests {
         assert_eq!(coat.colours[0].words.as_ref().map(|words| word(words, "de")), Some("Moos"));
         assert!(dress.sizes.len() > 3 && dress.name.ends_with("DR-1.toile"));
         // Garments that are named besides hang there as well; an unknown name is refused.
-        let more = Wardrobe::of(&stock(&["t-shirt"]).unwrap(), Some(&hung), &mut Vec::new()).unwrap();
+        let more = Wardrobe::of(&stock(&["tee"]).unwrap(), Some(&hung), &mut Vec::new()).unwrap();
         assert_eq!(more.items.len(), 3);
         assert!(stock(&["DR-9"]).is_err());
         std::fs::remove_dir_all(&folder).unwrap();

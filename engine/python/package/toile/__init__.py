@@ -2,7 +2,7 @@
 
 >>> import toile
 >>> body = toile.Body.from_measures("female", stature=1720, chest=920, waist=760, hip=1000)
->>> shirt = toile.Garment("t-shirt")  # or a file: "shirt.obj"
+>>> shirt = toile.Garment("tee")  # or a file: "shirt.obj"
 >>> fit = toile.recommend(body, shirt)
 >>> with toile.Scene(body, shirt) as scene:
 ...     scene.step(120)

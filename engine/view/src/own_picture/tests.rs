@@ -2,7 +2,7 @@
 
 use glam::{Affine3A, Mat3, Quat, Vec3};
 use toile_assets::scene::{SHOPPER, shopper};
-use toile_assets::wardrobe;
+use toile_assets::drafting;
 use toile_base::frame::{DepthFrame, Intrinsics, Joints};
 use toile_base::skeleton::{BONES, JOINTS, Joint};
 use toile_engine::body::{JointFrames, palette};
@@ -30,7 +30,7 @@ const SIZE: Size = Size::new(320, 240);
 
 fn scene() -> DressedPicture {
     let body = toile_assets::body::build(SHOPPER.0, &SHOPPER.1).unwrap();
-    let dress = wardrobe::style("sun-dress").unwrap().dress("38", &body).unwrap();
+    let dress = drafting::package("strap-dress").unwrap().dress("38", &body).unwrap();
     let (mut world, mut reader) =
         World::new(body.clone(), &toile_assets::rig::fit(&body), vec![dress], Settings::default()).unwrap();
     let pose = shopper(&body.skeleton, 0.5);

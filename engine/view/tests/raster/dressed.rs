@@ -1,7 +1,7 @@
 //! A dressed mannequin, for both ways of drawing: shared by the tests of the rasteriser and its example.
 
 use glam::Vec3;
-use toile_assets::wardrobe;
+use toile_assets::drafting;
 use toile_base::body::{Body, Measures, Sex};
 use toile_base::garment::Garment;
 use toile_base::mesh::vertex_normals;
@@ -33,8 +33,8 @@ impl Dressed {
     /// A garment of the wardrobe on her.
     pub fn new(name: &str, size: &str) -> Self {
         let body = wearer();
-        let style = wardrobe::style(name).expect("the wardrobe has it");
-        let garment = style.dress(size, &body).expect("it is made in this size");
+        let package = drafting::package(name).expect("the wardrobe has it");
+        let garment = package.dress(size, &body).expect("it is made in this size");
         let mut cloth_normals = vec![Vec3::ZERO; garment.particles()];
         vertex_normals(&garment.start, &garment.triangles, &mut cloth_normals);
         let cover = CoveringCloth::new(garment.triangles.iter().map(|t| t.map(|i| garment.start[i as usize])));

@@ -39,7 +39,7 @@ fn gpu() -> Option<&'static Gpu> {
 
 fn scene() -> &'static Dressed {
     static SCENE: OnceLock<Dressed> = OnceLock::new();
-    SCENE.get_or_init(|| Dressed::new("sun-dress", "38"))
+    SCENE.get_or_init(|| Dressed::new("strap-dress", "38"))
 }
 
 fn camera(yaw: f32) -> OrbitCamera {

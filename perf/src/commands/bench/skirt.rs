@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use clap::value_parser;
 use toile_assets::scene::skirt::{SkirtMotion, Stretch};
-use toile_assets::wardrobe;
+use toile_assets::drafting;
 use toile_cli::arguments::{count, one_of, quality};
 use toile_cli::document::Document;
 use toile_cli::exit::AppError;
@@ -85,7 +85,7 @@ pub struct SkirtArgs {
     #[arg(long, value_name = "T", value_parser = count(1..=2), default_value = "1")]
     threads: usize,
     /// Step this garment of the wardrobe on a performing mannequin in place of the skirt; again for an outfit
-    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(wardrobe::names()),
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(drafting::names()),
           conflicts_with_all = ["verts", "motion", "mesh", "stretch", "hysteresis", "curves", "buckling", "wind", "garments",
                                  "table"])]
     garment: Vec<String>,
@@ -326,7 +326,7 @@ mod tests {
     fn a_skirt_against_itself_is_the_processors() {
         let expected = SkirtOptions { folds: true, ..SkirtOptions::default() };
         assert_eq!(options("skirt --self").unwrap(), expected);
-        for wrong in ["--self --backend gpu", "--self --garment t-shirt", "--self --table"] {
+        for wrong in ["--self --backend gpu", "--self --garment tee", "--self --table"] {
             assert!(parsed::<SkirtArgs>(&format!("skirt {wrong}")).is_err(), "{wrong}");
         }
     }
@@ -364,9 +364,9 @@ mod tests {
         let case = parsed::<SkirtArgs>(line).unwrap().case();
         let again = format!("skirt {}", case.options.join(" "));
         assert_eq!(options(&again).unwrap(), options(line).unwrap());
-        let worn = parsed::<SkirtArgs>("skirt --garment t-shirt --garment wide-trousers --threads 2").unwrap();
+        let worn = parsed::<SkirtArgs>("skirt --garment tee --garment wide-leg-trousers --threads 2").unwrap();
         let again = parsed::<SkirtArgs>(&format!("skirt {}", worn.case().options.join(" "))).unwrap();
-        assert_eq!((again.worn(), again.case().name), (worn.worn(), "t-shirt over wide-trousers".to_owned()));
+        assert_eq!((again.worn(), again.case().name), (worn.worn(), "tee over wide-leg-trousers".to_owned()));
         for (_, options) in turns::CASES {
             assert!(parsed::<SkirtArgs>(&format!("skirt {}", options.join(" "))).is_ok(), "{options:?}");
         }

@@ -45,11 +45,11 @@ mod tests {
     #[test]
     fn it_names_garments_and_sizes_and_says_time_and_error() {
         let mut report = WornReport { moving: 8_000, quality: "shop", ..WornReport::default() };
-        report.garments = vec!["wide-trousers".into(), "t-shirt".into()];
+        report.garments = vec!["wide-leg-trousers".into(), "tee".into()];
         report.sizes = vec!["50".into(), "M".into()];
         report.strain.mean = 0.0024;
         let text = summary(&report, Paint::none());
-        for part in ["wide-trousers 50 over t-shirt M", "8000 particles", "0.240 % mean", "not counted"] {
+        for part in ["wide-leg-trousers 50 over tee M", "8000 particles", "0.240 % mean", "not counted"] {
             assert!(text.contains(part), "{part} is not in: {text}");
         }
     }

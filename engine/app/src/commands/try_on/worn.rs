@@ -1,6 +1,6 @@
 //! Report of the worn garments.
 
-use toile_assets::wardrobe::own;
+use toile_assets::adapt::dress as own;
 use toile_fitting::dress::garment_source::FittedGarment;
 
 use crate::report::RecommendationReport;
