@@ -102,10 +102,11 @@ fn one_answer(path: &Path, garment: &str) {
 }
 
 #[test]
-fn the_embedded_session_has_one_answer() {
-    let embedded = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/data/sessions/shopper.mcap");
+fn a_recording_with_depth_has_one_answer() {
+    let scratch = Scratch::new("one-answer");
+    scratch.record_short();
     for garment in ["sun-dress", "wide-trousers", "t-shirt"] {
-        one_answer(&embedded, garment);
+        one_answer(&scratch.path().join("short.mcap"), garment);
     }
 }
 
