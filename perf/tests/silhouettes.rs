@@ -6,6 +6,7 @@ use toile_perf::capture::followed::follow_study;
 use toile_perf::capture::silhouettes::{SilhouetteStudyOptions, study};
 
 #[test]
+#[ignore = "takes minutes; .ci/long runs it"]
 fn people_of_another_family_are_found_and_measured_by_their_silhouettes() {
     let Some(folder) = recordings::folder() else { return };
     let file = |name: &str| Survey::read(&folder.join("anthropometry/ansur2").join(name)).expect("the survey's file");
@@ -25,6 +26,7 @@ fn people_of_another_family_are_found_and_measured_by_their_silhouettes() {
 }
 
 #[test]
+#[ignore = "takes minutes; .ci/long runs it"]
 fn people_who_move_are_followed_by_their_silhouettes() {
     let Some(folder) = recordings::folder() else { return };
     let survey = Survey::read(&folder.join("anthropometry/ansur2/ANSUR_II_FEMALE.csv")).expect("the survey's file");

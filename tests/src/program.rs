@@ -31,6 +31,12 @@ impl Scratch {
         command.env("XDG_RUNTIME_DIR", &self.0);
         command.args(args).output().expect("the built program starts")
     }
+
+    /// Records a second of the synthetic shopper as `short.mcap`.
+    pub fn record_short(&self) {
+        let output = self.toile(&["record", "--out", "short.mcap", "--seconds", "1", "--quiet"]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    }
 }
 
 impl Drop for Scratch {

@@ -61,8 +61,9 @@ fn a_shop_packs_checks_shows_and_tries_on_its_garments() {
     let side = |at: usize| u32::from_be_bytes(png[at..at + 4].try_into().unwrap());
     assert!(side(16) > 480 && side(20) > 400, "{} x {}", side(16), side(20));
 
-    let line = ["try-on", "--garment", "shop/skirt.toile", "--no-pictures", "--json", "--quiet"];
-    let worn = json(&scratch, &line);
+    scratch.record_short();
+    let line = ["try-on", "--session", "short.mcap", "--garment", "shop/skirt.toile", "--no-pictures", "--json"];
+    let worn = json(&scratch, &[&line[..], &["--quiet"]].concat());
     let fit = &worn["recommendation"];
     assert_eq!((&fit["garment"], &fit["size"]), (&"Circle skirt".into(), &"34".into()), "{fit}");
 }

@@ -52,12 +52,14 @@ fn a_scene_has_the_same_bits_in_every_format() {
 #[test]
 fn a_session_that_was_exported_is_played_again_as_an_animation() {
     let scratch = Scratch::new("export-again");
+    scratch.record_short();
     let run = |args: &[&str]| {
         let output = scratch.toile(args);
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         serde_json::from_slice::<serde_json::Value>(&output.stdout).expect("one JSON object")
     };
-    let own = run(&["try-on", "--no-pictures", "--json", "--export", "glb", "--export-rate", "60", "--out", "a"]);
+    let line = ["try-on", "--session", "short.mcap", "--no-pictures", "--json"];
+    let own = run(&[&line[..], &["--export", "glb", "--export-rate", "60", "--out", "a"]].concat());
     assert_eq!((&own["export"]["formats"][0], &own["export"]["rate_hz"]), (&"glb".into(), &60.into()));
     let frames = own["export"]["frames"].as_u64().expect("a count");
     assert_eq!(frames, own["physics"]["steps"].as_u64().expect("a count").div_ceil(2));

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::common::Scratch;
 use crate::recordings;
 use serde_json::Value;
-use toile_assets::wardrobe;
+use toile_assets::drafting;
 use toile_fitting::dress::measured::{self, ShopperFacts};
 use toile_fitting::dress::offer::GarmentOffer;
 use toile_fitting::dress::session;
@@ -90,7 +90,7 @@ fn one_answer(path: &Path, garment: &str) {
     // What the window judges by: the same function on the same measures.
     let session = session::open(Some(path), None).unwrap();
     let known = measured::measure(&session, ShopperFacts::default()).unwrap();
-    let judged = GarmentOffer::of_style(&wardrobe::style(garment).unwrap()).unwrap().judge(None, &known.best).unwrap();
+    let judged = GarmentOffer::of_pattern(&drafting::package(garment).unwrap(), &toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap()).unwrap().judge(None, &known.best).unwrap();
     let by_window: Vec<(String, f64, String)> = judged
         .zones
         .iter()
@@ -102,10 +102,11 @@ fn one_answer(path: &Path, garment: &str) {
 }
 
 #[test]
-fn the_embedded_session_has_one_answer() {
-    let embedded = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/data/sessions/shopper.mcap");
+fn a_recording_with_depth_has_one_answer() {
+    let scratch = Scratch::new("one-answer");
+    scratch.record_short();
     for garment in ["strap-dress", "wide-leg-trousers", "tee"] {
-        one_answer(&embedded, garment);
+        one_answer(&scratch.path().join("short.mcap"), garment);
     }
 }
 

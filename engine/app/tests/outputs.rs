@@ -57,7 +57,9 @@ fn a_folder_may_have_the_name_of_a_garment_that_is_built_in() {
     let scratch = Scratch::new("outputs-garment");
     fs::create_dir(scratch.path().join("scarf")).unwrap();
     fs::write(scratch.path().join("scarf/report.json"), "of the last run").unwrap();
-    let output = scratch.toile(&["try-on", "--no-pictures", "--garment", "scarf", "--out", "scarf"]);
+    scratch.record_short();
+    let line = ["try-on", "--session", "short.mcap", "--no-pictures", "--garment", "scarf", "--out", "scarf"];
+    let output = scratch.toile(&line);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     assert!(fs::read_to_string(scratch.path().join("scarf/report.json")).unwrap().contains("toile.try-on/1"));
 }
@@ -100,7 +102,8 @@ fn a_body_and_a_scene_are_not_overwritten() {
     assert_eq!(fs::read(scratch.path().join("scene/index.csv")).unwrap(), scene.as_bytes());
     // A body that this command has made is not made again over itself.
     fs::create_dir(scratch.path().join("out")).unwrap();
-    let made = scratch.toile(&["try-on", "--no-pictures", "--glb", "--out", "out"]);
+    scratch.record_short();
+    let made = scratch.toile(&["try-on", "--session", "short.mcap", "--no-pictures", "--glb", "--out", "out"]);
     assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
     fs::rename(scratch.path().join("out/dressed.glb"), scratch.path().join("out/body.glb")).unwrap();
     let bytes = fs::read(scratch.path().join("out/body.glb")).unwrap();

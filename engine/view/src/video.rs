@@ -62,6 +62,17 @@ pub fn has_ffmpeg() -> bool {
     asked.status().is_ok_and(|s| s.success())
 }
 
+/// Options of the codec that the ending of a name asks for; none for an animated PNG.
+fn codec(path: &Path) -> Result<Option<&'static [&'static str]>, VideoError> {
+    let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_lowercase();
+    match ending.as_str() {
+        "mp4" => Ok(Some(&["-c:v", "libx264", "-preset", "medium", "-crf", "18", "-movflags", "+faststart"])),
+        "webm" => Ok(Some(&["-c:v", "libvpx-vp9", "-crf", "30", "-b:v", "0", "-row-mt", "1"])),
+        "png" | "apng" => Ok(None),
+        _ => Err(VideoError::Kind(path.to_owned())),
+    }
+}
+
 impl VideoWriter {
     /// Begins a video of so many frames, shown `fps` a second. The ending of the name says what is made: `.mp4` (H.264) or
     /// `.webm` (VP9) by ffmpeg, `.png` animated. Without ffmpeg a video becomes an animated PNG beside it; [`VideoWriter::path`]
@@ -73,14 +84,16 @@ impl VideoWriter {
         Self::begin_with(path, size, frames, fps, has_ffmpeg())
     }
 
+    /// Checks that the ending of a name says what kind of video to make, before there is anything to show.
+    ///
+    /// # Errors
+    /// [`VideoError::Kind`].
+    pub fn check(path: &Path) -> Result<(), VideoError> {
+        codec(path).map(drop)
+    }
+
     fn begin_with(path: &Path, size: Size, frames: u32, fps: u16, ffmpeg: bool) -> Result<Self, VideoError> {
-        let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_lowercase();
-        let codec: Option<&[&str]> = match ending.as_str() {
-            "mp4" => Some(&["-c:v", "libx264", "-preset", "medium", "-crf", "18", "-movflags", "+faststart"]),
-            "webm" => Some(&["-c:v", "libvpx-vp9", "-crf", "30", "-b:v", "0", "-row-mt", "1"]),
-            "png" | "apng" => None,
-            _ => return Err(VideoError::Kind(path.to_owned())),
-        };
+        let codec = codec(path)?;
         match codec {
             Some(_) if size.width % 2 + size.height % 2 > 0 => Err(VideoError::Odd(size)),
             Some(codec) if ffmpeg => Self::video(path, size, fps, codec),

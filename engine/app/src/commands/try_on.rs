@@ -38,6 +38,7 @@ use toile_fitting::wearing;
 use toile_view::drawn_frame::DrawnFrame;
 use toile_view::figure::{Appearance, Figure};
 use toile_view::fit_map::{self, JudgedTightness};
+use toile_view::video::VideoWriter;
 
 use crate::arguments::{AppearanceArgs, ExportArgs};
 use crate::commands::crossings::CrossingCount;
@@ -198,6 +199,7 @@ pub fn run(args: &TryOnArgs) -> Result<(), AppError> {
     // Without ffmpeg a video becomes an animated PNG beside it.
     let films = args.video.iter().flat_map(|film| [film.clone(), film.with_extension("png")]);
     films.into_iter().try_for_each(|film| inputs.check(&film))?;
+    args.video.iter().try_for_each(|film| VideoWriter::check(film)).map_err(AppError::input)?;
     let mut out = OutputFolder::prepare(&args.out)?.sparing(inputs);
     out.check(&args.names())?;
     let request = request(args)?.open()?;
