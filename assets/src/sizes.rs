@@ -50,9 +50,7 @@ impl GarmentKind {
     /// waist as trousers do.
     pub const fn comfort(self) -> &'static [(Girth, [f32; 2])] {
         match self {
-            Self::Dress => {
-                &[(Girth::Chest, [0.015, 0.08]), (Girth::Waist, [0.012, 0.075]), (Girth::Hip, [0.06, 0.4])]
-            }
+            Self::Dress => &[(Girth::Chest, [0.015, 0.08]), (Girth::Waist, [0.012, 0.075]), (Girth::Hip, [0.06, 0.4])],
             Self::Tshirt => &[(Girth::Chest, [0.01, 0.13]), (Girth::Hip, [0.0, 0.16])],
             Self::Jacket => &[(Girth::Chest, [0.08, 0.26]), (Girth::Hip, [0.06, 0.3])],
             Self::Trousers | Self::Skirt => &[(Girth::Waist, [0.0, 0.045]), (Girth::Hip, [0.025, 0.14])],

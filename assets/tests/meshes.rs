@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use proptest::prelude::*;
+use toile_assets::adapt::dress as own;
 use toile_assets::adapt::report::Behaviour;
 use toile_assets::adapt::{AdaptError, OwnMesh};
 use toile_assets::draping;
 use toile_assets::import;
 use toile_assets::sizes::SizeTable;
-use toile_assets::adapt::dress as own;
 use toile_bake::check::check;
 use toile_base::body::{Body, Measures, Sex};
 

@@ -124,7 +124,10 @@ impl GarmentManifest {
             );
         }
         if let Some(new) = drafting::successor(&self.garment) {
-            return Err(format!("the garment {} is no longer built in; name {new}, which took its place", self.garment));
+            return Err(format!(
+                "the garment {} is no longer built in; name {new}, which took its place",
+                self.garment
+            ));
         }
         if !self.is_built_in() && !self.is_pattern() && !self.is_mesh() {
             return Err(format!(

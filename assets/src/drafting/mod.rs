@@ -33,12 +33,8 @@ pub fn names() -> Vec<&'static str> {
 }
 
 /// Garments of earlier versions, and those that took their places.
-const SUCCESSORS: [(&str, &str); 4] = [
-    ("sun-dress", "strap-dress"),
-    ("t-shirt", "tee"),
-    ("wide-trousers", "wide-leg-trousers"),
-    ("jacket", "blazer"),
-];
+const SUCCESSORS: [(&str, &str); 4] =
+    [("sun-dress", "strap-dress"), ("t-shirt", "tee"), ("wide-trousers", "wide-leg-trousers"), ("jacket", "blazer")];
 
 /// Why no garment of the wardrobe has a name.
 #[derive(Debug, Error)]

@@ -250,15 +250,9 @@ fn what_cannot_be_tucked_in_is_refused_with_the_cure() {
     let scratch = Scratch::new("tucked");
     scratch.record_short();
     let refused = |args: &[&str], words: &[&str]| refused(&scratch, &[&SHORT, args].concat(), words);
-    refused(
-        &["--garment", "tee", "--tuck", "tee"],
-        &["cannot be tucked in", "waistband", "wear trousers"],
-    );
+    refused(&["--garment", "tee", "--tuck", "tee"], &["cannot be tucked in", "waistband", "wear trousers"]);
     let trousers = ["--garment", "wide-leg-trousers"];
-    refused(
-        &[&trousers[..], &["--tuck", "tee"]].concat(),
-        &["tee", "not worn", "name one of wide-leg-trousers"],
-    );
+    refused(&[&trousers[..], &["--tuck", "tee"]].concat(), &["tee", "not worn", "name one of wide-leg-trousers"]);
     refused(&[&trousers[..], &["--tuck", "wide-leg-trousers"]].concat(), &["wide-leg-trousers", "do not tuck it in"]);
     let dress = [&trousers[..], &["--garment", "strap-dress", "--tuck", "strap-dress"]].concat();
     refused(&dress, &["strap-dress", "below the waistband", "shorter"]);

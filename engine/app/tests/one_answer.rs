@@ -6,6 +6,7 @@ use crate::common::Scratch;
 use crate::recordings;
 use serde_json::Value;
 use toile_assets::drafting;
+use toile_base::body::{Measures, Sex};
 use toile_fitting::dress::measured::{self, ShopperFacts};
 use toile_fitting::dress::offer::GarmentOffer;
 use toile_fitting::dress::session;
@@ -90,7 +91,9 @@ fn one_answer(path: &Path, garment: &str) {
     // What the window judges by: the same function on the same measures.
     let session = session::open(Some(path), None).unwrap();
     let known = measured::measure(&session, ShopperFacts::default()).unwrap();
-    let judged = GarmentOffer::of_pattern(&drafting::package(garment).unwrap(), &toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap()).unwrap().judge(None, &known.best).unwrap();
+    let average = toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).unwrap();
+    let offer = GarmentOffer::of_pattern(&drafting::package(garment).unwrap(), &average).unwrap();
+    let judged = offer.judge(None, &known.best).unwrap();
     let by_window: Vec<(String, f64, String)> = judged
         .zones
         .iter()

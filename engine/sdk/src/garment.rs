@@ -3,9 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use toile_assets::drafting;
 use toile_assets::draping::{AS_DRAFTED, TO_MEASURE};
 use toile_assets::file::{self, FileKind};
-use toile_assets::drafting;
 use toile_base::body::{Measures, Sex};
 use toile_base::fabric::Fabric;
 use toile_fitting::dress::garment_source::{GarmentSource, SourceKind};

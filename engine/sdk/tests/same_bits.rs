@@ -1,6 +1,7 @@
 //! This crate gives the same bits as the assembly below it.
 
 use toile_assets::scene_file::{SceneFile, SceneSource};
+use toile_assets::sizes::Girth;
 use toile_engine::cloth::Settings;
 use toile_engine::world::World;
 use toile_fitting::dress::garment_source::GarmentSource;

@@ -7,8 +7,8 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use glam::{Affine3A, Mat3, Vec2, Vec3};
-use toile_assets::scene::{SHOPPER, shopper};
 use toile_assets::drafting;
+use toile_assets::scene::{SHOPPER, shopper};
 use toile_base::frame::{DepthFrame, Intrinsics, Joints};
 use toile_engine::body::JointFrames;
 use toile_engine::cloth::Settings;

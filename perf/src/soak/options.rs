@@ -69,10 +69,9 @@ impl SoakOutfit {
         match self {
             Self::Wardrobe => drafting::names().into_iter().map(|name| vec![name]).collect(),
             Self::Dress => vec![shown_first(None).to_vec()],
-            Self::Layers => vec![
-                vec!["straight-trousers", "shirt", "blazer"],
-                vec!["mens-trousers", "mens-shirt", "mens-blazer"],
-            ],
+            Self::Layers => {
+                vec![vec!["straight-trousers", "shirt", "blazer"], vec!["mens-trousers", "mens-shirt", "mens-blazer"]]
+            }
         }
     }
 }

@@ -294,7 +294,14 @@ mod tests {
     use crate::soak::{SceneWeight, SoakCamera};
 
     fn plan(seed: u64, seconds: u64, faults: usize) -> SoakPlan {
-        SoakPlan { seed, seconds, faults, scene: SceneWeight::Light, outfit: SoakOutfit::Dress, camera: SoakCamera::Joints }
+        SoakPlan {
+            seed,
+            seconds,
+            faults,
+            scene: SceneWeight::Light,
+            outfit: SoakOutfit::Dress,
+            camera: SoakCamera::Joints,
+        }
     }
 
     fn scenario(seed: u64) -> Scenario {

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde::Serialize;
+use toile_assets::adapt::dress as own;
 use toile_assets::catalogue::{
     Catalogue, CatalogueItem, GarmentManifest, GarmentPackage, ShopTheme, ThemeColours, contrast, package, word,
 };
-use toile_assets::adapt::dress as own;
 use toile_base::body::{Measures, Sex};
 use toile_base::frame::Joints;
 use toile_cli::arguments::Printing;

@@ -13,9 +13,9 @@ use toile_engine::cloth::Quality;
 
 use glam::Affine3A;
 use toile_assets::adapt::MeshReport;
+use toile_assets::drafting;
 use toile_assets::export::{self, glb};
 use toile_assets::import::avatar::MovingBody;
-use toile_assets::drafting;
 use toile_base::body::Body;
 use toile_base::limits::STEP_SECONDS;
 use toile_base::skeleton::{BONES, Joint};

@@ -7,8 +7,8 @@
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
-use toile_assets::sizes::{Girth, Population};
 use toile_assets::adapt::dress as own;
+use toile_assets::sizes::{Girth, Population};
 use toile_base::body::{Body, Measures, Sex};
 use toile_base::frame::Joints;
 use toile_base::garment::Garment;

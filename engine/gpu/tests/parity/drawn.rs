@@ -39,8 +39,7 @@ fn reference(positions: &[Vec3A], garment: &Garment) -> Vec<Vec3> {
 
 #[test]
 fn normals_follow_the_reference_through_every_step() {
-    let (one, other, settings, no_body) =
-        (skirt(20, Stretch::Physical), worn("tee"), Settings::default(), no_body());
+    let (one, other, settings, no_body) = (skirt(20, Stretch::Physical), worn("tee"), Settings::default(), no_body());
     let (garments, colliders) = ([&one, &other], [&no_body, &no_body]);
     let needs = Offload::needs(&garments, &colliders, &settings);
     let Some(device) = device(needs) else { return };

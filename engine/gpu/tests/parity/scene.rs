@@ -1,8 +1,8 @@
 //! What the tests step: the benchmark's skirt, a garment of the wardrobe, and how they are disturbed.
 
 use glam::{Affine3A, DVec3, Quat, Vec3, Vec3A};
-use toile_assets::scene::skirt::{self, Stretch};
 use toile_assets::drafting;
+use toile_assets::scene::skirt::{self, Stretch};
 use toile_bake::bake;
 use toile_base::body::{Measures, Sex};
 use toile_base::garment::Garment;

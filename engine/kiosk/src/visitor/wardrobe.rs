@@ -6,11 +6,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
+use toile_assets::adapt::dress as own;
 use toile_assets::catalogue::{CatalogueItem, ManifestColour, Price, ShopTheme, Words, word};
 use toile_assets::drafting::{self, DraftStyle};
 use toile_assets::file::{self, FileStamp};
 use toile_assets::sizes::{GarmentKind, Population};
-use toile_assets::adapt::dress as own;
 use toile_base::body::{Body, Measures, Sex};
 use toile_fitting::dress::garment_source::{GarmentSource, SourceKind};
 use toile_fitting::dress::offer::GarmentOffer;

@@ -1,8 +1,8 @@
 //! Shoppers on whom the garment is drawn, and pictures that stay plain.
 
 use glam::{Affine3A, Mat3, Quat, Vec3};
-use toile_assets::scene::{SHOPPER, shopper};
 use toile_assets::drafting;
+use toile_assets::scene::{SHOPPER, shopper};
 use toile_base::frame::{DepthFrame, Intrinsics, Joints};
 use toile_base::skeleton::{BONES, JOINTS, Joint};
 use toile_engine::body::{JointFrames, palette};

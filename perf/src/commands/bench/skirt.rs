@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 use clap::value_parser;
-use toile_assets::scene::skirt::{SkirtMotion, Stretch};
 use toile_assets::drafting;
+use toile_assets::scene::skirt::{SkirtMotion, Stretch};
 use toile_cli::arguments::{count, one_of, quality};
 use toile_cli::document::Document;
 use toile_cli::exit::AppError;
