@@ -13,7 +13,7 @@ use toile_engine::body::Poser;
 use toile_engine::body::filters::{LimitFilter, PoseFilter};
 use toile_engine::clock::{Clock, SimClock};
 use toile_engine::frame_loop::ThreadLoop;
-use toile_engine::frame_loop::event::{EVENTS, EVENTS_NAME, EventKind, NoCounters};
+use toile_engine::frame_loop::event::{EVENTS, EVENTS_NAME, EventKind};
 use toile_engine::frame_loop::physics_thread::{PhysicsOutputs, PhysicsThread, WorldScene};
 use toile_engine::frame_loop::queue::bounded;
 use toile_engine::frame_loop::recording::{ENTRIES, ENTRIES_NAME};
@@ -21,6 +21,7 @@ use toile_engine::frame_loop::render_thread::{RenderThread, Renderer};
 use toile_engine::frame_loop::sensor_thread::{Playback, SensorFrame, SensorThread};
 use toile_engine::triple_buffer::TripleBuffer;
 use toile_engine::world::Snapshot;
+use toile_fitting::live::lateness::ThreadAccount;
 use toile_sensors::filter::angles::AngleFilter;
 use toile_sensors::filter::one_euro::OneEuroSettings;
 use toile_sensors::filter::predict::Predictor;
@@ -91,32 +92,44 @@ fn the_counter_counts() {
 /// Sensor frames in which allocations are counted: a second and a half, in which the arms begin to rise and fall.
 const SENSOR_FRAMES: u64 = 45;
 
+/// Outfits of two and of three layers.
+const OUTFITS: [&[&str]; 3] =
+    [&["mens-trousers", "mens-shirt"], &["straight-trousers", "shirt", "blazer"], &["strap-dress", "coat", "scarf"]];
+
 #[test]
-fn no_garment_of_the_wardrobe_costs_an_allocation_a_step() {
-    for name in drafting::names() {
-        let body = dressed::shopper();
-        // The sensor's frames are its own thread's business and are made beforehand.
-        let first = 40;
-        let seen: Vec<_> = (first..first + SENSOR_FRAMES)
-            .map(|i| dressed::joints(&body, i * 1_000_000_000 / dressed::SENSOR_HZ))
-            .collect();
-        let mut filter = JointFilter::default();
-        let mut world = dressed::dressed(&[name], &seen);
-        let mut last = filter.push(&seen[0]);
-        let found = allocations(|| {
-            for raw in &seen[1..] {
-                let joints = filter.push(raw);
-                for quarter in 1..=4 {
-                    let time = last.time_ns + (joints.time_ns - last.time_ns) * quarter / 4;
-                    world.step(black_box(&between(&last, &joints, time)));
-                }
-                last = joints;
+fn no_garment_of_the_wardrobe_and_no_outfit_costs_an_allocation_a_step() {
+    let alone = drafting::names().into_iter().map(|name| vec![name]);
+    let outfits: Vec<Vec<&str>> = alone.chain(OUTFITS.map(<[&str]>::to_vec)).collect();
+    std::thread::scope(|scope| {
+        for part in outfits.chunks(outfits.len().div_ceil(2)) {
+            scope.spawn(move || part.iter().for_each(|names| costs_no_allocation(names)));
+        }
+    });
+}
+
+fn costs_no_allocation(names: &[&str]) {
+    let body = dressed::shopper();
+    // The sensor's frames are its own thread's business and are made beforehand.
+    let first = 40;
+    let seen: Vec<_> = (first..first + SENSOR_FRAMES)
+        .map(|i| dressed::joints(&body, i * 1_000_000_000 / dressed::SENSOR_HZ))
+        .collect();
+    let mut filter = JointFilter::default();
+    let mut world = dressed::dressed(names, &seen);
+    let mut last = filter.push(&seen[0]);
+    let found = allocations(|| {
+        for raw in &seen[1..] {
+            let joints = filter.push(raw);
+            for quarter in 1..=4 {
+                let time = last.time_ns + (joints.time_ns - last.time_ns) * quarter / 4;
+                world.step(black_box(&between(&last, &joints, time)));
             }
-        });
-        assert_eq!(world.tick(), (SENSOR_FRAMES - 1) * 4);
-        assert!(world.tick() >= 120);
-        assert_eq!(found, 0, "{name}: {found} allocations in {} steps", world.tick());
-    }
+            last = joints;
+        }
+    });
+    assert_eq!(world.tick(), (SENSOR_FRAMES - 1) * 4);
+    assert!(world.tick() >= 120);
+    assert_eq!(found, 0, "{names:?}: {found} allocations in {} steps", world.tick());
 }
 
 /// A picture that is only looked at.
@@ -145,8 +158,9 @@ fn no_turn_of_the_loop_costs_an_allocation_whatever_happens() {
     let (sender, mut events) = bounded(EVENTS_NAME, EVENTS / 64);
     let (recording, entries) = bounded(ENTRIES_NAME, ENTRIES / 8);
     let outlets = PhysicsOutputs { events: sender, recording: Some(recording) };
+    let account = ThreadAccount::new();
     let mut physics =
-        PhysicsThread::new(WorldScene::new(world), clock.clone(), 0, news, outlets, NoCounters).warming_up(60);
+        PhysicsThread::new(WorldScene::new(world), clock.clone(), 0, news, outlets, account).warming_up(60);
     let mut sense = SensorThread::new(Playback::new(&seen, 0, 1), JointFilter::default(), clock.clone(), writer);
     let mut render = RenderThread::new(Glance(0.0), clock.clone(), 0, reader);
     let found = allocations(|| {

@@ -9,7 +9,6 @@ use std::sync::atomic::Ordering::Relaxed;
 use toile_base::filter::Filter;
 use toile_engine::clock::Clock;
 use toile_engine::frame_loop::ThreadLoop;
-use toile_engine::frame_loop::event::NoCounters;
 use toile_engine::frame_loop::physics_thread::{LoopScene, WorldScene};
 use toile_engine::frame_loop::queue::Sender;
 use toile_engine::frame_loop::render_thread::Renderer;
@@ -17,6 +16,7 @@ use toile_engine::frame_loop::sensor_thread::{FrameSource, SensorThread};
 use toile_engine::meter::PERIOD_NS;
 use toile_engine::world::Snapshot;
 use toile_fitting::live::assembly::{PhysicsLoop, RenderLoop};
+use toile_fitting::live::lateness::ThreadAccount;
 use toile_fitting::live::running::Restart;
 
 use super::fault_kind::FaultKind;
@@ -154,7 +154,7 @@ impl<S: FrameSource, F: Filter, C: Clock> ObservedLoop for SensorThread<S, F, C>
 #[derive(Debug)]
 pub struct ObservedPhysics<C> {
     /// The physics loop that is observed.
-    pub physics: PhysicsLoop<WorldScene, C, NoCounters>,
+    pub physics: PhysicsLoop<WorldScene, C, ThreadAccount>,
     scenario: Arc<Scenario>,
     origin_ns: u64,
     ticks: u64,
@@ -167,7 +167,7 @@ pub struct ObservedPhysics<C> {
 
 impl<C: Clock> ObservedPhysics<C> {
     /// Observes this loop. Called at load: it allocates.
-    pub fn new(physics: PhysicsLoop<WorldScene, C, NoCounters>, scenario: Arc<Scenario>, origin_ns: u64) -> Self {
+    pub fn new(physics: PhysicsLoop<WorldScene, C, ThreadAccount>, scenario: Arc<Scenario>, origin_ns: u64) -> Self {
         let fault_counts = physics.stepper.scene.fault_counts();
         let spoils = scenario.faults_of(FaultKind::ClothSpoilt).map(|f| origin_ns + f.from_ns).collect();
         Self { fault_counts, physics, scenario, origin_ns, ticks: 0, crash_ns: None, spoils, spoilt: 0 }

@@ -8,7 +8,6 @@ use std::time::{Duration, Instant};
 use toile_base::clock::SECOND_NS;
 use toile_engine::clock::{Clock, SimClock};
 use toile_engine::frame_loop::ThreadLoop;
-use toile_engine::frame_loop::event::NoCounters;
 use toile_engine::frame_loop::flight_recorder::FlightRecorder;
 use toile_engine::frame_loop::physics_thread::WorldScene;
 use toile_engine::frame_loop::queue::{Capacity, bounded};
@@ -19,6 +18,7 @@ use toile_engine::frame_loop::threads::{self, Stop};
 use toile_engine::meter::PERIOD_NS;
 use toile_fitting::heap::HeapProbe;
 use toile_fitting::live::assembly::{Assembly, LoopOptions, LoopParts, LoopQueues, SensorLoop, assemble};
+use toile_fitting::live::lateness::ThreadAccount;
 use toile_fitting::live::running::{EndedLoops, Loops, RunningLoop};
 use toile_fitting::live::scene_changer::DressedScene;
 
@@ -175,7 +175,7 @@ impl<C: JumpableClock + Clone + Send + Sync + 'static> SoakLoops<C> {
             }
         };
         let renderer = CheckingRenderer::default();
-        let parts = LoopParts { first, renderer, source, account: NoCounters, recording: Some(recording) };
+        let parts = LoopParts { first, renderer, source, account: ThreadAccount::new(), recording: Some(recording) };
         let assembly = assemble(parts, clock, LoopOptions { begin_ns: origin_ns, ..LoopOptions::default() });
         let Assembly { loops, queues, handover } = assembly;
         let mut stepping = ObservedPhysics::new(loops.physics, scenario, origin_ns);
