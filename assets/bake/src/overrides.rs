@@ -1,8 +1,8 @@
-//! Solvers that a garment file chooses by hand.
+//! Solvers that a scene file chooses by hand.
 
 use toile_base::garment::{Direction, Solver};
 
-/// A part of a garment whose fibers a garment file can speak of.
+/// A part of a garment whose fibers a scene file can speak of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum SolverRegion {
     /// Closed weft fibers that are sewn to what does not move, vertex by vertex: a waistband, a neckband.
@@ -11,10 +11,9 @@ pub enum SolverRegion {
     Hem,
 }
 
-/// The table `[solver]` of a garment file: solvers that are chosen by hand. A region goes before a direction, and either
+/// Solvers that are chosen by hand. A region goes before a direction, and either
 /// before what the bake would choose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Overrides {
     /// Of all fibers down the garment.
     pub warp: Option<Solver>,
