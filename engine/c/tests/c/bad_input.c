@@ -602,7 +602,8 @@ int main(int argc, char **argv)
     pthread_t thread;
     int all = argc > 1 && strcmp(argv[1], "all") == 0;
     names();
-    DONE(toile_garment_open("tee", NULL, NULL, &garment));
+    /* A coarse garment may be given, for what watches this program may make it slow. */
+    DONE(toile_garment_open(argc > 2 ? argv[2] : "tee", NULL, NULL, &garment));
     DONE(toile_body_from_measures(TOILE_SEX_FEMALE, NULL, 0, &body));
     bodies(garment);
     garments();
