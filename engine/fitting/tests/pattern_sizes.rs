@@ -108,7 +108,7 @@ fn what_is_worn_beneath_takes_its_thickness_all_around() {
     let beneath = vec![shirt.offer(&body).unwrap().unwrap()];
     let thickness = shirt.fabric().unwrap().thickness_mm * 1e-3;
     let ease = |beneath: &[_]| {
-        let fit = jacket.judge(Some("M"), &measured, &body, beneath).unwrap().unwrap();
+        let fit = jacket.judge(Some("38"), &measured, &body, beneath).unwrap().unwrap();
         fit.zones.iter().map(|z| z.ease).collect::<Vec<_>>()
     };
     for (alone, over) in ease(&[]).into_iter().zip(ease(&beneath)) {

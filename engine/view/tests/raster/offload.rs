@@ -26,7 +26,7 @@ const MEAN: f32 = 0.02;
 
 fn shirt() -> &'static Dressed {
     static SHIRT: OnceLock<Dressed> = OnceLock::new();
-    SHIRT.get_or_init(|| Dressed::new("tee", "M"))
+    SHIRT.get_or_init(|| Dressed::new("tee", "38"))
 }
 
 fn renderer(gpu: &Gpu, quality: RenderQuality) -> Renderer {
