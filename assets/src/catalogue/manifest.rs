@@ -220,7 +220,7 @@ srgb = [0.3, 0.4, 0.2]
             ("SK-1001", "", "article number"),
             ("SK-1001", &"x".repeat(60), "article number"),
             ("skirt.json", "skirt.exe", ".obj"),
-            ("skirt.json", "strap-dress", "strap-dress"),
+            ("skirt.json", "sun-dress", "strap-dress"),
             ("49.90 EUR", "free", "49.90 EUR"),
             ("0.3, 0.4", "3, 4", "0 to 1"),
             ("de = ", "german = ", "name.german"),

@@ -239,6 +239,7 @@ fn an_unknown_garment_or_size_is_told_what_there_is() {
     scratch.record_short();
     let refused = |args: &[&str], words: &[&str]| refused(&scratch, &[&SHORT, args].concat(), words);
     refused(&["--garment", "crinoline"], &["crinoline", "strap-dress", "tee", "wide-leg-trousers", "choose"]);
+    refused(&["--garment", "sun-dress"], &["sun-dress is no longer built in; ask for strap-dress"]);
     refused(&["--garment", "strap-dress", "--garment", "crinoline"], &["crinoline", "choose"]);
     refused(&["--garment", "strap-dress", "--size", "999"], &["999", "40", "choose"]);
     fs::write(scratch.path().join("band.obj"), band(24)).unwrap();

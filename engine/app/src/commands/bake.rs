@@ -375,13 +375,18 @@ mod tests {
             let EdgeCounts { all, warp, weft, hoops, bias, loose } = report.edges;
             assert_eq!(warp + weft + hoops + bias + loose, all, "{name}");
             assert_eq!(report.hanging.free + report.fixed, report.vertices, "{name}");
-            assert_eq!(report.tethers, report.hanging.free, "{name}: something hangs from nothing");
-            // Long sleeves hang from the armhole, whose cloth is free.
-            let least = if name == "blazer" { 0.25 } else { 0.5 };
-            assert!(loose * 50 < all && report.hanging.share > least, "{name}: {}", report.hanging.share);
-            // Pieces that meet at an angle leave needles; nothing else is wrong with what is built in.
+            let hung = if name == "scarf" { 0 } else { report.hanging.free };
+            assert_eq!(report.tethers, hung, "{name}: something hangs from nothing");
+            // A circle and a poncho hang along the bias for the most part; a scarf lies on others by its weight.
+            let least = match name {
+                "circle-skirt" => 0.25,
+                "poncho" => 0.45,
+                "scarf" => 0.0,
+                _ => 0.5,
+            };
+            assert!(loose * 50 < all && report.hanging.share >= least, "{name}: {}", report.hanging.share);
             let known = |w: &str| {
-                w.contains("needles") || w.contains("mm long") || w.contains("hang by fibers") && name == "blazer"
+                w.contains("hang by fibers") && least < 0.5 || w.contains("nothing is fixed") && name == "scarf"
             };
             let wrong = report.warnings.iter().find(|w| !known(w));
             assert_eq!(wrong, None, "{name}");
