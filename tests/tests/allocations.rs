@@ -89,22 +89,22 @@ fn the_counter_counts() {
     assert_eq!(allocations(|| drop(black_box(grown))), 0, "giving back is free");
 }
 
-/// Sensor frames in which allocations are counted: a second and a half, in which the arms begin to rise and fall.
-const SENSOR_FRAMES: u64 = 45;
+/// Sensor frames in which allocations are counted: a second and more, in which the arms begin to rise.
+const SENSOR_FRAMES: u64 = 32;
 
-/// Outfits of two and of three layers.
+/// The default dress, and outfits of two and of three layers.
 const OUTFITS: [&[&str]; 3] =
-    [&["mens-trousers", "mens-shirt"], &["straight-trousers", "shirt", "blazer"], &["strap-dress", "coat", "scarf"]];
+    [&["strap-dress"], &["mens-trousers", "mens-shirt"], &["straight-trousers", "shirt", "blazer"]];
 
 #[test]
-fn no_garment_of_the_wardrobe_and_no_outfit_costs_an_allocation_a_step() {
-    let alone = drafting::names().into_iter().map(|name| vec![name]);
-    let outfits: Vec<Vec<&str>> = alone.chain(OUTFITS.map(<[&str]>::to_vec)).collect();
-    std::thread::scope(|scope| {
-        for part in outfits.chunks(outfits.len().div_ceil(2)) {
-            scope.spawn(move || part.iter().for_each(|names| costs_no_allocation(names)));
-        }
-    });
+fn no_outfit_costs_an_allocation_a_step() {
+    OUTFITS.iter().for_each(|names| costs_no_allocation(names));
+}
+
+#[test]
+#[ignore = "takes minutes; .ci/long runs it"]
+fn no_garment_of_the_wardrobe_costs_an_allocation_a_step() {
+    drafting::names().into_iter().for_each(|name| costs_no_allocation(&[name]));
 }
 
 fn costs_no_allocation(names: &[&str]) {

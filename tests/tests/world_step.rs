@@ -200,10 +200,9 @@ fn a_shopper_who_is_suddenly_elsewhere_keeps_her_dress() {
     assert!(cloth < 1.5, "a part of the dress stayed behind, {cloth} m away");
 }
 
-/// Bounds of calm motion for each garment: the 99th percentile of strain, averaged over the steps. Trousers crumple
-/// between the thighs, and a sleeve is stretched over the armpit where it meets the yoke that sticks to the trunk.
+/// Bounds of calm motion for a garment of each kind: the 99th percentile of strain, averaged over the steps.
 const CALM_STRAIN_P99: [(&str, f32); 4] =
-    [("strap-dress", 0.03), ("tee", 0.18), ("wide-leg-trousers", 0.05), ("blazer", 0.18)];
+    [("strap-dress", 0.04), ("tee", 0.10), ("wide-leg-trousers", 0.07), ("blazer", 0.08)];
 
 /// Deepest penetration in calm motion (m).
 const CALM_PENETRATION_M: f32 = 0.010;
@@ -212,7 +211,6 @@ const CALM_PENETRATION_M: f32 = 0.010;
 fn calm_motion_stretches_little_and_stays_outside_of_the_body() {
     // She stands, then lifts the arms: no fast motion yet.
     let track = dressed::track(&dressed::shopper(), 1.0, 1.5);
-    assert_eq!(CALM_STRAIN_P99.map(|(name, _)| name)[..], toile_assets::drafting::names()[..]);
     std::thread::scope(|scope| {
         for (name, most) in CALM_STRAIN_P99 {
             let track = &track;
