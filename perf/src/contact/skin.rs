@@ -21,7 +21,7 @@ const INTO_POSE_S: [f32; 2] = [1.5, 1.0];
 /// Most of the free particles that may be inside the skin (%).
 const INSIDE: f64 = 0.1;
 
-/// Time of contact with the skin less that with cones, of a T-shirt and trousers, 9,967 particles.
+/// Time of contact with the skin less that with cones, of a tee and trousers.
 pub fn skin() -> Result<Vec<ContactRow>, ContactError> {
     let mut us = [0.0; 2];
     let mut particles = 0;
@@ -36,7 +36,7 @@ pub fn skin() -> Result<Vec<ContactRow>, ContactError> {
     Ok(vec![ContactRow::at_most(name, 0.5, (us[1] - us[0]) * 1e-3, "ms")])
 }
 
-/// Trousers, T-shirt and dress in four poses: each on the skin by itself, and then over one another.
+/// Trousers, tee and dress in four poses: each on the skin by itself, and then over one another.
 pub fn poses() -> Result<Vec<ContactRow>, ContactError> {
     let mut rows = Vec::new();
     for over in [false, true] {
@@ -98,7 +98,7 @@ impl SkinFindings {
     /// Its rows; the target is for each garment by itself.
     fn rows(&self, pose: &str, over: bool) -> [ContactRow; 3] {
         let how = if over { "over one another" } else { "each by itself" };
-        let name = |what: &str| format!("trousers, T-shirt and dress, {how}, {pose}: {what}");
+        let name = |what: &str| format!("trousers, tee and dress, {how}, {pose}: {what}");
         let share = |count: u32| 100.0 * f64::from(count) / f64::from(self.free.max(1));
         let all = (name("free particles inside the skin"), share(self.inside));
         [

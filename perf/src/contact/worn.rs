@@ -29,12 +29,12 @@ pub(super) struct Outfit {
 /// An outfit of the shop, which has to keep its time, and a dress over all else, which no shopper wears and is only reported.
 pub(super) const OUTFITS: [Outfit; 2] = [
     Outfit {
-        name: "trousers, T-shirt and open jacket",
+        name: "trousers, tee and blazer",
         garments: &["wide-leg-trousers", "tee", "blazer"],
         within_ms: Some([4.5, 6.7]),
     },
     Outfit {
-        name: "trousers, T-shirt and dress over them",
+        name: "trousers, tee and dress over them",
         garments: &["wide-leg-trousers", "tee", "strap-dress"],
         within_ms: None,
     },
