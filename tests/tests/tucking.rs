@@ -11,8 +11,8 @@ use toile_tests::dressed;
 /// waistband's edge, over which the shirt hangs. Contact knows no edges.
 const MOST_CROSSINGS: usize = 170;
 
-/// How far from the waistband's edge four of five are, and all (m).
-const AT_EDGE_M: [f32; 2] = [0.05, 0.12];
+/// How far from the waistband's edge three of four are, and all (m).
+const AT_EDGE_M: [f32; 2] = [0.05, 0.16];
 
 /// Trousers, and a T-shirt over them or tucked in, on the shopper who stands.
 fn standing(tucked: bool) -> World {
@@ -66,7 +66,7 @@ fn a_tucked_shirt_ends_inside_of_the_trousers_and_one_that_is_not_outside() {
             let band = world.cloths()[0].positions.iter().map(|p| p.y).fold(0.0, f32::max);
             let within = |most: f32| crossed.iter().filter(|y| (*y - band).abs() < most).count();
             let [near, all] = AT_EDGE_M.map(within);
-            assert!(5 * near >= 4 * all && all == crossed.len(), "below the waistband {band} m: {crossed:?}");
+            assert!(4 * near >= 3 * all && all == crossed.len(), "below the waistband {band} m: {crossed:?}");
         }
     }
 }
