@@ -176,15 +176,29 @@ struct Wardrobe {
     skeletons: [(f32, Skeleton); 2],
 }
 
-/// The sizes of a garment, smallest first, each with the body that it is cut for.
-fn sizes(garment: &str) -> Result<(Population, Vec<(String, Measures)>), SoakError> {
-    let wrong = |e: &dyn std::fmt::Display| SoakError::Scene { number: 0, reason: e.to_string() };
-    let sizes = drafting::package(garment).map_err(|e| wrong(&e))?.sizes;
-    let sizes = sizes.ok_or_else(|| wrong(&"it has no sizes"))?;
-    let table = SizeTable::embedded(&sizes.table).map_err(|e| wrong(&e))?;
-    let body = |code: &String| table.size_body(code).map(|body| (code.clone(), body.into())).map_err(|e| wrong(&e));
-    let sizes: Result<_, _> = sizes.girths.iter().map(|girths| body(&girths.size)).collect();
-    Ok((table.population, sizes?))
+/// A garment in its sizes, smallest first, each with the body that it is cut for.
+struct GarmentSizes {
+    garment: &'static str,
+    population: Population,
+    sizes: Vec<(String, Measures)>,
+}
+
+impl GarmentSizes {
+    fn read(garment: &'static str) -> Result<Self, SoakError> {
+        let wrong = |e: &dyn std::fmt::Display| SoakError::Scene { number: 0, reason: e.to_string() };
+        let sizes = drafting::package(garment).map_err(|e| wrong(&e))?.sizes;
+        let sizes = sizes.ok_or_else(|| wrong(&"it has no sizes"))?;
+        let table = SizeTable::embedded(&sizes.table).map_err(|e| wrong(&e))?;
+        let body = |code: &String| table.size_body(code).map(|body| (code.clone(), body.into())).map_err(|e| wrong(&e));
+        let sizes = sizes.girths.iter().map(|girths| body(&girths.size)).collect::<Result<_, _>>()?;
+        Ok(Self { garment, population: table.population, sizes })
+    }
+
+    /// The size for the body nearest to these measures.
+    fn nearest(&self, body: &Measures) -> WornSize {
+        let size = self.sizes.iter().min_by(|a, b| apart(&a.1, body).total_cmp(&apart(&b.1, body)));
+        WornSize { garment: self.garment, size: size.map_or_else(String::new, |(code, _)| code.clone()) }
+    }
 }
 
 /// How far the girths by which sizes are told apart are from each other (m).
@@ -197,15 +211,11 @@ impl Wardrobe {
         let wrong = |e: &dyn std::fmt::Display| SoakError::Scene { number: 0, reason: e.to_string() };
         let mut outfits = Vec::new();
         for (choice, names) in outfit.choices().into_iter().enumerate() {
-            let all = names.iter().map(|name| sizes(name)).collect::<Result<Vec<_>, _>>()?;
-            let Some((population, outermost)) = all.last() else { continue };
-            for (_, body) in outermost {
-                let nearest = |(garment, (_, sizes)): (&&'static str, &(Population, Vec<(String, Measures)>))| {
-                    let size = sizes.iter().min_by(|a, b| apart(&a.1, body).total_cmp(&apart(&b.1, body)));
-                    WornSize { garment, size: size.map_or_else(String::new, |(code, _)| code.clone()) }
-                };
-                let worn = names.iter().zip(&all).map(nearest).collect();
-                outfits.push(SizedOutfit { choice, worn, body: *body, population: *population });
+            let all = names.into_iter().map(GarmentSizes::read).collect::<Result<Vec<_>, _>>()?;
+            let Some(outermost) = all.last() else { continue };
+            for (_, body) in &outermost.sizes {
+                let worn = all.iter().map(|garment| garment.nearest(body)).collect();
+                outfits.push(SizedOutfit { choice, worn, body: *body, population: outermost.population });
             }
         }
         let average = |sex| {
