@@ -29,9 +29,18 @@ pub fn irregular(n: usize, stretch: Stretch) -> Garment {
 
 /// A garment of the wardrobe on the average woman.
 pub fn worn(name: &str) -> Garment {
+    stiffened(name, 1.0)
+}
+
+/// The same in a fabric that is so many times as stiff in bending (1).
+pub fn stiffened(name: &str, times: f32) -> Garment {
     let package = drafting::package(name).expect("the garment is built in");
     let body = toile_assets::body::build(Sex::Female, &Measures::average(Sex::Female)).expect("she can be built");
-    package.dress(package.own_size(), &body).expect("it fits")
+    let mut fabric = toile_assets::fabric::built_in(&package.fabric).expect("its fabric is built in");
+    fabric.bend_warp_un_m *= times;
+    fabric.bend_weft_un_m *= times;
+    fabric.bend_bias_un_m = fabric.bend_bias_un_m.map(|bias| bias * times);
+    package.dress_in(&fabric, package.own_size(), &body).expect("it fits")
 }
 
 /// The skirt's body of 16 spheres and 28 capsules, on a floor that its hem reaches.

@@ -32,9 +32,15 @@ pub fn wearer() -> Body {
 impl Dressed {
     /// A garment of the wardrobe on her.
     pub fn new(name: &str, size: &str) -> Self {
+        Self::in_fabric(name, &drafting::package(name).expect("the wardrobe has it").fabric, size)
+    }
+
+    /// The same in another fabric that is built in.
+    pub fn in_fabric(name: &str, fabric: &str, size: &str) -> Self {
         let body = wearer();
         let package = drafting::package(name).expect("the wardrobe has it");
-        let garment = package.dress(size, &body).expect("it is made in this size");
+        let fabric = toile_assets::fabric::built_in(fabric).expect("it is built in");
+        let garment = package.dress_in(&fabric, size, &body).expect("it is made in this size");
         let mut cloth_normals = vec![Vec3::ZERO; garment.particles()];
         vertex_normals(&garment.start, &garment.triangles, &mut cloth_normals);
         let cover = CoveringCloth::new(garment.triangles.iter().map(|t| t.map(|i| garment.start[i as usize])));

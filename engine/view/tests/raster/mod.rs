@@ -39,7 +39,8 @@ fn gpu() -> Option<&'static Gpu> {
 
 fn scene() -> &'static Dressed {
     static SCENE: OnceLock<Dressed> = OnceLock::new();
-    SCENE.get_or_init(|| Dressed::new("strap-dress", "38"))
+    // Of one colour, which nothing else in the picture has.
+    SCENE.get_or_init(|| Dressed::in_fabric("strap-dress", "cotton-lawn", "38"))
 }
 
 fn camera(yaw: f32) -> OrbitCamera {
