@@ -1,9 +1,12 @@
 //! Shoppers on whom the garment is drawn, and pictures that stay plain.
 
+use std::sync::OnceLock;
+
 use glam::{Affine3A, Mat3, Quat, Vec3};
 use toile_assets::drafting;
 use toile_assets::scene::{SHOPPER, shopper};
 use toile_base::frame::{DepthFrame, Intrinsics, Joints};
+use toile_base::garment::Garment;
 use toile_base::skeleton::{BONES, JOINTS, Joint};
 use toile_engine::body::{JointFrames, palette};
 use toile_engine::cloth::Settings;
@@ -28,9 +31,12 @@ struct DressedPicture {
 
 const SIZE: Size = Size::new(320, 240);
 
+/// The dress, put on once for all tests.
+static DRESS: OnceLock<Garment> = OnceLock::new();
+
 fn scene() -> DressedPicture {
     let body = toile_assets::body::build(SHOPPER.0, &SHOPPER.1).unwrap();
-    let dress = drafting::package("strap-dress").unwrap().dress("38", &body).unwrap();
+    let dress = DRESS.get_or_init(|| drafting::package("strap-dress").unwrap().dress("38", &body).unwrap()).clone();
     let (mut world, mut reader) =
         World::new(body.clone(), &toile_assets::rig::fit(&body), vec![dress], Settings::default()).unwrap();
     let pose = shopper(&body.skeleton, 0.5);
