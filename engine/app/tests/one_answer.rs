@@ -18,10 +18,17 @@ const MEASURES: [&str; 5] = ["stature_mm", "shoulder_breadth_mm", "chest_girth_m
 
 /// What the program prints as JSON.
 fn json(scratch: &Scratch, args: &[&str]) -> Value {
+    let (code, printed) = code_and_json(scratch, args);
+    assert_eq!(code, 0, "{args:?}: {printed}");
+    printed
+}
+
+fn code_and_json(scratch: &Scratch, args: &[&str]) -> (i32, Value) {
     let args: Vec<&str> = args.iter().copied().chain(["--json"]).collect();
     let out = scratch.toile(&args);
-    assert!(out.status.success(), "{args:?}: {}", String::from_utf8_lossy(&out.stderr));
-    serde_json::from_slice(&out.stdout).unwrap()
+    let words = String::from_utf8_lossy(&out.stderr);
+    let printed = serde_json::from_slice(&out.stdout).unwrap_or_else(|e| panic!("{args:?}: {e}: {words}"));
+    (out.status.code().unwrap_or_else(|| panic!("{args:?} was killed: {words}")), printed)
 }
 
 /// Zones with ease and verdict, as try-on reports them.
@@ -71,7 +78,9 @@ fn one_answer(path: &Path, garment: &str) {
     let worn = ["--session", file, "--garment", garment, "--quality", "draft"];
     let tried = json(&scratch, &[&["try-on", "--no-pictures"], &worn[..]].concat());
     assert!(scratch.path().join("out/report.json").is_file(), "what a command writes goes under out/");
-    let planned = json(&scratch, &[&["plan", "--quick"], &worn[..]].concat());
+    // On a slow machine the plan is that the scene does not fit: code 3.
+    let (code, planned) = code_and_json(&scratch, &[&["plan", "--quick"], &worn[..]].concat());
+    assert!(matches!(code, 0 | 3), "plan exits with {code}: {planned}");
     for name in MEASURES {
         assert_eq!(measured["measurements"][name], tried["measurements"][name], "{file}: {name}");
     }
