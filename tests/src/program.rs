@@ -3,6 +3,8 @@
 #![allow(dead_code, reason = "each program uses its part")]
 
 use std::fs;
+#[cfg(unix)]
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
@@ -43,6 +45,24 @@ impl Drop for Scratch {
     fn drop(&mut self) {
         let _ = fs::remove_dir_all(&self.0);
     }
+}
+
+/// Runs a command whose stderr is read line by line, and ends it with SIGTERM once `enough` says so of a line.
+#[cfg(unix)]
+pub fn run_until(command: &mut Command, mut enough: impl FnMut(&str) -> bool) -> Output {
+    let mut child = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let id = child.id().to_string();
+    let (mut said, mut told) = (String::new(), false);
+    for line in BufReader::new(child.stderr.take().unwrap()).lines() {
+        let line = line.expect("stderr is UTF-8");
+        if !told && enough(&line) {
+            told = true;
+            assert!(Command::new("kill").args(["-TERM", &id]).status().expect("kill is there").success());
+        }
+        said += &line;
+        said.push('\n');
+    }
+    Output { stderr: said.into_bytes(), ..child.wait_with_output().unwrap() }
 }
 
 /// What a run printed.

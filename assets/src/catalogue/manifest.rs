@@ -7,7 +7,7 @@ use serde::Deserialize;
 use super::limits::{MAX_ARTICLE, MAX_COLOURS, MAX_NAME};
 use super::photographed::PhotographedGarment;
 use super::price::Price;
-use crate::drafting;
+use crate::drafting::{self, WardrobeError};
 use crate::draping;
 use crate::toml_keys::place;
 
@@ -123,11 +123,8 @@ impl GarmentManifest {
                     .into(),
             );
         }
-        if let Some(new) = drafting::successor(&self.garment) {
-            return Err(format!(
-                "the garment {} is no longer built in; name {new}, which took its place",
-                self.garment
-            ));
+        if let Err(replaced @ WardrobeError::Replaced { .. }) = drafting::named(&self.garment) {
+            return Err(replaced.to_string());
         }
         if !self.is_built_in() && !self.is_pattern() && !self.is_mesh() {
             return Err(format!(

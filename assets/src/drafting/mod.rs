@@ -60,21 +60,24 @@ pub enum WardrobeError {
     Size(#[from] SizeError),
 }
 
-/// The garment that took the place of one of an earlier version.
-pub fn successor(name: &str) -> Option<&'static str> {
-    SUCCESSORS.iter().find(|(old, _)| *old == name).map(|(_, new)| *new)
-}
-
 /// A garment that is drafted here, in all of its sizes.
 ///
 /// # Errors
 /// A name that no garment has.
 pub fn package(name: &str) -> Result<PatternPackage, WardrobeError> {
-    match (style(name), successor(name)) {
-        (Some(style), _) => Ok(style.package()?),
-        (None, Some(successor)) => Err(WardrobeError::Replaced { name: name.into(), successor }),
-        (None, None) => Err(WardrobeError::Unknown { name: name.into(), known: names().join(", ") }),
-    }
+    Ok(named(name)?.package()?)
+}
+
+/// A garment that is drafted here, by its name.
+///
+/// # Errors
+/// A name that no garment has, with the garment that took the place of one of an earlier version.
+pub fn named(name: &str) -> Result<&'static DraftStyle, WardrobeError> {
+    let successor = SUCCESSORS.iter().find(|(old, _)| *old == name).map(|(_, new)| *new);
+    style(name).ok_or_else(|| match successor {
+        Some(successor) => WardrobeError::Replaced { name: name.into(), successor },
+        None => WardrobeError::Unknown { name: name.into(), known: names().join(", ") },
+    })
 }
 
 /// A garment that is drafted here, by its name.

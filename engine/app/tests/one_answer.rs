@@ -117,9 +117,7 @@ fn one_answer(path: &Path, garment: &str) {
 fn a_recording_with_depth_has_one_answer() {
     let scratch = Scratch::new("one-answer");
     scratch.record_short();
-    for garment in ["strap-dress", "wide-leg-trousers", "tee"] {
-        one_answer(&scratch.path().join("short.mcap"), garment);
-    }
+    one_answer(&scratch.path().join("short.mcap"), "wide-leg-trousers");
 }
 
 #[test]

@@ -7,17 +7,24 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
 use crate::common::Scratch;
+#[cfg(unix)]
+use crate::common::run_until;
 use image::imageops::{self, FilterType};
 use image::{Rgb, RgbImage};
 use serde_json::Value;
 use toile_base::numeric::random::SplitMix64;
 use toile_pose::files::{self, NetworkPackage};
 
-/// Runs a command with the network of a folder.
-fn run(scratch: &Scratch, network: &Path, args: &[&str]) -> Output {
+/// The program with the network of a folder.
+fn program(scratch: &Scratch, network: &Path) -> Command {
     let mut command = Command::new(crate::PROGRAM);
     command.stdin(Stdio::null()).current_dir(scratch.path()).env("XDG_RUNTIME_DIR", scratch.path());
-    command.env(files::FOLDER_VARIABLE, network).args(args).output().unwrap()
+    command.env(files::FOLDER_VARIABLE, network);
+    command
+}
+
+fn run(scratch: &Scratch, network: &Path, args: &[&str]) -> Output {
+    program(scratch, network).args(args).output().unwrap()
 }
 
 /// Whether the network is there. Where continuous integration names a folder, it must be.
@@ -95,6 +102,7 @@ fn a_person_in_a_folder_of_pictures_is_followed() {
 }
 
 #[test]
+#[cfg(unix)]
 fn a_visit_at_the_kiosk_is_seen_by_a_webcam() {
     if !is_fetched() {
         return;
@@ -103,21 +111,14 @@ fn a_visit_at_the_kiosk_is_seen_by_a_webcam() {
     let scratch = Scratch::new("webcam-kiosk");
     write_pictures(&scratch.path().join("pictures"), 60);
     let config = "[sensor]\ncamera = \"webcam-file\"\ndevice = \"pictures\"\n[shopper]\nmeasures = [\"stature=1680\"]\n\
-                  [machine]\nlock_memory = false\n";
+                  [health]\nevery_s = 0.5\n[machine]\nlock_memory = false\n";
     fs::write(scratch.path().join("kiosk.toml"), config).unwrap();
-    let args = [
-        "kiosk",
-        "--headless",
-        "--seconds",
-        "30",
-        "--config",
-        "kiosk.toml",
-        "--instance",
-        "webcam",
-        "--json",
-        "--quiet",
-    ];
-    let output = run(&scratch, &files::folder(), &args);
+    let args = ["kiosk", "--headless", "--seconds", "60", "--config", "kiosk.toml", "--instance", "webcam", "--json"];
+    let mut dressed = 0;
+    let output = run_until(program(&scratch, &files::folder()).args(args), |line| {
+        dressed += usize::from(line.contains(", try-on, "));
+        dressed >= 3
+    });
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let report: Value = serde_json::from_slice(&output.stdout).unwrap();
     println!("{report:#}");
