@@ -4,6 +4,7 @@
 #[macro_use]
 mod put_line;
 
+pub mod delaunay;
 pub mod file;
 pub mod texture;
 pub mod toml_keys;

@@ -28,7 +28,7 @@ pub const CRATES: &[(&str, &str)] = &[
     ("perf", "toile-perf"),
     ("tests/models", "toile-models"),
     ("tests/platforms", "toile-platforms"),
-    ("tests", "toile-tests"),
+    ("tests", "toile-workspace"),
 ];
 
 /// The workspace's folder.

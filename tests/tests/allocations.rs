@@ -28,7 +28,7 @@ use toile_sensors::filter::predict::Predictor;
 use toile_sensors::filter::smoothing::Smoothing;
 use toile_sensors::filter::{FilterSettings, JointFilter};
 use toile_sensors::sample::between;
-use toile_tests::dressed;
+use toile_workspace::dressed;
 
 thread_local! {
     /// Allocations of this thread; the test's own, because the harness allocates on others meanwhile.

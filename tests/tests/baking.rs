@@ -10,8 +10,8 @@ use toile_base::fabric::Fabric;
 use toile_base::garment::Garment;
 use toile_base::garment::layout::{FiberList, OwnerShare, Tuples};
 use toile_perf::oracle::{Problem, State, measure};
-use toile_tests::meshes::{Cell, Plan, area, folded};
-use toile_tests::tolerance;
+use toile_workspace::meshes::{Cell, Plan, area, folded};
+use toile_workspace::tolerance;
 
 fn cell() -> impl Strategy<Value = Cell> {
     prop_oneof![1 => Just(Cell::Hole), 5 => Just(Cell::Quad), 3 => Just(Cell::Rising), 3 => Just(Cell::Falling)]

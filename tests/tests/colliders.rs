@@ -10,7 +10,7 @@ use toile_engine::colliders::{Colliders, RestSphere};
 use toile_engine::cone::RoundCone;
 use toile_engine::skin::SkinningJob;
 use toile_engine::world::BLEND;
-use toile_tests::tolerance;
+use toile_workspace::tolerance;
 
 /// A bend: what it is called, the joint of the left side, and its turn (axis times rad). The right side mirrors it.
 const BENDS: [(&str, Joint, Vec3); 7] = [

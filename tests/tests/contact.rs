@@ -8,8 +8,8 @@ use toile_base::garment::Garment;
 use toile_base::skeleton::BONES;
 use toile_engine::cloth::{Cloth, Settings, Step};
 use toile_engine::colliders::{Colliders, RestSphere, RoundCone};
-use toile_tests::cloth::sheet;
-use toile_tests::tolerance;
+use toile_workspace::cloth::sheet;
+use toile_workspace::tolerance;
 
 /// A small cloth, not held anywhere, in the middle of the world.
 fn garment(friction: f32) -> Garment {

@@ -7,7 +7,7 @@ use toile_base::frame::Joints;
 use toile_engine::cloth::ContactRates;
 use toile_engine::world::World;
 use toile_sensors::sample::sample;
-use toile_tests::dressed;
+use toile_workspace::dressed;
 
 /// Two seconds of the scene, in which the arms rise and the walk begins.
 const STEPS: u64 = 240;

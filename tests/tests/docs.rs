@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use toile_tests::exceptions;
-use toile_tests::tree;
+use toile_workspace::exceptions;
+use toile_workspace::tree;
 
 /// Folders of the project; a path in a document that begins with one of them leads to something.
 const FOLDERS: [&str; 6] = ["assets/", "sensors/", "engine/", "perf/", "tests/", "docs/"];

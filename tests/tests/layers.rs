@@ -3,10 +3,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use toile_tests::exceptions;
-use toile_tests::imports::{self, Arrow, CrateFiles, Module};
-use toile_tests::scan::{self, NamedPath};
-use toile_tests::tree::{self, CRATES};
+use toile_workspace::exceptions;
+use toile_workspace::imports::{self, Arrow, CrateFiles, Module};
+use toile_workspace::scan::{self, NamedPath};
+use toile_workspace::tree::{self, CRATES};
 
 /// Place in the order of the crates of the crate that a path names.
 fn rank_of(path: &NamedPath) -> Option<usize> {
@@ -74,7 +74,7 @@ const BENCHMARKS: &str = "toile-perf";
 
 #[test]
 fn only_perf_and_tests_import_the_benchmarks() {
-    for (folder, name) in CRATES.iter().filter(|(_, name)| ![BENCHMARKS, "toile-tests"].contains(name)) {
+    for (folder, name) in CRATES.iter().filter(|(_, name)| ![BENCHMARKS, "toile-workspace"].contains(name)) {
         let table: toml::Table = tree::read(&tree::root().join(folder).join("Cargo.toml")).parse().unwrap();
         assert!(!dependencies(&table).iter().any(|d| d == BENCHMARKS), "{name} depends on the benchmarks");
     }

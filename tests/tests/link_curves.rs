@@ -5,7 +5,7 @@ use toile_bake::bake;
 use toile_base::garment::Garment;
 use toile_engine::cloth::{Quality, Settings};
 use toile_perf::oracle::{Oracle, OracleStep, Problem, State};
-use toile_tests::cloth::{Alone, sheet};
+use toile_workspace::cloth::{Alone, sheet};
 
 /// Cells of the sheet each way, and their length (m).
 const CELLS: [u32; 2] = [5, 7];

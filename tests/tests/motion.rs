@@ -8,8 +8,8 @@ use toile_base::garment::{Garment, Solver};
 use toile_base::limits::{STEP_HZ, STEP_SECONDS};
 use toile_engine::cloth::{Quality, Settings};
 use toile_perf::oracle::{Problem, measure};
-use toile_tests::cloth::{Alone, plain_fabric, ripple, sheet, swing};
-use toile_tests::tolerance;
+use toile_workspace::cloth::{Alone, plain_fabric, ripple, sheet, swing};
+use toile_workspace::tolerance;
 
 /// Half a second.
 const STEPS: u32 = STEP_HZ / 2;

@@ -2,11 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use toile_tests::exceptions;
-use toile_tests::imports::CrateFiles;
-use toile_tests::items::{self, ItemKind};
-use toile_tests::scan;
-use toile_tests::tree::{self, CRATES};
+use toile_workspace::exceptions;
+use toile_workspace::imports::CrateFiles;
+use toile_workspace::items::{self, ItemKind};
+use toile_workspace::scan;
+use toile_workspace::tree::{self, CRATES};
 
 /// Names that each module of a crate may have: a reader of `contact::Settings` knows what it is.
 const CONVENTIONAL: [&str; 2] = ["Error", "Settings"];

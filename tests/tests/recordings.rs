@@ -17,7 +17,7 @@ use toile_engine::world::World;
 use toile_sensors::filter::JointFilter;
 use toile_sensors::sample::sample;
 use toile_sensors::source::{OpenOptions, open};
-use toile_tests::{dressed, recordings};
+use toile_workspace::{dressed, recordings};
 
 /// A recording, what is worn in it, and the most strain that the 99th percentile of the edges may have, averaged over
 /// the steps: a jump flings a dress about, and the T-shirt is tight at the armpits.

@@ -2,7 +2,7 @@
 
 use toile_assets::scene_file::{SceneFile, SceneSource, schema};
 use toile_bake::bake;
-use toile_tests::tree;
+use toile_workspace::tree;
 
 fn page() -> String {
     tree::read(&tree::root().join("docs/scene.md"))
@@ -32,7 +32,7 @@ fn every_scene_of_the_page_is_one() {
 
 #[test]
 fn published_outfits_are_scenes_as_they_are() {
-    let Some(data) = toile_tests::recordings::folder() else { return };
+    let Some(data) = toile_workspace::recordings::folder() else { return };
     let outfits = data.join("garments/makehuman");
     for (file, vertices) in
         [("female_elegantsuit01", 2_205), ("female_sportsuit01", 1_797), ("male_casualsuit04", 1_696)]

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use toile_tests::exceptions;
-use toile_tests::items::{self, Item, ItemKind};
-use toile_tests::scan;
-use toile_tests::tree::{self, CRATES};
+use toile_workspace::exceptions;
+use toile_workspace::items::{self, Item, ItemKind};
+use toile_workspace::scan;
+use toile_workspace::tree::{self, CRATES};
 
 /// Files that may hold unsafe code, each with its reason.
 const UNSAFE_FILES: [(&str, &str); 47] = [

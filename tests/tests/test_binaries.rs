@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use toile_tests::tree::{self, CRATES};
+use toile_workspace::tree::{self, CRATES};
 
 /// Names of the test binaries of a manifest, and whether a comment above each says why it is one.
 fn binaries(manifest: &str) -> Vec<(String, bool)> {

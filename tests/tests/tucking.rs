@@ -5,7 +5,7 @@ use toile_engine::cloth::contact::garments::tuck_in;
 use toile_engine::surface::SurfaceMesh;
 use toile_engine::world::World;
 use toile_fitting::crossings::CrossingTest;
-use toile_tests::dressed;
+use toile_workspace::dressed;
 
 /// Edges and faces that may pass through each other, of some 20,000 edges: about a hundred and forty do, most of them at the
 /// waistband's edge, over which the shirt hangs. Contact knows no edges.

@@ -13,8 +13,8 @@ use toile_engine::cloth::{Cloth, Settings, Step, step::measure};
 use toile_engine::colliders::Colliders;
 use toile_engine::world::World;
 use toile_sensors::sample::sample;
-use toile_tests::cloth::{plain_fabric, sheet};
-use toile_tests::dressed;
+use toile_workspace::cloth::{plain_fabric, sheet};
+use toile_workspace::dressed;
 
 /// Gravity of the default settings (m/s2).
 const G: f32 = 9.81;

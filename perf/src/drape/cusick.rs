@@ -7,9 +7,9 @@
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 
-use delaunator::{Point, triangulate};
 use glam::{DVec2, Vec3};
 use serde::Serialize;
+use toile_assets::delaunay::delaunay;
 use toile_bake::shape::NO_VERTEX;
 use toile_base::fabric::Fabric;
 use toile_engine::cloth::Quality;
@@ -166,17 +166,13 @@ fn faces(points: &[DVec2], cells: &HashMap<(i32, i32), u32>) -> Vec<[u32; 4]> {
             }
         }
     }
-    let flat: Vec<Point> = points.iter().map(|p| Point { x: p.x, y: p.y }).collect();
-    for t in triangulate(&flat).triangles.chunks_exact(3) {
-        let [a, b, c] = [t[0] as u32, t[1] as u32, t[2] as u32];
+    for [a, b, c] in delaunay(points) {
         let mut sorted = [a, b, c];
         sorted.sort_unstable();
         let [pa, pb, pc] = [a, b, c].map(|i| points[i as usize]);
-        let turn = (pb - pa).perp_dot(pc - pa);
-        if turn.abs() < 1e-9 || of_quad.contains(&sorted) {
-            continue;
+        if (pb - pa).perp_dot(pc - pa) > 1e-9 && !of_quad.contains(&sorted) {
+            quads.push([a, c, b, NO_VERTEX]);
         }
-        quads.push(if turn < 0.0 { [a, b, c, NO_VERTEX] } else { [a, c, b, NO_VERTEX] });
     }
     quads
 }

@@ -4,8 +4,8 @@
 //! wherever the case wants it. A clamp is two fixed rows: one where the clamp begins and one behind it, which holds the
 //! angle.
 
-use delaunator::{Point, triangulate};
 use glam::{DVec2, DVec3};
+use toile_assets::delaunay::delaunay;
 use toile_bake::Shape;
 use toile_bake::shape::Face;
 use toile_bake::shape::NO_VERTEX;
@@ -166,7 +166,7 @@ impl Strip {
 
     fn faces(&self, points: &[DVec2]) -> Vec<Face> {
         if self.style.strewn() {
-            return delaunay(points);
+            return triangles(points);
         }
         let across = self.columns as u32 + 1;
         let [first, last] = self.span();
@@ -197,7 +197,7 @@ const RELAX: usize = 6;
 /// Moves every point but the first `held` to the middle of those it is joined to.
 fn relax(points: &mut [DVec2], held: usize) {
     let mut sums = vec![(DVec2::ZERO, 0u32); points.len()];
-    for [a, b, c, _] in delaunay(points) {
+    for [a, b, c, _] in triangles(points) {
         for (p, q) in [(a, b), (b, c), (c, a)] {
             // Each inner edge twice, once from each side.
             for (v, from) in [(p, q), (q, p)] {
@@ -215,20 +215,12 @@ fn relax(points: &mut [DVec2], held: usize) {
 const CANDIDATES: usize = 60;
 
 /// Delaunay triangles, counter-clockwise seen from the front of the cut.
-fn delaunay(points: &[DVec2]) -> Vec<Face> {
-    let flat: Vec<Point> = points.iter().map(|p| Point { x: p.y, y: -p.x }).collect();
-    let turn = |t: &[usize]| {
-        let [a, b, c] = [t[0], t[1], t[2]].map(|i| DVec2::new(flat[i].x, flat[i].y));
+fn triangles(points: &[DVec2]) -> Vec<Face> {
+    let area = |[a, b, c]: [u32; 3]| {
+        let [a, b, c] = [a, b, c].map(|v| points[v as usize]);
         (b - a).perp_dot(c - a)
     };
-    let all = triangulate(&flat).triangles;
-    let sound = all.chunks_exact(3).filter(|t| turn(t).abs() > 1e-12);
-    sound
-        .map(|t| {
-            let [a, b, c] = [t[0] as u32, t[1] as u32, t[2] as u32];
-            if turn(t) > 0.0 { [a, b, c, NO_VERTEX] } else { [a, c, b, NO_VERTEX] }
-        })
-        .collect()
+    delaunay(points).into_iter().filter(|t| area(*t) > 1e-12).map(|[a, b, c]| [a, b, c, NO_VERTEX]).collect()
 }
 
 /// A fabric made for a case.

@@ -3,6 +3,8 @@
 //! One source serves all platforms. A program prints the hashes where there is a standard output; WebAssembly exports them.
 //! The skirt is baked on the platform itself. The dress comes from a file, in the byte form of a baked garment.
 
+#[path = "../../../assets/src/delaunay.rs"]
+mod delaunay;
 pub mod dress_recording;
 #[path = "../../../assets/src/scene/skirt/mod.rs"]
 pub mod skirt;

@@ -6,10 +6,10 @@
 
 use std::f64::consts::TAU;
 
-use delaunator::{Point, triangulate};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::surface::{HEIGHT, RADIUS, hem, point, push};
+use crate::delaunay::delaunay;
 use toile_bake::Shape;
 use toile_bake::shape::NO_VERTEX;
 use toile_base::numeric::random::SplitMix64;
@@ -122,13 +122,14 @@ fn triangles(places: &[ConePlace], n: usize) -> Vec<[u32; 3]> {
     let shrink = RADIUS[1] / slant();
     let unrolled = |[u, angle]: ConePlace, turn: f64| {
         let (r, angle) = ((RADIUS[0] + RADIUS[1] * u) / shrink, (angle + TAU * turn) * shrink);
-        Point { x: r * angle.cos(), y: r * angle.sin() }
+        r * DVec2::from_angle(angle)
     };
-    let points: Vec<Point> =
+    let points: Vec<DVec2> =
         [-1.0, 0.0, 1.0].iter().flat_map(|&turn| places.iter().map(move |&place| unrolled(place, turn))).collect();
     let (count, hem) = (places.len(), hem(n));
     let mut found = Vec::new();
-    for corners in triangulate(&points).triangles.chunks_exact(3) {
+    for corners in delaunay(&points) {
+        let corners = corners.map(|v| v as usize);
         // What lies between ring and apex, or beyond the hem, is filled with triangles of one ring alone.
         let outside = corners.iter().all(|v| v % count < n) || corners.iter().all(|v| hem.contains(&(v % count)));
         let first = corners.iter().map(|v| v / count).min().unwrap_or(0);

@@ -16,7 +16,7 @@ const SCENE: FileKind = FileKind { name: "a scene file", max_bytes: 1 << 20, cur
 #[derive(Debug)]
 pub(super) struct FabricScene {
     path: PathBuf,
-    table: toml::Table,
+    text: String,
     /// Steps of the engine a frame that was captured.
     steps: usize,
     start: [f64; VALUES],
@@ -73,7 +73,7 @@ impl FabricScene {
             })?;
         }
         let vertices = garment.mesh.start.len();
-        Ok(Self { path: path.to_path_buf(), table, steps, start, vertices })
+        Ok(Self { path: path.to_path_buf(), text, steps, start, vertices })
     }
 
     /// The values that the scene has.
@@ -96,15 +96,10 @@ impl FabricScene {
 
     /// The motion with some values (m).
     pub fn simulate(&self, values: &[f64; VALUES], frames: usize) -> Result<Vec<Vec<Vec3>>, AppError> {
-        let mut table = self.table.clone();
-        let garment = table.get_mut("garment").and_then(first_mut).and_then(toml::Value::as_table_mut);
-        let fabric = garment.and_then(|g| g.get_mut("fabric")).and_then(toml::Value::as_table_mut);
-        if let Some(fabric) = fabric {
-            for (key, of) in Self::KEYS {
-                fabric.insert(key.to_owned(), toml::Value::Float(values[of]));
-            }
+        let mut scene = parse(&self.path, &self.text)?;
+        for (key, of) in Self::KEYS {
+            scene.garments[0].fabric.set_figure(key, values[of] as f32);
         }
-        let scene = parse(&self.path, &table.to_string())?;
         let mut runner = Runner::new(scene).map_err(AppError::input)?;
         let mut all = Vec::with_capacity(frames);
         for _ in 0..frames {
@@ -124,8 +119,4 @@ fn parse(path: &Path, text: &str) -> Result<SceneFile, AppError> {
 /// The only or the first table of a key that may stand several times.
 fn first(value: &toml::Value) -> Option<&toml::Value> {
     value.as_array().map_or(Some(value), |all| all.first())
-}
-
-fn first_mut(value: &mut toml::Value) -> Option<&mut toml::Value> {
-    if value.is_array() { value.as_array_mut().and_then(|all| all.first_mut()) } else { Some(value) }
 }
