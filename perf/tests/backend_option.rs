@@ -37,7 +37,7 @@ fn without_a_device_the_benchmark_goes_on_by_the_processor_and_says_why() {
 
 #[test]
 fn garments_that_keep_out_of_each_other_are_the_processors_whatever_was_asked_for() {
-    let run = |more: &str| toile(&format!("bench skirt --garment tee --runs 1 --steps 2 --json {more}"));
+    let run = |more: &str| toile(&format!("bench skirt --garment scarf --runs 1 --steps 2 --json {more}"));
     let (plain, silent) = run("--backend cpu");
     assert_eq!((plain["stepped_by"]["fallen"].is_null(), silent.as_str()), (true, ""));
     for backend in ["gpu", "auto"] {

@@ -1,8 +1,10 @@
 //! How closely the collision body follows the skin of people of many sizes.
 
+use std::sync::OnceLock;
+
 use toile_assets::body::{Ansur, Wanted};
-use toile_assets::people;
-use toile_assets::rig::{MEAN_GOAL_MM, P95_GOAL_MM, Zone};
+use toile_assets::rig::{MEAN_GOAL_MM, P95_GOAL_MM, RigReport, Zone};
+use toile_assets::{people, rig};
 use toile_base::body::{Body, Sex};
 
 /// The 5th, 50th and 95th percentile of ANSUR II (m): stature, neck, chest, waist at the navel, buttocks, crotch height,
@@ -26,6 +28,13 @@ const PERCENTILES: [(Sex, [[f32; 8]; 3]); 2] = [
     ),
 ];
 
+/// How closely the collision body follows each of them: judged once for all tests.
+fn reports() -> &'static [(String, RigReport)] {
+    static REPORTS: OnceLock<Vec<(String, RigReport)>> = OnceLock::new();
+    let report = |(name, body): (String, Body)| (name, rig::report(&rig::fit(&body), &body));
+    REPORTS.get_or_init(|| people().into_iter().map(report).collect())
+}
+
 fn people() -> Vec<(String, Body)> {
     let sized = people::sizes().into_iter().map(|p| (p.name.clone(), p.body().unwrap()));
     let surveyed = PERCENTILES.into_iter().flat_map(|(sex, rows)| rows.map(|row| (sex, row)));
@@ -42,8 +51,7 @@ fn people() -> Vec<(String, Body)> {
 
 #[test]
 fn trunk_and_thighs_keep_to_the_goal() {
-    for (name, body) in people() {
-        let report = toile_assets::rig::report(&toile_assets::rig::fit(&body), &body);
+    for (name, report) in reports() {
         let missed: Vec<_> = report.missed().into_iter().map(|zone| (zone, report.of(zone))).collect();
         assert!(missed.is_empty(), "{name}: {missed:?}");
         assert!(report.trunk.meets(), "{name}: trunk {:?}", report.trunk);
@@ -54,9 +62,8 @@ fn trunk_and_thighs_keep_to_the_goal() {
 /// feet are flatter than any capsule; a fold of the skin (between the legs, under the arm) is as deep as it is.
 #[test]
 fn every_sample_of_the_skin_is_within_bounds() {
-    for (name, body) in people() {
-        let report = toile_assets::rig::report(&toile_assets::rig::fit(&body), &body);
-        for (zone, r) in Zone::ALL.into_iter().zip(report.zones) {
+    for (name, report) in reports() {
+        for (zone, r) in Zone::ALL.into_iter().zip(&report.zones) {
             // Mean, 95th percentile, deepest skin above the union, union above the skin (mm).
             let bounds = match zone {
                 Zone::Hand => [15.0, 33.0, 42.0, 45.0],
@@ -79,7 +86,7 @@ fn strangers_keep_to_the_goal() {
     let mut missed = Vec::new();
     for person in people::strangers(20, 1) {
         let body = person.body().unwrap();
-        let report = toile_assets::rig::report(&toile_assets::rig::fit(&body), &body);
+        let report = rig::report(&rig::fit(&body), &body);
         for zone in Zone::HELD {
             let r = report.of(zone);
             assert!(r.mean_mm <= MEAN_GOAL_MM && r.p95_mm <= P95_GOAL_MM + 1.5, "{person:?}: {} {r:?}", zone.name());

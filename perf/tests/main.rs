@@ -8,6 +8,8 @@ mod ansur;
 mod backend;
 mod backend_option;
 mod bench;
+#[path = "../../tests/src/coarse.rs"]
+mod coarse;
 mod colliders;
 #[path = "../../tests/src/program.rs"]
 mod common;

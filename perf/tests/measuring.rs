@@ -29,31 +29,40 @@ fn surveys(folder: &Path) -> Vec<Survey> {
 const LIMITS: [(&str, f64); 5] =
     [("stature", 9.0), ("shoulder_breadth", 16.0), ("chest_girth", 35.0), ("waist_girth", 35.0), ("hip_girth", 30.0)];
 
-#[test]
-fn people_before_both_cameras_are_found_and_measured() {
+/// That people before a camera are found and measured.
+fn are_measured(sensor: Sensor) {
     let Some(folder) = folder() else { return };
     let surveys = surveys(&folder);
     assert_eq!(surveys.len(), 2);
-    for sensor in [Sensor::Kinect, Sensor::Azure] {
-        let options = MeasuringOptions {
-            family: Family::Survey,
-            people: 2,
-            frames: 3,
-            seed: 5,
-            sensor,
-            turn: false,
-            surfaces: false,
-        };
-        let found: MeasuringStudy = study(&surveys, &options, &mut |_| ()).expect("a study");
-        assert_eq!((found.people, found.lost), (4, 0));
-        assert_eq!(found.sex_right, 1.0, "{}", found.sensor);
-        for (name, limit) in LIMITS {
-            let row = found.fit.iter().find(|a| a.measure == name).expect("a measure that is taken");
-            assert_eq!(row.taken, 4);
-            assert!(row.mean_absolute_mm < limit, "{} {name}: {row:?}", found.sensor);
-            assert!(row.sigma_mm > 0.0 && row.within_two_sigma > 0.4, "{} {name}: {row:?}", found.sensor);
-        }
+    let options = MeasuringOptions {
+        family: Family::Survey,
+        people: 2,
+        frames: 3,
+        seed: 5,
+        sensor,
+        turn: false,
+        surfaces: false,
+    };
+    let found: MeasuringStudy = study(&surveys, &options, &mut |_| ()).expect("a study");
+    assert_eq!((found.people, found.lost), (4, 0));
+    assert_eq!(found.sex_right, 1.0, "{}", found.sensor);
+    for (name, limit) in LIMITS {
+        let row = found.fit.iter().find(|a| a.measure == name).expect("a measure that is taken");
+        assert_eq!(row.taken, 4);
+        assert!(row.mean_absolute_mm < limit, "{} {name}: {row:?}", found.sensor);
+        assert!(row.sigma_mm > 0.0 && row.within_two_sigma > 0.4, "{} {name}: {row:?}", found.sensor);
     }
+}
+
+#[test]
+fn people_before_a_kinect_are_found_and_measured() {
+    are_measured(Sensor::Kinect);
+}
+
+#[test]
+#[ignore = "the second camera takes as long as the first; .ci/long runs it"]
+fn people_before_an_azure_kinect_are_found_and_measured() {
+    are_measured(Sensor::Azure);
 }
 
 /// The folder of a family of bodies that shares nothing with the parametric body.

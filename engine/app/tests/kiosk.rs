@@ -3,36 +3,21 @@
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
 use std::os::unix::net::UnixDatagram;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::atomic::AtomicBool;
 use std::sync::atomic::Ordering::Relaxed;
-use std::sync::{Arc, OnceLock, PoisonError, RwLock, RwLockReadGuard};
+use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use crate::common::Scratch;
 use serde_json::Value;
 
-/// Visits in quick succession, a health line each fifth of a second; the rest of `[sensor]` comes before it.
-const QUICK: &str =
-    "pause_s = 4.0\n[session]\nmeasure_s = 0.5\nstep_out_s = 0.5\nwipe_s = 0.5\n[health]\nevery_s = 0.2\n";
-
-/// How long the shopper of [`long_visits`] stays (s): some machines take more than the ten of the embedded session to dress one.
-const STAY_S: &str = "30";
-
-/// The same, with a shopper who stays long enough to be dressed on any machine. The session is made once.
-fn long_visits() -> String {
-    static SESSION: OnceLock<PathBuf> = OnceLock::new();
-    let session = SESSION.get_or_init(|| {
-        let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("long-visit.mcap");
-        let mut record = Command::new(crate::PROGRAM);
-        record.args(["record", "--quiet", "--seconds", STAY_S, "--out"]).arg(&file);
-        assert!(record.status().expect("the built program starts").success());
-        file
-    });
-    format!("[sensor]\nsession = {:?}\n{QUICK}", session.display().to_string())
-}
+/// Short visits of the embedded shopper, who comes after two seconds and stays for ten, in a garment that is soon draped; a health line
+/// each fifth of a second.
+const VISITS: &str = "[wear]\ngarments = [\"scarf\"]\nquality = \"draft\"\n[shopper]\nsex = \"female\"\n[sensor]\npause_s = 2.0\n\
+     [session]\nmeasure_s = 0.5\nstep_out_s = 0.5\nwipe_s = 0.5\n[health]\nevery_s = 0.2\n";
 
 /// Longest that a shopper is waited for: on a machine that compiles something beside it, the tailor takes a visit or two.
 const LONGEST: Duration = Duration::from_secs(120);
@@ -165,7 +150,7 @@ impl Manager {
 fn a_visit_is_reported_and_leaves_no_files() {
     let _beside = beside_others();
     let scratch = Scratch::new("kiosk");
-    fs::write(scratch.path().join("kiosk.toml"), long_visits()).unwrap();
+    fs::write(scratch.path().join("kiosk.toml"), VISITS).unwrap();
     let manager = scratch.path().join("manager");
     let reading = Manager::at(&manager);
     let mut running = Running::start(&scratch, &manager, &["--config", "kiosk.toml"]);
@@ -237,13 +222,15 @@ fn joints_that_arrive_over_the_loopback_are_a_shopper() {
     let scratch = Scratch::new("kiosk-vmc");
     // A port that was free a moment ago.
     let port = std::net::UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
-    let config = format!("[sensor]\nsource = \"vmc\"\nvmc = \"127.0.0.1:{port}\"\n[health]\nevery_s = 0.0\n");
+    let config = format!(
+        "[wear]\ngarments = [\"scarf\"]\n[sensor]\nsource = \"vmc\"\nvmc = \"127.0.0.1:{port}\"\n[health]\nevery_s = 0.0\n"
+    );
     fs::write(scratch.path().join("kiosk.toml"), config).unwrap();
-    let output = scratch.toile(&["kiosk", "--headless", "--json", "--seconds", "2", "--config", "kiosk.toml"]);
+    let output = scratch.toile(&["kiosk", "--headless", "--json", "--seconds", "1", "--config", "kiosk.toml"]);
     let found: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(0));
     assert_eq!(found["states"], serde_json::json!(["attract"]), "without a sender no shopper is there");
-    assert!(found["steps"].as_u64().unwrap() + found["steps_dropped"].as_u64().unwrap() > 200);
+    assert!(found["steps"].as_u64().unwrap() + found["steps_dropped"].as_u64().unwrap() > 100);
     assert!(output.stderr.is_empty(), "health lines are off");
 }
 
@@ -280,7 +267,9 @@ fn what_cannot_be_used_is_refused_in_one_sentence() {
 fn a_second_kiosk_says_that_one_runs_and_a_named_one_runs_beside_it() {
     let _beside = beside_others();
     let scratch = Scratch::new("kiosk-second");
-    let mut first = Running::start(&scratch, Path::new("nowhere"), &[]);
+    fs::write(scratch.path().join("kiosk.toml"), VISITS).unwrap();
+    let line = ["kiosk", "--headless", "--quiet", "--seconds", "1", "--config", "kiosk.toml"];
+    let mut first = Running::start(&scratch, Path::new("nowhere"), &["--config", "kiosk.toml"]);
     let begun = Instant::now();
     while !scratch.path().join(LOCK).exists() {
         assert!(begun.elapsed() < LONGEST && first.0.try_wait().unwrap().is_none());
@@ -288,20 +277,20 @@ fn a_second_kiosk_says_that_one_runs_and_a_named_one_runs_beside_it() {
     }
     // The file is there a moment before it is locked.
     std::thread::sleep(Duration::from_millis(200));
-    let second = scratch.toile(&["kiosk", "--headless", "--seconds", "1"]);
+    let second = scratch.toile(&line);
     let message = String::from_utf8(second.stderr).unwrap();
     assert_eq!(second.status.code(), Some(5), "{message}");
     assert!(
         message.contains("already runs") && message.contains("--instance") && message.lines().count() == 1,
         "{message}"
     );
-    let named = scratch.toile(&["kiosk", "--headless", "--quiet", "--seconds", "1", "--instance", "left"]);
+    let named = scratch.toile(&[&line[..], &["--instance", "left"]].concat());
     assert_eq!(named.status.code(), Some(0), "{}", String::from_utf8_lossy(&named.stderr));
     assert!(scratch.path().join("toile-kiosk-left.lock").exists());
     // Killed: the system releases the lock.
     first.0.kill().unwrap();
     first.0.wait().unwrap();
-    let next = scratch.toile(&["kiosk", "--headless", "--quiet", "--seconds", "1"]);
+    let next = scratch.toile(&line);
     assert_eq!(next.status.code(), Some(0), "{}", String::from_utf8_lossy(&next.stderr));
 }
 
@@ -361,14 +350,14 @@ fn the_unit_starts_what_there_is_with_the_rights_that_it_needs() {
 fn a_crash_leaves_its_last_seconds_where_a_shop_asked_for_them_and_they_replay() {
     let _alone = MACHINE.write().unwrap_or_else(PoisonError::into_inner);
     let scratch = Scratch::new("kiosk-crash");
-    let run = |config: &str| {
+    let run = |config: &str, seconds: &str| {
         fs::write(scratch.path().join("kiosk.toml"), config).unwrap();
-        let output = scratch.toile(&["kiosk", "--headless", "--config", "kiosk.toml", "--crash-after", "36"]);
+        let output = scratch.toile(&["kiosk", "--headless", "--config", "kiosk.toml", "--crash-after", seconds]);
         assert_eq!(output.status.code(), Some(70));
         String::from_utf8(output.stderr).unwrap()
     };
-    let quick = long_visits();
-    let message = run(&format!("{quick}[crash]\nrecording = \"crash.tape\"\n"));
+    // The shopper comes after two seconds, stays for ten, and is forgotten a second later.
+    let message = run(&format!("{VISITS}[crash]\nrecording = \"crash.tape\"\n"), "14");
     assert!(message.contains("toile replay crash.tape"), "{message}");
     for workers in ["2", "1"] {
         let output = scratch.toile(&["replay", "crash.tape", "--workers", workers, "--json"]);
@@ -380,7 +369,7 @@ fn a_crash_leaves_its_last_seconds_where_a_shop_asked_for_them_and_they_replay()
     let notes = toile_engine::frame_loop::recording::read(&bytes).unwrap().notes;
     assert!(notes.iter().any(|n| n.text.contains("\"still\":false")), "a shopper was there: {notes:?}");
     fs::remove_file(scratch.path().join("crash.tape")).unwrap();
-    let message = run(&quick);
+    let message = run(VISITS, "1");
     assert!(!message.contains("recorded"), "{message}");
     let mut left: Vec<_> = fs::read_dir(scratch.path()).unwrap().flatten().map(|e| e.file_name()).collect();
     left.sort();

@@ -2,6 +2,9 @@
 
 #![cfg(target_os = "linux")]
 
+#[path = "../../../tests/src/coarse.rs"]
+mod coarse;
+mod coarse_shop;
 mod large_catalogue;
 mod visitor;
 

@@ -118,7 +118,7 @@ impl ServiceManager for Diary {
 fn serve(diary: &Diary, display: Gate, meanwhile: impl FnOnce() + Send) {
     let (session, clock) = (Arc::new(session::open(None, None).unwrap()), RealClock::default());
     let pose = session::filtered(&session)[0];
-    let config = Config::parse("kiosk.toml", "").unwrap();
+    let config = Config::parse("kiosk.toml", "[wear]\ngarments = [\"scarf\"]\nquality = \"draft\"\n").unwrap();
     let stock = Stock::read(&config).unwrap();
     let setup = VisitorSetup::new(&config, &stock, clock.now_ns()).unwrap();
     let dressed = stock.first.on_mannequin(&pose).unwrap();
@@ -159,35 +159,37 @@ fn serve(diary: &Diary, display: Gate, meanwhile: impl FnOnce() + Send) {
     });
 }
 
-/// Whatever was fed in a second, which has ten feedings where the machine is quiet.
-fn fed_in_a_second(diary: &Diary) -> usize {
+/// Waits until it is fed twice, within a second: ten times where the machine is quiet.
+fn is_fed(diary: &Diary, when: &str) {
     let from = Instant::now();
-    thread::sleep(Duration::from_secs(1));
-    diary.fed(from, Instant::now())
+    while diary.fed(from, Instant::now()) < 2 {
+        assert!(from.elapsed() < Duration::from_secs(1), "it is fed {when}");
+        thread::sleep(Duration::from_millis(5));
+    }
 }
 
-fn starves_while(gate: &Gate, display: Gate) {
-    let diary = Diary(Mutex::default());
-    serve(&diary, display, || {
-        while !diary.is_ready() {
-            thread::sleep(Duration::from_millis(5));
-        }
-        assert!(fed_in_a_second(&diary) >= 2, "it is fed while all is well");
-        gate.store(true, Relaxed);
-        // What was counted before the gate was shut is fed once more.
-        thread::sleep(Duration::from_millis(300));
-        assert_eq!(fed_in_a_second(&diary), 0, "it is fed while a thread hangs");
-        gate.store(false, Relaxed);
-        thread::sleep(Duration::from_millis(300));
-        assert!(fed_in_a_second(&diary) >= 2, "it is fed again");
-    });
-    assert_eq!(diary.0.lock().unwrap().last().unwrap().1, ServiceStatus::Stopping);
+fn starves_while(gate: &Gate, diary: &Diary) {
+    is_fed(diary, "while all is well");
+    gate.store(true, Relaxed);
+    // What was counted before the gate was shut is fed once more.
+    thread::sleep(Duration::from_millis(300));
+    let from = Instant::now();
+    thread::sleep(Duration::from_millis(600));
+    let fed = diary.fed(from, Instant::now());
+    gate.store(false, Relaxed);
+    assert_eq!(fed, 0, "it is fed while a thread hangs");
+    is_fed(diary, "again");
 }
 
 #[test]
 fn the_watchdog_starves_where_a_turn_of_physics_or_of_render_hangs() {
-    // One after the other: the physics' gate is one for all scenes.
-    starves_while(physics_gate(), Gate::default());
-    let display = Gate::default();
-    starves_while(&display, display.clone());
+    let (diary, display) = (Diary(Mutex::default()), Gate::default());
+    serve(&diary, display.clone(), || {
+        while !diary.is_ready() {
+            thread::sleep(Duration::from_millis(5));
+        }
+        starves_while(physics_gate(), &diary);
+        starves_while(&display, &diary);
+    });
+    assert_eq!(diary.0.lock().unwrap().last().unwrap().1, ServiceStatus::Stopping);
 }

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeSet;
 
+use crate::first_second;
 use toile_assets::body::{En, Vocabulary};
-use toile_sdk::{Body, Recording, Sex, Shopper, measure_names};
+use toile_sdk::{Body, Sex, Shopper, measure_names};
 
 #[test]
 fn a_body_from_measures_has_those_measures() {
@@ -38,7 +39,7 @@ fn what_is_not_given_follows_what_is() {
 
 #[test]
 fn what_is_measured_says_how_sure_it_is_and_a_tape_makes_it_surer() {
-    let recording = Recording::embedded().unwrap();
+    let recording = first_second();
     let seen = recording.measure(&Shopper::default()).unwrap().measures();
     let waist = |all: &[toile_sdk::Measure]| *all.iter().find(|m| m.name == "waist_girth").unwrap();
     assert!(seen.iter().all(|m| m.mm > 200.0 && m.sigma_mm > 0.0 && !m.definition.is_empty()), "{seen:?}");

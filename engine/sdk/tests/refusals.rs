@@ -1,5 +1,6 @@
 //! Bad input of every call: an error of the right kind, in one sentence that names the cure.
 
+use crate::{coarse_tee, first_second};
 use toile_sdk::glam::{Affine3A, Vec3};
 use toile_sdk::{
     Body, DepthFrame, DressOptions, Error, ErrorKind, Garment, Intrinsics, Joint, Joints, Look, Motion, Quality,
@@ -63,17 +64,17 @@ fn recordings_without_a_person() {
     let empty = DepthFrame { depth_mm: vec![0; 640 * 480].into(), ..depth };
     let empty = Recording::from_frames("mine", Vec::new(), vec![empty]).unwrap();
     refused(empty.measure(&Shopper::default()), Input, &[]);
-    let embedded = Recording::embedded().unwrap();
+    let standing = first_second();
     let by = |name: &str, mm: f64| Shopper { by_tape_mm: vec![(name.to_owned(), mm)], ..Shopper::default() };
-    refused(embedded.measure(&by("chest", 92.0)), Input, &["chest", "centimetres"]);
-    refused(embedded.measure(&by("nose", 92.0)), Input, &["nose", "chest_girth"]);
-    refused(embedded.measure(&by("chest", f64::NAN)), Input, &["chest"]);
+    refused(standing.measure(&by("chest", 92.0)), Input, &["chest", "centimetres"]);
+    refused(standing.measure(&by("nose", 92.0)), Input, &["nose", "chest_girth"]);
+    refused(standing.measure(&by("chest", f64::NAN)), Input, &["chest"]);
 }
 
 #[test]
 fn dressing_that_cannot_be() {
     let body = Body::average(Sex::Female).unwrap();
-    let shirt = Garment::open("tee").unwrap();
+    let shirt = coarse_tee();
     refused(Scene::dress(&body, &vec![shirt.clone(); 40]), Input, &["40 garments", "leave some out"]);
     let with = |options: DressOptions| Scene::dress_with(&body, std::slice::from_ref(&shirt), &options);
     let motion = |motion: Motion| with(DressOptions { motion, ..DressOptions::default() });
@@ -96,7 +97,7 @@ fn dressing_that_cannot_be() {
 #[test]
 fn reading_what_is_not_there() {
     let body = Body::average(Sex::Female).unwrap();
-    let mut scene = Scene::dress(&body, &[Garment::open("tee").unwrap()]).unwrap();
+    let mut scene = Scene::dress(&body, &[coarse_tee()]).unwrap();
     refused(scene.positions(1), Usage, &["no garment 1", "has 1"]);
     refused(scene.faces(7), Usage, &["no garment 7"]);
     refused(scene.stats(1), Usage, &["no garment 1"]);
@@ -108,7 +109,7 @@ fn reading_what_is_not_there() {
     refused(scene.pictures(&[View::Front], [100, 100_000], Look::Fabric), Usage, &["100000"]);
     refused(scene.step_to(&Joints::absent(0)), Input, &["hips"]);
     let options = TryOnOptions { picture: Some([1, 1]), ..TryOnOptions::default() };
-    refused(try_on(&Recording::embedded().unwrap(), &[], &options), Usage, &["1 x 1"]);
+    refused(try_on(&first_second(), &[], &options), Usage, &["1 x 1"]);
     let picture = &scene.pictures(&[View::Front], [16, 16], Look::FitMap).unwrap()[0];
     refused(
         picture.write_png("there-is-no-such-folder/a.png"),
@@ -177,7 +178,7 @@ fn a_mesh_without_sizes_is_not_guessed_at() {
 
 #[test]
 fn what_follows_a_track_is_not_moved_by_hand() {
-    let recording = Recording::embedded().unwrap();
+    let recording = first_second();
     let measured = recording.measure(&Shopper::default()).unwrap();
     let track = recording.track(&measured).unwrap();
     let (first, body) = (track[0], measured.body().unwrap());

@@ -1,5 +1,6 @@
 //! This crate gives the same bits as the assembly below it.
 
+use crate::{coarse_tee, first_second};
 use toile_assets::scene_file::{SceneFile, SceneSource};
 use toile_assets::sizes::Girth;
 use toile_engine::cloth::Settings;
@@ -11,13 +12,17 @@ use toile_fitting::dress::{garment_source, session};
 use toile_fitting::scene::Runner;
 use toile_sdk::glam::Vec3;
 use toile_sdk::{Body, DressOptions, Garment, Recording, Scene, Sex, TryOnOptions, recommend, try_on};
+use toile_sensors::source::Session;
 
 /// As `toile try-on` goes about it.
 #[test]
 fn a_try_on_is_the_programs_own() {
-    let session = session::open(None, None).unwrap();
+    let recording = first_second();
+    let (joints, depth) = (recording.joints().to_vec(), recording.depth().to_vec());
+    let session = Session { depth, ..session::of_joints(joints) };
     let measured = measured::measure(&session, ShopperFacts::default()).unwrap();
-    let source = GarmentSource::find("tee").unwrap();
+    let garments = [coarse_tee()];
+    let source = GarmentSource::find(garments[0].name()).unwrap();
     let sex = measured.sex(garment_source::population([&source]).unwrap());
     let (body, _) = measured::build_body(sex, &measured.best, Some(sex).into()).unwrap();
     let worn = source.put_on(None, &measured.best, &body, &[]).unwrap();
@@ -31,8 +36,7 @@ fn a_try_on_is_the_programs_own() {
         world.step(&player.step());
     }
 
-    let garments = [Garment::open("tee").unwrap()];
-    let mut tried = try_on(&Recording::embedded().unwrap(), &garments, &TryOnOptions::default()).unwrap();
+    let mut tried = try_on(&recording, &garments, &TryOnOptions::default()).unwrap();
     assert_eq!((tried.scene.steps(), tried.scene.state_hash()), (world.tick(), world.state_hash()));
     let own = tried.fits[0].as_ref().unwrap();
     assert_eq!((&own.size, own.probability, &own.verdict), (&fit.size, fit.probability, &fit.verdict));
@@ -53,7 +57,7 @@ fn a_try_on_is_the_programs_own() {
 #[test]
 fn one_worker_gives_the_bits_of_two() {
     let body = Body::average(Sex::Female).unwrap();
-    let garments = [Garment::open("strap-dress").unwrap()];
+    let garments = [coarse_tee()];
     let hash = |workers| {
         let mut scene =
             Scene::dress_with(&body, &garments, &DressOptions { workers, ..DressOptions::default() }).unwrap();
@@ -120,8 +124,8 @@ fn what_a_thread_makes_another_may_have() {
     send::<toile_sdk::Measured>();
     send::<toile_sdk::Picture>();
     send::<toile_sdk::Error>();
-    let body = Body::average(Sex::Male).unwrap();
-    let made = std::thread::spawn(move || Scene::dress(&body, &[Garment::open("tee").unwrap()]).unwrap());
+    let body = Body::average(Sex::Female).unwrap();
+    let made = std::thread::spawn(move || Scene::dress(&body, &[coarse_tee()]).unwrap());
     let mut scene = made.join().unwrap();
     scene.step();
     assert!(scene.positions(0).unwrap().iter().all(|p: &Vec3| p.is_finite()));

@@ -16,13 +16,33 @@ fn folder(name: &str, text: &str) -> Scratch {
     scratch
 }
 
+/// The same study of as many women of a table, which it need not draw: most of the time goes into drawing.
+fn listed() -> String {
+    let (garments, _) = STUDY.split_once("[population]").unwrap();
+    format!("{garments}[population]\nfrom = \"table\"\nfile = \"people.csv\"\nunit = \"mm\"\nsex = \"female\"\n")
+}
+
+/// A folder with that study and its table.
+fn listed_folder(name: &str) -> Scratch {
+    let scratch = folder(name, &listed());
+    let mut people = "height,bust,waist,hips\n".to_owned();
+    for i in 0..1_200 {
+        let part = |of: i32, step: i32| 0.1 * f64::from(i * step % (10 * of));
+        let (stature, bust) = (1_520.0 + part(280, 37), 800.0 + part(330, 53));
+        let (waist, hips) = (bust - 190.0 + part(110, 29), bust + 20.0 + part(90, 17));
+        people += &format!("{stature:.1},{bust:.1},{waist:.1},{hips:.1}\n");
+    }
+    fs::write(scratch.path().join("people.csv"), people).unwrap();
+    scratch
+}
+
 fn rows(scratch: &Scratch, out: &str) -> Vec<u8> {
     fs::read(scratch.path().join(out).join("rows.parquet")).unwrap()
 }
 
 #[test]
 fn the_rows_are_the_same_bytes_however_they_come_by() {
-    let scratch = folder("study-bytes", STUDY);
+    let scratch = listed_folder("study-bytes");
     let report = object(&scratch.toile(&["study.toml", "--out", "one", "--workers", "1", "--no-pictures", "--json"]));
     assert_eq!((report["schema"].as_str(), report["run"]["kept"].as_u64()), (Some("toile.study/1"), Some(0)));
     let one = rows(&scratch, "one");
@@ -57,7 +77,8 @@ fn the_rows_are_the_same_bytes_however_they_come_by() {
 
 #[test]
 fn a_run_that_is_killed_goes_on_and_loses_nothing() {
-    let scratch = folder("study-killed", &STUDY.replace("1200", "2500"));
+    // Two chunks: the second is under way when the first is there.
+    let scratch = folder("study-killed", &STUDY.replace("1200", "700"));
     let mut command = Command::new(crate::PROGRAM);
     command.args(["study.toml", "--out", "killed", "--workers", "1", "--no-pictures", "--quiet"]);
     let mut run = command.current_dir(scratch.path()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
@@ -71,7 +92,7 @@ fn a_run_that_is_killed_goes_on_and_loses_nothing() {
             .count()
     };
     let begun = Instant::now();
-    while there(&chunks) < 2 && begun.elapsed() < Duration::from_secs(120) {
+    while there(&chunks) < 1 && begun.elapsed() < Duration::from_secs(120) {
         std::thread::sleep(Duration::from_millis(2));
     }
     run.kill().unwrap();
@@ -177,7 +198,7 @@ fn bad_studies_are_refused_in_a_sentence() {
 
 #[test]
 fn a_missing_part_another_study_and_a_folder_in_use_are_named() {
-    let scratch = folder("study-folder", STUDY);
+    let scratch = listed_folder("study-folder");
     let part = |part: &str| scratch.toile(&["study.toml", "--out", "out", "--shard", part, "--quiet"]);
     assert_eq!(part("1/3").status.code(), Some(0));
     assert_eq!(part("3/3").status.code(), Some(0));
@@ -185,11 +206,11 @@ fn a_missing_part_another_study_and_a_folder_in_use_are_named() {
     assert!(said.contains("shard 2/3 is missing") && said.contains("--shard 2/3"), "{said}");
     assert!(refusal(&scratch.toile(&["report", "out"]), 4).contains("toile study merge out"));
 
-    fs::write(scratch.path().join("study.toml"), STUDY.replace("seed = 28", "seed = 29")).unwrap();
+    fs::write(scratch.path().join("study.toml"), listed().replace("seed = 28", "seed = 29")).unwrap();
     let said = refusal(&scratch.toile(&["study.toml", "--out", "out"]), 4);
     assert!(said.contains("another study") && said.contains("--out"), "{said}");
 
-    fs::write(scratch.path().join("study.toml"), STUDY).unwrap();
+    fs::write(scratch.path().join("study.toml"), listed()).unwrap();
     let lock = fs::File::open(scratch.path().join("out/lock")).unwrap();
     lock.lock().unwrap();
     let said = sentence(&scratch.toile(&["study.toml", "--out", "out"]));
@@ -202,7 +223,7 @@ fn a_missing_part_another_study_and_a_folder_in_use_are_named() {
 #[test]
 #[cfg(target_os = "linux")]
 fn a_full_disk_is_a_sentence_and_what_was_done_is_kept() {
-    let scratch = folder("study-full", STUDY);
+    let scratch = listed_folder("study-full");
     // Files may not grow beyond some kilobytes, which is refused where a full disk would be.
     let line =
         format!("trap '' XFSZ; ulimit -f 64; exec {} study.toml --out out --no-pictures --quiet", crate::PROGRAM);
@@ -224,12 +245,14 @@ fn a_full_disk_is_a_sentence_and_what_was_done_is_kept() {
 
 #[test]
 fn try_ons_are_simulated_the_same_in_parts() {
-    let physics = "[physics]\nmode = \"drape\"\npeople = 2\nsizes = \"recommended\"\nquality = \"shop\"\n";
+    let physics = "[physics]\nmode = \"drape\"\npeople = 1\nsizes = \"recommended\"\nquality = \"shop\"\n";
     let text = STUDY.replace("1200", "9").replace("[[garment]]\nname = \"pencil-skirt\"\n", "");
+    // In all sizes, so that the recommended one is tried.
+    let text = text.replace("sizes = [\"36\", \"38\", \"40\", \"42\"]\n", "");
     let scratch = folder("study-physics", &format!("{text}{physics}"));
     let found = object(&scratch.toile(&["study.toml", "--out", "one", "--no-pictures", "--json"]));
     let draped = &found["summary"]["garments"][0]["draped"];
-    assert!(found["run"]["draped"].as_u64() <= Some(2) && found["run"]["draped"].as_u64() > Some(0), "{found}");
+    assert_eq!(found["run"]["draped"], 1, "{found}");
     // The goal is 0.06 (docs/study.md); beyond this bound the cloth would be torn.
     assert!(draped["worst_strain_p99"].as_f64().unwrap() < 0.2, "{draped}");
     for part in ["1/2", "2/2"] {

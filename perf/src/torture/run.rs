@@ -48,6 +48,10 @@ impl Default for TortureOptions {
 /// Where a piece cannot be baked or has no equilibrium, which would be an error of the bake or of the oracle; where the oracle
 /// cannot step the case that is asked for.
 pub fn run(options: &TortureOptions, progress: &mut dyn FnMut(&CaseSummary)) -> Result<TortureReport, TortureError> {
+    let asked = |c: &&TortureCase| options.case.as_ref().map_or(c.exact || !options.exact, |name| c.name == name);
+    if let Some(case) = CASES.iter().filter(asked).find(|case| options.exact && !case.exact) {
+        return Err(TortureError::NotExact(case.name));
+    }
     let pieces = Pieces::new(options.quality, Backends::open(options.backend), options.exact)?;
     let off = |piece: &Piece| piece.off() * 1e3;
     let undisturbed_mm = [off(&pieces.curtain), off(&pieces.lawn), off(&pieces.patch), off(&pieces.tube)];
@@ -57,11 +61,7 @@ pub fn run(options: &TortureOptions, progress: &mut dyn FnMut(&CaseSummary)) -> 
         undisturbed_mm,
         ..TortureReport::default()
     };
-    let asked = |c: &&TortureCase| options.case.as_ref().map_or(c.exact || !options.exact, |name| c.name == name);
     for case in CASES.iter().filter(asked) {
-        if options.exact && !case.exact {
-            return Err(TortureError::NotExact(case.name));
-        }
         let outcomes = of_seeds(case, &pieces, options.seeds.clone());
         let summary = CaseSummary::of(case.name, case.about, &outcomes);
         progress(&summary);

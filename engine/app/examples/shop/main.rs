@@ -11,7 +11,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::{env, fs};
 
-use garments::{GARMENTS, ShopGarment};
+pub use garments::GARMENTS;
+use garments::ShopGarment;
 use toile_assets::catalogue::package;
 use toile_base::frame::Joints;
 use toile_fitting::dress::measured::ShopperFacts;
@@ -55,14 +56,14 @@ fn photograph(garment: &ShopGarment, pose: &Joints) -> Result<Vec<u8>, String> {
     Ok(png)
 }
 
-/// Writes the whole catalogue, and gives how many garments it has.
-pub fn write(folder: &Path) -> Result<usize, String> {
+/// Writes a catalogue of these garments.
+pub fn write(folder: &Path, garments: &[ShopGarment]) -> Result<(), String> {
     let told = |e: std::io::Error| e.to_string();
     let embedded = session::open(None, None).map_err(|e| e.to_string())?;
     let pose = session::standing(&embedded).map_err(|e| e.to_string())?[0];
     fs::create_dir_all(folder).map_err(told)?;
     let mut order = Vec::new();
-    for garment in &GARMENTS {
+    for garment in garments {
         let source = folder.join("source").join(garment.file);
         fs::create_dir_all(&source).map_err(told)?;
         fs::write(source.join("garment.toml"), garment.manifest()).map_err(told)?;
@@ -75,8 +76,7 @@ pub fn write(folder: &Path) -> Result<usize, String> {
     }
     fs::write(folder.join("logo.png"), logo::png()?).map_err(told)?;
     let text = CATALOGUE.replace("\n\n[theme]", &format!("\ngarments = [{}]\n\n[theme]", order.join(", ")));
-    fs::write(folder.join("catalogue.toml"), text).map_err(told)?;
-    Ok(GARMENTS.len())
+    fs::write(folder.join("catalogue.toml"), text).map_err(told)
 }
 
 fn main() -> ExitCode {
@@ -84,9 +84,9 @@ fn main() -> ExitCode {
         eprintln!("shop: no folder is given; name one for the catalogue, as in `shop target/shop`");
         return ExitCode::from(2);
     };
-    match write(&folder) {
-        Ok(count) => {
-            println!("{count} garments in {}; `toile catalogue check` reads them", folder.display());
+    match write(&folder, &GARMENTS) {
+        Ok(()) => {
+            println!("{} garments in {}; `toile catalogue check` reads them", GARMENTS.len(), folder.display());
             ExitCode::SUCCESS
         }
         Err(why) => {

@@ -35,7 +35,7 @@ fn record(cloth: &Waving, folder: &Path, frames: usize, pace: impl Fn(usize) -> 
         for f in 0..frames {
             let of = pace(if k == 1 { f } else { f + late });
             let path = folder.join(&camera.name).join(format!("{:04}.png", f + 5));
-            cloth.pictures(of, &Lighting::default(), &[])[k].save(path).unwrap();
+            cloth.picture(k, of, &Lighting::default(), &[]).save(path).unwrap();
         }
     }
 }

@@ -331,6 +331,8 @@ impl DressingContext {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::service::config::Config;
+    use crate::service::stock::Stock;
     use crate::visitor::size_fit::{BodyPart, MeasureBasis};
     use crate::visitor::wardrobe::WornItem;
     use toile_assets::sizes::Girth;
@@ -338,16 +340,24 @@ mod tests {
     use toile_sensors::source::Session;
     use toile_track::measures::Measures;
 
-    fn context() -> DressingContext {
-        let first = TryOn { garments: Vec::new(), ..TryOn::default() };
-        let facts = ShopperFacts::default();
-        DressingContext::new(
-            Arc::new(Wardrobe::stock().unwrap()),
-            Arc::new(first),
-            Quality::Draft,
-            facts,
-            Appearance::default(),
-        )
+    fn context(config: &Config) -> DressingContext {
+        let stock = Stock::read(config).unwrap();
+        let wardrobe = Arc::new(Wardrobe::of(&stock, None, &mut Vec::new()).unwrap());
+        DressingContext::new(wardrobe, stock.first, Quality::Draft, ShopperFacts::default(), Appearance::default())
+    }
+
+    /// The same whose visitors wear a coarse T-shirt first, which is soon draped, and the name of that.
+    fn with_coarse_tee() -> (DressingContext, String) {
+        let mut tee = toile_assets::drafting::package("tee").unwrap();
+        tee.spacing_mm = 40.0;
+        let file = std::env::temp_dir().join(format!("toile-worker-{}.json", std::process::id()));
+        std::fs::write(&file, tee.text()).unwrap();
+        let name = file.display().to_string();
+        let mut config = Config::default();
+        config.wear.garments = vec![name.clone()];
+        let context = context(&config);
+        std::fs::remove_file(file).unwrap();
+        (context, name)
     }
 
     fn job(source: ShopperSource, seated: bool) -> MeasuringJob {
@@ -360,13 +370,13 @@ mod tests {
 
     #[test]
     fn depth_gives_eleven_measures_joints_fewer_and_a_chair_fewest() {
-        let (context, session) = (context(), session());
-        let depth = context.measure(job(ShopperSource::Recording(Arc::new(session.clone())), false)).unwrap();
+        let (context, session) = (context(&Config::default()), Arc::new(session()));
+        let recording = ShopperSource::Recording(session.clone());
+        let depth = context.measure(job(recording.clone(), false)).unwrap();
         assert!(depth.missing.is_empty() && depth.count == 11 && !depth.seated);
         assert_eq!(depth.basis(Girth::Waist), MeasureBasis::Seen);
         let stature = depth.measured.measures.stature.unwrap();
         assert!((stature.value - 1.694).abs() < 0.02, "{stature:?}");
-        let recording = ShopperSource::Recording(Arc::new(session.clone()));
         let until = |until_ns| {
             let job = MeasuringJob { until_ns, ..job(recording.clone(), false) };
             context.measure(job).unwrap().measured.measures
@@ -378,7 +388,7 @@ mod tests {
         assert!(shoulders(depth.measured.measures) < 0.9 * shoulders(front));
         let joints = context.measure(job(ShopperSource::Joints(session.joints.clone()), false)).unwrap();
         assert!(joints.count < depth.count && joints.basis(Girth::Waist) == MeasureBasis::Bones);
-        let seated = context.measure(job(ShopperSource::Recording(Arc::new(session)), true)).unwrap();
+        let seated = context.measure(job(recording, true)).unwrap();
         assert!(seated.count < joints.count && seated.seated);
         assert_eq!(seated.missing, [BodyPart::Hip, BodyPart::Legs]);
         assert_eq!(seated.basis(Girth::Hip), MeasureBasis::Guessed);
@@ -390,11 +400,11 @@ mod tests {
 
     #[test]
     fn two_sizes_of_one_garment_are_draped_apart_and_a_picture_is_a_code() {
-        let (context, session) = (context(), session());
+        let ((context, tee), session) = (with_coarse_tee(), session());
         let track = session::filtered(&session);
         let pose = track[session::first_standing(&track)];
         let known = context.measure(job(ShopperSource::Joints(session.joints), false)).unwrap();
-        let item = context.wardrobe.find("tee").unwrap();
+        let item = context.wardrobe.find(&tee).unwrap();
         let outfit = |size, colour| -> Outfit { [WornItem { item, size, colour }].into_iter().collect() };
         let client = Box::new(MeasuredVisitor { known, pose });
         let mut worker = DressingWorker::new(context);
@@ -424,7 +434,7 @@ mod tests {
         let code = offered.own.unwrap();
         assert!(code.side >= 101 && code.dark.len() == code.side * code.side, "{code:?}");
         let JobResult::Dressed(dressed) = done(9, DressingJob::Dress(client.clone(), outfit(2, 3))) else { panic!() };
-        assert_eq!(dressed.request.garments, [RequestedGarment::named("tee", Some("36".to_owned()))]);
+        assert_eq!(dressed.request.garments, [RequestedGarment::named(tee, Some("36".to_owned()))]);
         let JobResult::Failed = done(10, DressingJob::Dress(client.clone(), outfit(99, 0))) else { panic!() };
         // Who has left gets nothing.
         worker.begin(11, DressingJob::Dress(client, outfit(2, 3))).unwrap();

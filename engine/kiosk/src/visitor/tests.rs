@@ -9,7 +9,7 @@ mod turns;
 mod visits;
 
 use std::collections::BTreeSet;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use super::model::{Effect, Input, VisitDefaults, VisitModel, VisitTimes};
 use super::own_face::FaceTrouble;
@@ -27,6 +27,10 @@ use toile_track::tape_readings::TapeReadings;
 use toile_view::image::Size;
 
 const MS: u64 = 1_000_000;
+
+/// The garments that are built in, and all texts: read once for all visits.
+static STOCK: LazyLock<Arc<Wardrobe>> = LazyLock::new(|| Arc::new(Wardrobe::stock().unwrap()));
+static TEXTS: LazyLock<Texts> = LazyLock::new(|| Texts::load().unwrap());
 
 /// Time between two polls.
 const LOOK: u64 = 20 * MS;
@@ -48,7 +52,7 @@ fn defaults() -> VisitDefaults {
 /// A visit that is played, with a dressing worker that answers within a second.
 pub(crate) struct Play {
     model: VisitModel,
-    texts: Texts,
+    texts: &'static Texts,
     now: u64,
     /// Replies of the dressing worker that are due, and when.
     due: Vec<(u64, Input)>,
@@ -66,10 +70,9 @@ pub(crate) struct Play {
 
 impl Play {
     pub(crate) fn new() -> Self {
-        let wardrobe = Arc::new(Wardrobe::stock().unwrap());
         Self {
-            model: VisitModel::new(defaults(), wardrobe, 0),
-            texts: Texts::load().unwrap(),
+            model: VisitModel::new(defaults(), STOCK.clone(), 0),
+            texts: &TEXTS,
             now: 0,
             due: Vec::new(),
             known: woman(0.901, 0.738, 0.980),
@@ -169,7 +172,7 @@ impl Play {
     }
 
     pub(crate) fn screen(&self) -> Screen {
-        Screen::of(&self.model, &self.texts, &DisplayMount::default())
+        Screen::of(&self.model, self.texts, &DisplayMount::default())
     }
 
     pub(crate) fn page(&self) -> Page {

@@ -5,12 +5,12 @@ use std::sync::Arc;
 use super::super::actions::SHELF;
 use super::super::screen::{Action, ControlStyle, Page};
 use super::super::wardrobe::Wardrobe;
-use super::Play;
+use super::{Play, STOCK};
 use crate::visitor::screen::Screen;
 
 /// The kiosk's own garments again and again, each under a name of its own.
 fn many(count: usize, photograph: bool) -> Wardrobe {
-    let stock = Wardrobe::stock().unwrap();
+    let stock = Wardrobe::clone(&STOCK);
     let mut items: Vec<_> = stock.items.iter().cycle().take(count).cloned().collect();
     for (i, item) in items.iter_mut().enumerate().filter(|(i, _)| *i >= stock.items.len() || photograph) {
         item.name = format!("{}-{i}", item.name);

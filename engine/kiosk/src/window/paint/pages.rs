@@ -243,32 +243,40 @@ fn body_share(screen: &Screen, display: DisplayMetrics, free: [f32; 4]) -> Optio
     }
 }
 
-#[test]
-fn every_page_in_every_language_has_its_place_on_every_display() {
+/// That every page, in every language and in type of a size, has its place on every display.
+fn have_their_places(large: bool) {
     let (mut bad, mut painter, mut proof) = (Vec::new(), ScreenPainter::default(), Proof::options());
     for language in 0..Language::ALL.len() {
-        for large in [false, true] {
-            for (name, screen) in all(language, large) {
-                for display in DISPLAYS {
-                    let painted = painter.paint(&screen, display);
-                    if let Some(proof) = &mut proof {
-                        let size = if large { "large-" } else { "" };
-                        proof.print(display, &format!("{size}{}-{name}", screen.language), &painted);
-                    }
-                    let laid = painter.laid().unwrap();
-                    let share = body_share(&screen, display, painted.free);
-                    if !large && share.is_some_and(|share| share < LEAST_BODY) {
-                        let [w, h] = display.size;
-                        bad.push(format!("{name} {} {w}x{h}: a body of {:.3}", screen.language, share.unwrap_or(0.0)));
-                    }
-                    // Large type may scroll what is pressed; nothing that is read is ever cut off.
-                    if !laid.fits || (laid.scrolls > 0.0 && !large) {
-                        let [w, h] = display.size;
-                        bad.push(format!("{name} {} {large} {w}x{h}: scrolls {:.0}", screen.language, laid.scrolls));
-                    }
+        for (name, screen) in all(language, large) {
+            for display in DISPLAYS {
+                let painted = painter.paint(&screen, display);
+                if let Some(proof) = &mut proof {
+                    let size = if large { "large-" } else { "" };
+                    proof.print(display, &format!("{size}{}-{name}", screen.language), &painted);
+                }
+                let laid = painter.laid().unwrap();
+                let share = body_share(&screen, display, painted.free);
+                let [w, h] = display.size;
+                if !large && share.is_some_and(|share| share < LEAST_BODY) {
+                    bad.push(format!("{name} {} {w}x{h}: a body of {:.3}", screen.language, share.unwrap_or(0.0)));
+                }
+                // Large type may scroll what is pressed; nothing that is read is ever cut off.
+                if !laid.fits || (laid.scrolls > 0.0 && !large) {
+                    bad.push(format!("{name} {} {large} {w}x{h}: scrolls {:.0}", screen.language, laid.scrolls));
                 }
             }
         }
     }
     assert!(bad.is_empty(), "{} of them:\n{}", bad.len(), bad.join("\n"));
+}
+
+// Two tests, so that two cores share the hundreds of pages.
+#[test]
+fn every_page_has_its_place_on_every_display() {
+    have_their_places(false);
+}
+
+#[test]
+fn every_page_in_large_type_has_its_place() {
+    have_their_places(true);
 }
