@@ -328,6 +328,9 @@ fn fibers(fibers: &Fibers, marks: &mut Marks) -> Result<(), LayoutError> {
     stray.map_or(Ok(()), |b| bound(WHAT, usize::from(b.owner) + 1, OWNERS))
 }
 
+/// Fewest particles of a fiber by index list: two, which one link joins.
+const LEAST_ROWS: usize = 2;
+
 fn lists(lists: &FiberLists, marks: &mut Marks) -> Result<(), LayoutError> {
     const WHAT: &str = "crossing";
     length(WHAT, lists.compliance.len(), lists.rest.len())?;
@@ -337,6 +340,10 @@ fn lists(lists: &FiberLists, marks: &mut Marks) -> Result<(), LayoutError> {
         for (owner, share) in set.iter().enumerate() {
             for list in &lists.lists[range(WHAT, share, lists.lists.len())?] {
                 let (lanes, rows) = (list.lanes as usize, list.rows as usize);
+                // The solver eliminates from the first link to the last one, so a fiber has one at least.
+                if rows < LEAST_ROWS {
+                    return Err(LayoutError::Length { what: "a fiber of crossing", found: rows, needed: LEAST_ROWS });
+                }
                 bound(WHAT, list.first as usize + lanes * rows, lists.index.len())?;
                 places.take(list.at, list.lanes.saturating_mul(list.links()), owner)?;
                 for lane in 0..lanes {
