@@ -20,14 +20,18 @@ use toile_base::numeric::portable;
 use super::forces::root::{Carried, RootStep};
 use super::{Cloth, Settings, Step};
 use crate::lanes::{Shared, Store};
-use crate::workers::{PerShare, WorkerPool};
+use crate::workers::{PerShare, PhaseCheck, WorkerPool};
 use program::METERED_STAGES;
 use work::{StepWork, WorkColumns};
 
 impl Cloth {
-    /// One step of the settings' length, both owners' shares on the caller's thread.
+    /// One step of the settings' length, both owners' shares on the caller's thread. Another garment than the state's own is refused
+    /// and counted ([`guard::GuardEvents::refused`]).
     #[expect(unsafe_code, reason = "the stages of a step are done in their order")]
     pub fn step(&mut self, garment: &Garment, step: &Step<'_>) {
+        if !self.accepts(garment) {
+            return;
+        }
         let settings = self.sound(step.settings);
         let step = &Step { settings: &settings, ..*step };
         let carried = self.begin(garment, step);
@@ -35,11 +39,13 @@ impl Cloth {
         let (mut stage_ns, mut greater_share_ns) = ([0; METERED_STAGES.len()], [0; METERED_STAGES.len()]);
         let work = self.work(garment, step, carried);
         let mut begun = timed.then(Instant::now);
-        for (stage, substep) in work.prepared.program.stages() {
+        for phase in 0..work.prepared.program.len() {
+            let (stage, _) = work.prepared.program.stage(phase);
             let mut greater = 0;
             for owner in 0..OWNERS {
-                // SAFETY: this thread does the shares one after the other, in the order of the program. `work` borrows the cloth alone.
-                unsafe { work.run(stage, substep, owner) };
+                // SAFETY: the cloth was made of this garment, as was checked above. This thread does the shares one after the other, in
+                // the order of the program. `work` borrows the cloth alone.
+                unsafe { work.run(phase, owner) };
                 if let Some(start) = begun {
                     let now = Instant::now();
                     let share = (now - start).as_nanos() as u64;
@@ -62,19 +68,19 @@ impl Cloth {
         if pool.workers() < OWNERS || garment.layout().spans[1].is_empty() || step.settings.timed {
             return self.step(garment, step);
         }
+        if !self.accepts(garment) {
+            return;
+        }
         let settings = self.sound(step.settings);
         let step = &Step { settings: &settings, ..*step };
         let carried = self.begin(garment, step);
         let work = self.work(garment, step, carried);
-        let program = &work.prepared.program;
         let share = |phase: usize, owner: usize| {
-            let (stage, substep) = program.stage(phase);
-            // SAFETY: a phase is one stage, in the order of the program. `WorkerPool::run` calls this once for each share of a phase
-            // and has a barrier after each phase. `work` borrows the cloth alone. Nothing checks yet that the cloth was made of this
-            // garment: the caller of `step_with` answers for that.
-            unsafe { work.run(stage, substep, owner) };
+            // SAFETY: the cloth was made of this garment, as was checked above. `WorkerPool::run` calls this once for each share of each
+            // phase of the program, in their order, and has a barrier after each phase. `work` borrows the cloth alone.
+            unsafe { work.run(phase, owner) };
         };
-        let failed = pool.run(program.len(), share).is_err();
+        let failed = pool.run(work.prepared.program.len(), share).is_err();
         let limited = work.limited();
         self.end(garment, step, limited, failed);
     }
@@ -175,6 +181,7 @@ impl Cloth {
             gravity_step: step.settings.gravity * dt,
             damping_factor: portable::exp(-garment.fabric.damping_per_s * dt),
             width: step.settings.width,
+            check: PhaseCheck::new(),
         }
     }
 }

@@ -236,9 +236,4 @@ impl Program {
     pub fn of_substep(&self) -> &[Stage] {
         &self.substep
     }
-
-    /// All stages in order, each with the number of its substep.
-    pub fn stages(&self) -> impl Iterator<Item = (Stage, u32)> {
-        (0..self.len()).map(|phase| self.stage(phase))
-    }
 }
