@@ -185,3 +185,34 @@ impl Cloth {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+    use toile_bake::{Shape, bake};
+    use toile_base::fabric::Fabric;
+    use toile_base::skeleton::BONES;
+
+    use super::*;
+    use crate::colliders::Colliders;
+
+    #[test]
+    fn another_garment_is_refused_and_counted() {
+        let place = |r: u32, c: u32| (Vec3::new(0.02 * c as f32, 1.0 - 0.02 * r as f32, 0.0), r == 0);
+        let [own, other] = [(); 2].map(|()| {
+            bake("sheet", "one", &Shape::sheet(6, 6, place), &Fabric::cotton_lawn()).expect("a sheet can be baked")
+        });
+        let colliders = Colliders::new(&[], &[], false).expect("no colliders are within every limit");
+        let (palette, settings) = ([Affine3A::IDENTITY; BONES], Settings::default());
+        let step = Step { palette: &palette, colliders: &colliders, settings: &settings };
+        let mut cloth = Cloth::new(&own, &colliders);
+        let start = cloth.positions.clone();
+        cloth.prepare(&other, &settings);
+        cloth.step(&other, &step);
+        cloth.step_with(&mut WorkerPool::new(1).expect("one worker is the caller"), &other, &step);
+        assert_eq!((cloth.events.refused, &cloth.positions), (3, &start), "an equal garment is another one");
+        cloth.step(&own.clone(), &step);
+        assert_eq!(cloth.events.refused, 3, "a clone is the same garment");
+        assert_ne!(cloth.positions, start);
+    }
+}

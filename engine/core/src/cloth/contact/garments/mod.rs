@@ -33,8 +33,10 @@ mod uncross;
 #[expect(unsafe_code, reason = "the workers of a step share the contacts")]
 mod work;
 
+use std::sync::Arc;
+
 use glam::Vec3;
-use toile_base::garment::Garment;
+use toile_base::garment::{Garment, Layout};
 use toile_base::limits::MAX_GARMENTS;
 
 use bearing::GarmentBearing;
@@ -74,6 +76,8 @@ pub struct GarmentContactCounts {
     pub crossings_most: u64,
     /// Crossings that there was no room for, summed over the steps.
     pub left_out: u64,
+    /// Steps that were refused because they were asked for with other garments than the layers' own, or with states of others.
+    pub refused: u64,
 }
 
 impl GarmentContactCounts {
@@ -96,6 +100,8 @@ impl GarmentContactCounts {
 /// The contact between the garments of an outfit. All storage is made once.
 #[derive(Debug, Clone)]
 pub struct GarmentContact {
+    /// The constraints of the garments that all of this was made for.
+    layouts: Box<[Arc<Layout>]>,
     surfaces: Box<[GarmentSurface]>,
     motions: Box<[GarmentMotion]>,
     pairs: Box<[GarmentPair]>,
@@ -141,6 +147,7 @@ impl GarmentContact {
         }
         let halves = |share: usize| pairs.iter().map(|p| PairShare::new(p, &surfaces, share)).collect::<Vec<_>>();
         Some(Self {
+            layouts: garments.iter().map(|g| Arc::clone(g.shared_layout())).collect(),
             motions: surfaces.iter().map(GarmentMotion::new).collect(),
             shares: halves(0).into_iter().chain(halves(1)).collect(),
             bearing: garments.iter().map(|g| GarmentBearing::new(g.particles())).collect(),

@@ -84,6 +84,23 @@ fn garments_that_cannot_meet_have_only_their_folds() {
 }
 
 #[test]
+fn other_garments_are_refused_and_counted() {
+    let mut scene = SheetScene::new(pile(2, 0.006), 1, Width::widest());
+    let before = scene.height(1);
+    let own = std::mem::replace(&mut scene.garments, pile(2, 0.006));
+    scene.steps(1);
+    assert_eq!((scene.layers.counts().refused, scene.height(1)), (1, before), "equal garments are others");
+    scene.garments = own;
+    scene.cloths.swap(0, 1);
+    scene.steps(1);
+    assert_eq!(scene.layers.counts().refused, 2, "each garment has its own state");
+    scene.cloths.swap(0, 1);
+    scene.steps(1);
+    assert_eq!(scene.layers.counts().refused, 2);
+    assert!(scene.height(1) < before, "the upper sheet falls");
+}
+
+#[test]
 fn sheets_come_to_rest_a_thickness_apart_and_stay() {
     let mut scene = SheetScene::new(pile(3, 0.006), 1, Width::widest());
     scene.steps(240);
