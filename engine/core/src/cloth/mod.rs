@@ -16,6 +16,7 @@ use toile_base::garment::layout::OWNERS;
 use toile_base::garment::{Garment, Layout};
 use toile_base::skeleton::BONES;
 
+use crate::bounded::Fill;
 use crate::colliders::Colliders;
 use crate::lanes::{RECORD, Store};
 use forces::root::RootMotion;
@@ -283,6 +284,11 @@ impl Cloth {
     /// What contact did since the garment was made.
     pub fn contact_counts(&self) -> contact::body::ContactCounts {
         self.contacts.tally()
+    }
+
+    /// How full the lists were that steps fill: the fullest of them, and what all of them lost. Each can hold all that may come.
+    pub fn lists(&self) -> Fill {
+        self.contacts.usage().and(self.prepared.program.usage())
     }
 
     /// How bending went on in the last step.

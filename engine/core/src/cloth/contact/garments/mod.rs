@@ -39,6 +39,7 @@ use glam::Vec3;
 use toile_base::garment::{Garment, Layout};
 use toile_base::limits::MAX_GARMENTS;
 
+use crate::bounded::Fill;
 use bearing::GarmentBearing;
 use garment_surface::{GarmentMotion, GarmentSurface};
 use order::heights;
@@ -167,6 +168,13 @@ impl GarmentContact {
     /// What layer contact did so far.
     pub fn counts(&self) -> GarmentContactCounts {
         self.counts
+    }
+
+    /// How full the lists were that steps fill: the fullest of them, and what all of them lost. Each can hold all that may come; pairs
+    /// and crossings of folds have limits of their own, which [`Self::counts`] reports.
+    pub fn lists(&self) -> Fill {
+        let shares = self.shares.iter().map(PairShare::usage);
+        shares.chain(self.touching.iter().map(TouchLists::usage)).fold(Fill::default(), Fill::and)
     }
 
     /// Memory that it holds (bytes).
