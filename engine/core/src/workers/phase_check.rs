@@ -10,6 +10,7 @@ use std::sync::atomic::Ordering::Relaxed;
 use crate::sync::AtomicU64;
 
 /// The phase that is under way, with the shares of it that have begun and that have ended. Empty in release builds.
+#[derive(Default)]
 pub struct PhaseCheck {
     /// 16 times the phase, 4 times the shares that have begun (one bit each), the shares that have ended.
     #[cfg(debug_assertions)]
@@ -23,39 +24,27 @@ pub struct RunningShare<'a> {
     #[cfg(debug_assertions)]
     share: usize,
     #[cfg(not(debug_assertions))]
-    check: std::marker::PhantomData<&'a PhaseCheck>,
+    _check: std::marker::PhantomData<&'a PhaseCheck>,
 }
 
-#[cfg(debug_assertions)]
 impl PhaseCheck {
-    /// Before the first phase.
-    pub fn new() -> Self {
-        Self { under_way: AtomicU64::new(0) }
-    }
-
     /// Begins a share of a phase, both counted from 0.
     ///
     /// # Panics
     /// In debug builds, where the share has begun before, or where a share of the phase before has not ended.
+    #[cfg(debug_assertions)]
     pub fn begin(&self, phase: usize, share: usize) -> RunningShare<'_> {
         // Relaxed: the barriers between phases order what the shares do; the check only counts.
         let begun = self.under_way.fetch_update(Relaxed, Relaxed, |state| after_begin(state, phase, share));
         assert!(begun.is_ok(), "share {share} of phase {phase} began out of order ({begun:?})");
         RunningShare { check: self, share }
     }
-}
-
-#[cfg(not(debug_assertions))]
-impl PhaseCheck {
-    /// Before the first phase.
-    pub fn new() -> Self {
-        Self {}
-    }
 
     /// Begins a share of a phase, both counted from 0.
+    #[cfg(not(debug_assertions))]
     #[inline(always)]
     pub fn begin(&self, _phase: usize, _share: usize) -> RunningShare<'_> {
-        RunningShare { check: std::marker::PhantomData }
+        RunningShare { _check: std::marker::PhantomData }
     }
 }
 
@@ -89,7 +78,7 @@ mod tests {
 
     #[test]
     fn phases_follow_each_other() {
-        let check = PhaseCheck::new();
+        let check = PhaseCheck::default();
         for phase in 0..3 {
             let [first, second] = [1, 0].map(|share| check.begin(phase, share));
             drop(second);
@@ -104,7 +93,7 @@ mod tests {
         let refused = |check: &PhaseCheck, phase, share| {
             catch_unwind(AssertUnwindSafe(|| drop(check.begin(phase, share)))).is_err()
         };
-        let check = PhaseCheck::new();
+        let check = PhaseCheck::default();
         assert!(refused(&check, 1, 0), "a phase was left out");
         let running = check.begin(0, 0);
         drop(check.begin(0, 1));

@@ -181,7 +181,7 @@ impl Cloth {
             gravity_step: step.settings.gravity * dt,
             damping_factor: portable::exp(-garment.fabric.damping_per_s * dt),
             width: step.settings.width,
-            check: PhaseCheck::new(),
+            check: PhaseCheck::default(),
         }
     }
 }

@@ -143,7 +143,7 @@ impl<'a> LayerWork<'a> {
             bearing,
             phases,
             times: Default::default(),
-            check: PhaseCheck::new(),
+            check: PhaseCheck::default(),
         }
     }
 
