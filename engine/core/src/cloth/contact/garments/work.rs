@@ -4,7 +4,7 @@
 //! of their owner's share, or of their garment if one worker owns it whole. Contacts belong to the worker of their half of the
 //! particles. Pushes of contacts on particles belong to the worker of one half of the touched particles.
 //!
-//! Debug builds check that shares keep to the order of the phases, and that each phase reaches for what it may.
+//! Debug builds check that the shares keep to the order of the phases, and that each phase uses only the data that it may use.
 
 use std::marker::PhantomData;
 use std::sync::atomic::AtomicU64;
@@ -179,7 +179,7 @@ fn last_stage(work: &StepWork<'_>) -> usize {
     work.prepared.program.of_substep().len().saturating_sub(1)
 }
 
-/// One worker's share of one phase. Each method says in which phases it is called, as far as that is what makes it sound.
+/// One worker's share of one phase. Debug builds check that each method is called in the phases that make it sound.
 struct LayerShare<'w, 'a> {
     work: &'w LayerWork<'a>,
     phase: LayerPhase,
@@ -387,7 +387,10 @@ impl LayerShare<'_, '_> {
         part: usize,
         act: impl Fn(usize, &mut Resting, &mut Bearing, ParticleColumns<'_>),
     ) {
-        debug_assert!(!matches!(self.phase, LayerPhase::Find | LayerPhase::Lists | LayerPhase::Solve(..)));
+        debug_assert!(matches!(
+            self.phase,
+            LayerPhase::Apply(_) | LayerPhase::Finish(..) | LayerPhase::Whole(_) | LayerPhase::End
+        ));
         let (touches, columns) = (self.touches(garment), self.particles(garment));
         for touched in touches.touched(touches.own_level(), part) {
             let i = touched.particle as usize;
