@@ -129,10 +129,10 @@ fn what_is_tucked_in_gets_the_width_at_which_it_lies_and_the_rest_keeps_its_own(
     let mut tucked = shirt.clone();
     let particles: Box<[bool]> = shirt.start.iter().map(|p| p.y < band).collect();
     let free = |[a, b]: [u32; 2]| [a, b].iter().all(|&v| shirt.start[v as usize].y > band + SLIPS_M + WIDENS_M);
-    tucked.start.iter_mut().zip(&particles).filter(|(_, inside)| **inside).for_each(|(p, _)| {
+    tucked.start_mut().iter_mut().zip(&particles).filter(|(_, inside)| **inside).for_each(|(p, _)| {
         (p.x, p.z) = (0.8 * p.x, 0.8 * p.z);
     });
-    tucked.tuck = Some(Tuck { into: 0, band, particles: particles.clone() });
+    tucked.set_tuck(Some(Tuck { into: 0, band, particles: particles.clone() })).unwrap();
     tucked.gather();
     // The shirt starts a little wider or narrower than it is cut, because this shopper is not of its size.
     let as_cut = |garment: &Garment| {

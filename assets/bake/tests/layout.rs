@@ -1,7 +1,7 @@
 //! A layout that kernels could not trust is refused, with what is wrong in it.
 
-use toile_base::garment::layout::{FiberBundle, OwnerShare};
-use toile_base::garment::{Garment, GarmentData, Layout, LayoutError};
+use toile_base::garment::layout::{FiberBundle, FiberList, OwnerShare};
+use toile_base::garment::{Direction, Garment, GarmentData, Layout, LayoutError, Solver};
 
 use crate::cloth;
 
@@ -78,6 +78,28 @@ fn anchors_hold_still() {
     let moving = held.inverse_mass.iter().position(|w| *w > 0.0).unwrap() as u32;
     let loose = changed(|_, layout| layout.tethers.anchor[tethered] = moving);
     assert_eq!(loose.unwrap_err(), LayoutError::Anchor { particle: tethered });
+}
+
+#[test]
+fn a_fiber_has_a_link() {
+    for rows in [0, 1] {
+        let list = FiberList {
+            solver: Solver::SemiImplicit,
+            direction: Direction::Warp,
+            closed: false,
+            lanes: 1,
+            rows,
+            first: 0,
+            at: 0,
+        };
+        assert_eq!(list.links(), 0, "{rows} particles");
+        let short = changed(|_, layout| {
+            layout.crossing.lists = [list].into();
+            layout.crossing.sets = [[0..1, 0..0]].into();
+        });
+        let found = rows as usize;
+        assert_eq!(short.unwrap_err(), LayoutError::Length { what: "a fiber of crossing", found, needed: 2 });
+    }
 }
 
 #[test]

@@ -83,7 +83,7 @@ pub fn dress_in(
         let name = if several { format!("{name} ({})", k + 1) } else { name.clone() };
         let baked = bake(&name, size.unwrap_or(UNKNOWN), shape, &fabric);
         let mut garment = baked.map_err(|source| AdaptError::Cloth { path: own.path.clone(), source })?;
-        garment.layer = own.measures.layer.unwrap_or(LAYER);
+        garment.set_layer(own.measures.layer.unwrap_or(LAYER));
         Ok(garment)
     });
     let garments = garments.collect::<Result<_, AdaptError>>()?;

@@ -208,7 +208,8 @@ impl GarmentPhotographs {
             let view = if side > 0.0 { &self.front } else { behind };
             atlas.place(usize::from(side < 0.0), [a, b, c].map(|p| place(view, p, side)))
         });
-        garment.look.picture = Some(MeshPicture { corners: corners.collect(), texture: atlas.texture.clone() });
+        let corners = corners.collect();
+        garment.look_mut().picture = Some(MeshPicture { corners, texture: atlas.texture.clone() });
         Ok(())
     }
 

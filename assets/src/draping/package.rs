@@ -318,7 +318,7 @@ impl PatternPackage {
     fn baked(&self, shape: &Shape, size: &str, fabric: &Fabric) -> Result<Garment, PackageError> {
         let baked = bake(&self.name, size, shape, fabric);
         let mut garment = baked.map_err(|e| self.not_draped(DrapeError::Mesh(e)))?;
-        garment.layer = self.layer.unwrap_or(LAYER);
+        garment.set_layer(self.layer.unwrap_or(LAYER));
         Ok(garment)
     }
 }

@@ -323,10 +323,7 @@ fn the_unit_starts_what_there_is_with_the_rights_that_it_needs() {
         assert_eq!(value(&unit, key), expected, "{key}");
     }
     use toile_engine::frame_loop::thread_roles::ThreadRole;
-    let highest = [ThreadRole::Sensor, ThreadRole::Physics, ThreadRole::Worker, ThreadRole::Render]
-        .into_iter()
-        .filter_map(ThreadRole::priority)
-        .max();
+    let highest = ThreadRole::ALL.into_iter().filter_map(ThreadRole::priority).max();
     assert_eq!(value(&unit, "LimitRTPRIO").parse().ok(), highest, "the limit is what the threads ask for");
     assert!(value(&unit, "WatchdogSec").parse::<u64>().unwrap() >= 3, "a stall of two seconds is survived");
     let loopback = fs::read_to_string(folder.join("loopback.conf")).unwrap();

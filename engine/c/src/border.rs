@@ -160,7 +160,7 @@ impl<T: Plain> Buffer<T> {
         !self.0.is_null()
     }
 
-    /// Tells how many there are, and writes them where there is room for all.
+    /// Tells how many there are, and writes them where there is room for all. If `write` fails, the array holds zeros.
     pub fn fill(
         &self,
         wanted: Wanted<'_>,
@@ -186,8 +186,10 @@ impl<T: Plain> Buffer<T> {
         if numbers == 0 {
             return Ok(());
         }
-        // SAFETY: not null and aligned; that there is room for `room` elements, which is no less, is the caller's promise; any bits
-        // are a value of a `Plain` type.
+        // C may give memory that nothing was written to yet, of which Rust can make no reference.
+        // SAFETY: not null and aligned; that there is room for `room` elements, which are no fewer, is the caller's promise.
+        unsafe { self.0.write_bytes(0, numbers) };
+        // SAFETY: as above, and the line above has written every element: zeros are a value of a `Plain` type.
         write(unsafe { std::slice::from_raw_parts_mut(self.0, numbers) })
     }
 }
@@ -269,6 +271,17 @@ mod tests {
         nowhere.fill(wanted(0), &told, ones).unwrap();
         assert!(nowhere.fill(wanted(2), &told, ones).is_err());
         assert!(nowhere.fill(wanted(0), &Out::nowhere(), ones).is_err());
+    }
+
+    #[test]
+    fn memory_without_values_is_zeroed_first() {
+        let mut to = [std::mem::MaybeUninit::<f32>::uninit(); 6];
+        let wanted = Wanted { room: 2, needed: 2, each: 3, what: "vertices" };
+        let read = |to: &mut [f32]| {
+            assert_eq!(to, [0.0; 6], "a writer may read what it is handed");
+            Ok(())
+        };
+        Buffer(to.as_mut_ptr().cast::<f32>()).fill(wanted, &Out::nowhere(), read).unwrap();
     }
 
     #[test]

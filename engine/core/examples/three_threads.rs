@@ -81,7 +81,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (mut world, snapshots) = World::new(body, &rig, vec![dress], Settings { workers: 1, ..Settings::default() })?;
     let first = Camera { skeleton: skeleton.clone(), origin_ns: 0, frames: 0 }.read();
     world.dress(&first.ok_or("the camera gives no frame")?.joints);
-    let (pool, _) = threads::worker_pool(2)?;
+    let (pool, _) = threads::worker_pool(2, ThreadRole::Physics)?;
 
     // Between the threads: the latest joints, the latest snapshot, and a bounded queue of what happened.
     let TripleBuffer { writer, reader } = TripleBuffer::new(&SensorFrame::default());

@@ -61,6 +61,7 @@
 //! bits whatever the lanes and the workers.
 
 // Modules in the order of the data: each imports only from the groups above its own (tests/tests/layers.rs).
+pub mod bounded;
 pub mod clock;
 pub mod cone;
 pub mod lanes;

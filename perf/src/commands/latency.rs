@@ -9,6 +9,7 @@ use serde::Serialize;
 use toile_engine::clock::RealClock;
 use toile_engine::frame_loop::quality_control::QUALITY_LEVELS;
 use toile_engine::frame_loop::recording::{self, Entry};
+use toile_engine::frame_loop::thread_roles::ThreadRole;
 use toile_engine::frame_loop::threads;
 use toile_fitting::dress::measured;
 use toile_fitting::dress::session;
@@ -154,7 +155,7 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
         }
         None => LatencySource::Played(&session.joints[from..]),
     };
-    let (crew, worker) = threads::worker_pool(args.workers.count()).map_err(AppError::input)?;
+    let (crew, worker) = threads::worker_pool(args.workers.count(), ThreadRole::Physics).map_err(AppError::input)?;
     let options = args.options();
     words.print_line(&format!("running for {} s, with {} threads of load", options.seconds, options.load));
     let mut bytes = recording::header(&serde_json::to_string(&request).map_err(AppError::internal)?);

@@ -1,7 +1,8 @@
 //! How full everything was that has a bound: the queues, the schedule, the frame's capacities.
 
 use toile_base::limits::{MAX_CAPSULES, MAX_PLANES, MAX_SPHERES};
-use toile_engine::cloth::contact::garments::MOST_CROSSINGS;
+use toile_engine::bounded::Fill;
+use toile_engine::cloth::contact::garments::{GarmentContact, MOST_CROSSINGS};
 use toile_engine::cloth::step::settings::MAX_SUBSTEPS;
 use toile_engine::cloth::{Cloth, forces::stiff_bending};
 use toile_engine::frame_loop::loop_meters::LoopMeters;
@@ -39,6 +40,14 @@ pub fn capacities(queues: &[Capacity], gauges: &LoopMeters, world: &World) -> Ve
     all.extend(pairs.map(|[most, capacity]| {
         filled("pairs (blocks of particles near a capsule)", capacity as usize, most as usize)
     }));
+    let lists = world.cloths().iter().map(Cloth::lists).chain(world.layers().map(GarmentContact::lists));
+    let lists = lists.fold(Fill::default(), Fill::and);
+    all.push(Capacity {
+        constant: "lists of a step (the fullest of those that it fills)",
+        bound: lists.capacity as usize,
+        high_water: lists.most as usize,
+        lost: lists.lost,
+    });
     if let Some(ContactReport { pairs_most, pairs_room, crowded, crossings_most, left_out, .. }) = contact(world) {
         let full = |constant, bound, most: u64, lost| Capacity { constant, bound, high_water: most as usize, lost };
         all.push(full(PAIRS_NAME, pairs_room as usize, pairs_most, crowded));

@@ -13,7 +13,7 @@ use toile_engine::frame_loop::physics_thread::WorldScene;
 use toile_engine::frame_loop::queue::{Capacity, bounded};
 use toile_engine::frame_loop::recording::{ENTRIES, ENTRIES_NAME, Entry};
 use toile_engine::frame_loop::simulate::{MAX_SIMULATED, simulate};
-use toile_engine::frame_loop::thread_roles::RolePlacement;
+use toile_engine::frame_loop::thread_roles::{self, RolePlacement, ThreadRole};
 use toile_engine::frame_loop::threads::{self, Stop};
 use toile_engine::meter::PERIOD_NS;
 use toile_fitting::heap::HeapProbe;
@@ -150,7 +150,8 @@ impl<C: JumpableClock + Clone + Send + Sync + 'static> SoakLoops<C> {
         let (frame, reader) = scene_maker.make(0)?;
         let (frame, worker) = if options.workers > 1 {
             let (crew, worker) =
-                threads::worker_pool(options.workers).map_err(toile_engine::world::WorldError::from)?;
+                threads::worker_pool(options.workers, ThreadRole::Physics)
+                    .map_err(toile_engine::world::WorldError::from)?;
             (frame.with_workers(crew), worker)
         } else {
             (frame, None)
@@ -297,7 +298,7 @@ fn empty(queues: &mut LoopQueues) {
     while queues.frames.pop().is_some() {}
 }
 
-/// A loop beside those of the kiosk, on a thread without a role.
+/// A loop beside those of the kiosk, placed as a service.
 fn beside<T: ThreadLoop + Send + 'static>(
     name: &str,
     mut inner: T,
@@ -305,6 +306,7 @@ fn beside<T: ThreadLoop + Send + 'static>(
     stop: Stop,
 ) -> Result<JoinHandle<T>, SoakError> {
     let live = move || {
+        thread_roles::apply(ThreadRole::Service);
         while !stop.is_set() {
             let Some(next) = inner.run_due() else { break };
             clock.sleep_until(next.min(clock.now_ns() + SECOND_NS / 20));

@@ -85,7 +85,7 @@ fn garment(worn: &WornSize, body: &Body, light: bool) -> Result<Garment, String>
     }
     let mut garment = package.dress(&worn.size, body).map_err(|e| e.to_string())?;
     if light {
-        garment.substeps = LIGHT_SUBSTEPS;
+        garment.set_substeps(LIGHT_SUBSTEPS);
     }
     Ok(garment)
 }

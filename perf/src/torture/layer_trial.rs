@@ -44,7 +44,7 @@ impl LayerTrial {
         let shape = level(vertices);
         let bake = |layer: usize| {
             let mut garment = bake("torture", "one", &shape, &piece::denim())?;
-            garment.layer = layer as u8;
+            garment.set_layer(layer as u8);
             Ok(garment)
         };
         let garments = (0..sheets).map(bake).collect::<Result<Vec<Garment>, MeshError>>()?;

@@ -205,7 +205,7 @@ pub(super) fn strand(pieces: &Pieces, random: &mut CaseRandom, _: u64) -> TrialF
         peak = peak.max(stretched(&trial, &links)[0] - 1.0);
     }
     let mut calm = garment.clone();
-    calm.fabric.damping_per_s = DAMPING_PER_S;
+    calm.fabric_mut().damping_per_s = DAMPING_PER_S;
     trial.garment = &calm;
     let mut rest = chain.rest(&calm);
     // The last spring gives half as much as its length would let it.

@@ -162,7 +162,7 @@ impl Specimen {
 
     /// Changes the rate at which motion is damped (1/s).
     pub fn damp(&mut self, per_s: f64) {
-        self.garment.fabric.damping_per_s = per_s as f32;
+        self.garment.fabric_mut().damping_per_s = per_s as f32;
     }
 
     /// Positions of particles and solids now.

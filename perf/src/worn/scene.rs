@@ -131,7 +131,7 @@ impl WornScene {
         for name in names {
             let (size, shape, fabric) = mannequin.wear(name)?;
             let mut garment = bake(name, &size, &shape, &fabric)?;
-            garment.layer = drafting::style(name).map_or(0, |style| style.layer);
+            garment.set_layer(drafting::style(name).map_or(0, |style| style.layer));
             garments.push(garment);
             sizes.push(size);
         }

@@ -97,7 +97,7 @@ pub(super) struct OpenNiLibrary {
     api: OniApi,
 }
 
-/// A device that is open, closed when dropped with its streams.
+/// A device that is open, closed when dropped with its streams. It stays on the thread that opened it.
 pub(super) struct OpenNiDevice {
     handle: OniHandle,
     library: Arc<OpenNiLibrary>,
@@ -112,13 +112,9 @@ pub(super) struct OpenNiStream {
 /// A frame of a stream, given back when dropped.
 pub(super) struct OpenNiFrame<'a>(*mut OniFrame, &'a OpenNiStream);
 
-// SAFETY: handles of the library, which locks its own tables and keeps nothing of the thread that made them; `IN_USE` keeps other
-// users away, and the methods that change something take turns by their owner's `&mut`.
-unsafe impl Send for OpenNiDevice {}
-// SAFETY: a shared device gives out its handle only, and the library locks its own tables. Only the streams of one owner share a
-// device, and this owner has them on one thread.
-unsafe impl Sync for OpenNiDevice {}
-// SAFETY: a stream is a handle of the library, which keeps nothing of the thread that made it, and a device that is `Sync`.
+// SAFETY: a stream is a handle of the library, which keeps nothing of the thread that made it and locks its own tables; `IN_USE` keeps
+// other users away. Reading a frame takes `&mut self`. Of its device a stream has a counted reference alone: it asks the device for the
+// functions of the library, and the last owner closes it.
 unsafe impl Send for OpenNiStream {}
 
 impl OpenNiLibrary {
@@ -137,6 +133,7 @@ impl OpenNiLibrary {
     }
 
     /// Opens a device by its address, a recording by its path; none is the first camera that is found.
+    #[expect(clippy::arc_with_non_send_sync, reason = "its streams count it from whichever thread has them")]
     pub fn open(self: &Arc<Self>, uri: Option<&[u8]>) -> Result<Arc<OpenNiDevice>, ReaderFault> {
         let uri = uri.map(CString::new).transpose();
         let uri = uri.map_err(|_| ReaderFault::new(FilePlace::Whole, "a path with a zero in it", CURE))?;

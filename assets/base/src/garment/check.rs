@@ -12,6 +12,8 @@ use thiserror::Error;
 use super::data::GarmentData;
 use super::layout::{ConstraintSet, Diagonals, FiberLists, Fibers, Layout, Links, OWNERS, Tuples};
 use super::link_curves::CurveTable;
+use super::tuck::Tuck;
+use crate::skeleton::BONES;
 
 /// Why constraints and particles do not make a garment. Numbers count from 0.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -87,6 +89,11 @@ fn length(what: &'static str, found: usize, needed: usize) -> Result<(), LayoutE
     if found == needed { Ok(()) } else { Err(LayoutError::Length { what, found, needed }) }
 }
 
+/// A tuck says of each particle whether it is tucked in.
+pub(super) fn tuck(tuck: &Tuck, particles: usize) -> Result<(), LayoutError> {
+    length("tuck.particles", tuck.particles.len(), particles)
+}
+
 /// Checks that the end of a range or the place after an index lies within `count`.
 fn bound(what: &'static str, end: usize, count: usize) -> Result<(), LayoutError> {
     if end <= count { Ok(()) } else { Err(LayoutError::Bounds { what, found: end.saturating_sub(1), count }) }
@@ -108,14 +115,16 @@ fn lengths(data: &GarmentData, layout: &Layout) -> Result<(), LayoutError> {
     if !layout.tethers.anchor.is_empty() {
         length("tethers.anchor", layout.tethers.anchor.len(), n)?;
     }
-    if let Some(tuck) = &data.tuck {
-        length("tuck.particles", tuck.particles.len(), n)?;
+    if let Some(of) = &data.tuck {
+        tuck(of, n)?;
     }
     let all = |what, mut indices: Box<dyn Iterator<Item = u32> + '_>| {
         indices.try_for_each(|i| bound(what, i as usize + 1, n))
     };
     all("triangles", Box::new(data.triangles.iter().flatten().copied()))?;
     all("fixed", Box::new(data.fixed.iter().copied()))?;
+    let mut bones = data.fixed_weights.iter().flat_map(|w| w.bones);
+    bones.try_for_each(|bone| bound("fixed_weights", usize::from(bone) + 1, BONES))?;
     all("strain_edges", Box::new(data.strain_edges.iter().flat_map(|(ends, _)| *ends)))?;
     all("hoop_edges", Box::new(data.hoop_edges.iter().flat_map(|(ends, _)| *ends)))?;
     all("tethers.anchor", Box::new(layout.tethers.anchor.iter().copied()))?;
@@ -328,6 +337,9 @@ fn fibers(fibers: &Fibers, marks: &mut Marks) -> Result<(), LayoutError> {
     stray.map_or(Ok(()), |b| bound(WHAT, usize::from(b.owner) + 1, OWNERS))
 }
 
+/// Fewest particles of a fiber by index list: two, which one link joins.
+const LEAST_ROWS: usize = 2;
+
 fn lists(lists: &FiberLists, marks: &mut Marks) -> Result<(), LayoutError> {
     const WHAT: &str = "crossing";
     length(WHAT, lists.compliance.len(), lists.rest.len())?;
@@ -337,6 +349,10 @@ fn lists(lists: &FiberLists, marks: &mut Marks) -> Result<(), LayoutError> {
         for (owner, share) in set.iter().enumerate() {
             for list in &lists.lists[range(WHAT, share, lists.lists.len())?] {
                 let (lanes, rows) = (list.lanes as usize, list.rows as usize);
+                // The solver eliminates from the first link to the last one, so a fiber has one at least.
+                if rows < LEAST_ROWS {
+                    return Err(LayoutError::Length { what: "a fiber of crossing", found: rows, needed: LEAST_ROWS });
+                }
                 bound(WHAT, list.first as usize + lanes * rows, lists.index.len())?;
                 places.take(list.at, list.lanes.saturating_mul(list.links()), owner)?;
                 for lane in 0..lanes {

@@ -1,9 +1,12 @@
 //! Gathering: cloth that is tucked in is narrowed to the way around that it is laid at, as pleats narrow it, and not pressed
 //! together. A shirt is wider than the waistband that it goes into; with its full width it would come out of it in bulges.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 
 use super::baked::Garment;
+use super::check;
 use super::data::GarmentData;
 use super::direction::Direction;
 use super::layout::{ConstraintRun, Diagonals, FiberLists, Links};
@@ -75,6 +78,8 @@ impl Garment {
         let width = Laid::new(self, &tuck).width;
         let laid = Laid { start: &own, parts: &parts, tuck: &tuck, width };
         let Self { layout, data: GarmentData { strain_edges, hoop_edges, .. } } = self;
+        // Of a garment that anything else holds, the constraints become others: a cloth that was made of them does not take these.
+        let layout = Arc::make_mut(layout);
         for links in [&mut layout.weft, &mut layout.shear] {
             unshare(links);
             let rest = &mut links.rest;
@@ -86,6 +91,7 @@ impl Garment {
         let hoops: std::collections::HashSet<[u32; 2]> = hoop_edges.iter().map(|(ends, _)| *ends).collect();
         let weft = strain_edges.iter_mut().filter(|(ends, _)| hoops.contains(ends));
         weft.chain(hoop_edges.iter_mut()).for_each(|(ends, rest)| *rest = laid.gathered(*ends, *rest));
+        debug_assert_eq!(check::check(&self.data, &self.layout), Ok(()), "lengths change, and no place and no particle");
     }
 }
 

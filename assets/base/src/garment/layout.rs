@@ -332,9 +332,9 @@ pub struct FiberList {
 }
 
 impl FiberList {
-    /// Links of each fiber.
+    /// Links of each fiber. 0 where it has no particle, which no checked garment holds.
     pub fn links(&self) -> u32 {
-        if self.closed { self.rows } else { self.rows - 1 }
+        if self.closed { self.rows } else { self.rows.saturating_sub(1) }
     }
 }
 

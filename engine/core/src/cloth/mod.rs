@@ -9,11 +9,14 @@ pub mod links;
 pub mod state;
 pub mod step;
 
+use std::sync::Arc;
+
 use glam::{Affine3A, Vec3A};
-use toile_base::garment::Garment;
 use toile_base::garment::layout::OWNERS;
+use toile_base::garment::{Garment, Layout};
 use toile_base::skeleton::BONES;
 
+use crate::bounded::Fill;
 use crate::colliders::Colliders;
 use crate::lanes::{RECORD, Store};
 use forces::root::RootMotion;
@@ -43,6 +46,8 @@ pub struct Step<'a> {
 pub struct Cloth {
     /// World position (m) at the end of the last step `[particles]`: always finite.
     pub positions: Box<[Vec3A]>,
+    /// The constraints of the garment that all of this was made for.
+    layout: Arc<Layout>,
     /// The particles as the kernels have them.
     pub(crate) state: State,
     /// Where the skinned particles are to be.
@@ -89,12 +94,13 @@ impl Cloth {
     /// All storage of a garment, at rest where the garment starts; `colliders` says which capsules are which limb's.
     pub fn new(garment: &Garment, colliders: &Colliders) -> Self {
         let start: Box<[Vec3A]> = garment.start.iter().map(|&p| p.into()).collect();
-        let layout = garment.layout();
+        let layout = garment.shared_layout();
         let needs = [links::fibers::scratch_len(&layout.fibers), links::lists::scratch_len(&layout.crossing)];
         let prepared = step::prepared::Prepared::new(garment);
         let tension = prepared.tensions(layout).map(Store::zeros);
         let scratch = || Store::zeros(needs.into_iter().max().unwrap_or(0));
         Self {
+            layout: Arc::clone(layout),
             state: State::new(&garment.start, &garment.inverse_mass),
             pins: state::pins::Pins::new(garment),
             contacts: contact::body::Contacts::new(&layout.spans, &garment.parts, &garment.start, colliders),
@@ -125,10 +131,27 @@ impl Cloth {
     }
 
     /// Makes the garment ready for wind. At load.
+    ///
+    /// # Panics
+    /// Where the state was made for another garment.
     pub fn in_wind(mut self, garment: &Garment) -> Self {
+        assert!(self.is_of(garment), "the state was made for another garment");
         let owner = &garment.layout().owner;
         self.faces = Some(forces::wind::Faces::new(&garment.triangles, &garment.start, &garment.inverse_mass, owner));
         self
+    }
+
+    /// Whether the state was made for this garment or for a clone of it. Two workers step it by the garment's layout without a lock,
+    /// so no step is made with another garment.
+    pub fn is_of(&self, garment: &Garment) -> bool {
+        Arc::ptr_eq(&self.layout, garment.shared_layout())
+    }
+
+    /// The same for a step, which counts what it refuses.
+    pub(crate) fn accepts(&mut self, garment: &Garment) -> bool {
+        let accepted = self.is_of(garment);
+        self.events.refused += u64::from(!accepted);
+        accepted
     }
 
     /// Velocity of a particle at the end of the last step (m/s).
@@ -222,12 +245,14 @@ impl Cloth {
         self.faces.is_some()
     }
 
-    /// Prepares for some settings, as a step with them does first.
+    /// Prepares for some settings, as a step with them does first. Another garment than the state's own is refused and counted.
     pub fn prepare(&mut self, garment: &Garment, settings: &Settings) {
-        self.prepared.make(garment, &settings.sound());
+        if self.accepts(garment) {
+            self.prepared.make(garment, &settings.sound());
+        }
     }
 
-    /// Kinetic energy (J).
+    /// Kinetic energy (J); `garment` is the state's own.
     pub fn kinetic_energy(&self, garment: &Garment) -> f64 {
         let particles = garment.inverse_mass.iter().enumerate().filter(|(_, w)| **w > 0.0);
         particles.map(|(i, w)| 0.5 / f64::from(*w) * f64::from(self.velocity(i).length_squared())).sum()
@@ -259,6 +284,11 @@ impl Cloth {
     /// What contact did since the garment was made.
     pub fn contact_counts(&self) -> contact::body::ContactCounts {
         self.contacts.tally()
+    }
+
+    /// How full the lists were that steps fill: the fullest of them, and what all of them lost. Each can hold all that may come.
+    pub fn lists(&self) -> Fill {
+        self.contacts.usage().and(self.prepared.program.usage())
     }
 
     /// How bending went on in the last step.

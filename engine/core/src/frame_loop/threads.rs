@@ -105,14 +105,22 @@ where
     Ok(LoopThread { thread, turns, placement })
 }
 
-/// The cloth's workers, the second on the core of its role. Gives the place that it got, where there is one.
+/// The cloth's workers, for runs that a thread of the role `caller` calls: the second worker is never pinned to that thread's core. Gives
+/// the place that it got, where it has one of its own.
 ///
 /// # Errors
 /// As [`WorkerPool::new`].
-pub fn worker_pool(workers: usize) -> Result<(WorkerPool, Option<RolePlacement>), WorkerPoolError> {
+pub fn worker_pool(
+    workers: usize,
+    caller: ThreadRole,
+) -> Result<(WorkerPool, Option<RolePlacement>), WorkerPoolError> {
     let (send_placement, placed) = mpsc::sync_channel(1);
-    let pool =
-        WorkerPool::beginning(workers, move || _ = send_placement.send(thread_roles::apply(ThreadRole::Worker)))?;
+    let begin = move || match caller.second_worker() {
+        Some(role) => _ = send_placement.send(thread_roles::apply(role)),
+        // It would inherit the core of the thread that makes the pool.
+        None => thread_roles::release(),
+    };
+    let pool = WorkerPool::beginning(workers, begin)?;
     Ok((pool, placed.recv_timeout(LONGEST_START).ok()))
 }
 
@@ -162,9 +170,11 @@ mod tests {
 
     #[test]
     fn a_crew_of_two_says_where_its_worker_is() {
-        let (one, helper) = worker_pool(1).unwrap();
+        let (one, helper) = worker_pool(1, ThreadRole::Physics).unwrap();
         assert_eq!((one.workers(), helper), (1, None));
-        let (two, worker) = worker_pool(2).unwrap();
+        let (two, worker) = worker_pool(2, ThreadRole::Physics).unwrap();
         assert_eq!((two.workers(), worker.unwrap().role), (2, ThreadRole::Worker));
+        let (other, worker) = worker_pool(2, ThreadRole::Background).unwrap();
+        assert_eq!((other.workers(), worker), (2, None), "it may run wherever its caller is not");
     }
 }

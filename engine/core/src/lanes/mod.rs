@@ -88,9 +88,9 @@ impl Width {
         match self {
             Self::One | Self::Four => true,
             #[cfg(target_arch = "x86_64")]
-            Self::Eight => is_x86_feature_detected!("avx2"),
+            Self::Eight => x86::Avx2::detect().is_some(),
             #[cfg(target_arch = "x86_64")]
-            Self::Sixteen => x86::has_sixteen(),
+            Self::Sixteen => x86::Avx512::detect().is_some(),
             #[cfg(not(target_arch = "x86_64"))]
             _ => false,
         }
@@ -104,14 +104,19 @@ impl Width {
     /// Runs a kernel at this width, or at the widest below it that the processor has.
     #[inline]
     pub fn run<K: Kernel>(self, kernel: K) -> K::Out {
-        match self {
-            #[cfg(target_arch = "x86_64")]
-            Self::Sixteen if self.available() => x86::run16(kernel),
-            #[cfg(target_arch = "x86_64")]
-            Self::Eight | Self::Sixteen if Self::Eight.available() => x86::run8(kernel),
-            Self::One => kernel.run::<f32>(),
-            _ => kernel.run::<Four>(),
+        #[cfg(target_arch = "x86_64")]
+        if self == Self::Sixteen
+            && let Some(avx512) = x86::Avx512::detect()
+        {
+            return avx512.run(kernel);
         }
+        #[cfg(target_arch = "x86_64")]
+        if self >= Self::Eight
+            && let Some(avx2) = x86::Avx2::detect()
+        {
+            return avx2.run(kernel);
+        }
+        if self == Self::One { kernel.run::<f32>() } else { kernel.run::<Four>() }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Vectors of x86-64: 4 lanes everywhere, 8 with AVX2, 16 with AVX-512.
 //!
-//! The types are private to `lanes`. Only [`run8`] and [`run16`] hand the wide ones to a kernel, and `Width::run` calls them only
-//! after it asked the processor. That makes the unsafe blocks below sound.
+//! The types are private to `lanes`. Only [`Avx2::run`] and [`Avx512::run`] hand the wide ones to a kernel, and a value of `Avx2` or
+//! `Avx512` exists only where the processor was asked. That makes the unsafe blocks below sound.
 
 mod records;
 mod widths;
@@ -14,31 +14,53 @@ use super::{
     DOUBLE, Kernel, Lanes, MOST, Mask, Numbers, RECORD, ReadColumn, Readable, Records, RecordsAt, TABLE, WriteColumn,
 };
 
-/// Whether the processor and the system have 16 lanes.
-pub fn has_sixteen() -> bool {
-    is_x86_feature_detected!("avx2") && is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq")
+/// Proof that the processor and the system have AVX2: 8 lanes.
+#[derive(Clone, Copy)]
+pub struct Avx2(());
+
+/// Proof that the processor and the system have AVX2 and the two parts of AVX-512 that kernels use: 16 lanes.
+#[derive(Clone, Copy)]
+pub struct Avx512(());
+
+impl Avx2 {
+    /// Asks the processor; the standard library remembers the answer.
+    #[inline]
+    pub fn detect() -> Option<Self> {
+        is_x86_feature_detected!("avx2").then_some(Self(()))
+    }
+
+    /// Runs a kernel on 8 lanes.
+    #[inline]
+    pub fn run<K: Kernel>(self, kernel: K) -> K::Out {
+        #[target_feature(enable = "avx2")]
+        fn inner<K: Kernel>(kernel: K) -> K::Out {
+            kernel.run::<Eight>()
+        }
+        // SAFETY: only `detect` makes a value of this type, and only where it found AVX2, the one feature that `inner` enables.
+        unsafe { inner(kernel) }
+    }
 }
 
-/// A kernel on 8 lanes; the caller has asked for AVX2.
-#[inline]
-pub fn run8<K: Kernel>(kernel: K) -> K::Out {
-    #[target_feature(enable = "avx2")]
-    fn inner<K: Kernel>(kernel: K) -> K::Out {
-        kernel.run::<Eight>()
+impl Avx512 {
+    /// Asks the processor; the standard library remembers the answer.
+    #[inline]
+    pub fn detect() -> Option<Self> {
+        let all = is_x86_feature_detected!("avx2")
+            && is_x86_feature_detected!("avx512f")
+            && is_x86_feature_detected!("avx512dq");
+        all.then_some(Self(()))
     }
-    // SAFETY: `Width::run` calls this only where AVX2 was detected.
-    unsafe { inner(kernel) }
-}
 
-/// A kernel on 16 lanes; the caller has asked for AVX-512.
-#[inline]
-pub fn run16<K: Kernel>(kernel: K) -> K::Out {
-    #[target_feature(enable = "avx2,avx512f,avx512dq")]
-    fn inner<K: Kernel>(kernel: K) -> K::Out {
-        kernel.run::<Sixteen>()
+    /// Runs a kernel on 16 lanes.
+    #[inline]
+    pub fn run<K: Kernel>(self, kernel: K) -> K::Out {
+        #[target_feature(enable = "avx2,avx512f,avx512dq")]
+        fn inner<K: Kernel>(kernel: K) -> K::Out {
+            kernel.run::<Sixteen>()
+        }
+        // SAFETY: only `detect` makes a value of this type, and only where it found all features that `inner` enables.
+        unsafe { inner(kernel) }
     }
-    // SAFETY: `Width::run` calls this only where `has_sixteen` detected every feature that `inner` enables.
-    unsafe { inner(kernel) }
 }
 
 /// First `n` lanes of eight, as `_mm256_maskload_ps` wants them.

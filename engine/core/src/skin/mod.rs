@@ -135,11 +135,15 @@ impl SkinningJob {
         MeshOutput(self.layout.records.within(posed.column()))
     }
 
+    #[expect(unsafe_code, reason = "one thread writes the posed surface")]
     fn all<O: SkinOutput>(&self, blend: Blend, palette: &[Affine3A; BONES], out: Shared<O>) {
         let duals = self.duals(blend, palette);
-        SkinningWork { job: self, blend, palette, duals: &duals, out }.runs(0..self.layout.runs.len());
+        let work = SkinningWork { job: self, blend, palette, duals: &duals, out };
+        // SAFETY: no other thread has the work.
+        unsafe { work.runs(0..self.layout.runs.len()) };
     }
 
+    #[expect(unsafe_code, reason = "the workers share the posed surface")]
     fn shared<O: SkinOutput>(
         &self,
         pool: &mut WorkerPool,
@@ -154,7 +158,11 @@ impl SkinningJob {
         let duals = self.duals(blend, palette);
         let work = SkinningWork { job: self, blend, palette, duals: &duals, out };
         let (half, all) = (self.layout.half, self.layout.runs.len());
-        pool.run(1, |_, share| work.runs(if share == 0 { 0..half } else { half..all })).is_ok()
+        let share = |_: usize, share: usize| {
+            // SAFETY: `WorkerPool::run` calls this once for each share, and the two have different runs of blocks.
+            unsafe { work.runs(if share == 0 { 0..half } else { half..all }) };
+        };
+        pool.run(1, share).is_ok()
     }
 
     fn duals(&self, blend: Blend, palette: &[Affine3A; BONES]) -> [DualQuat; BONES] {
@@ -175,11 +183,15 @@ struct SkinningWork<'a, O> {
 }
 
 impl<O: SkinOutput> SkinningWork<'_, O> {
+    /// Poses some runs of blocks.
+    ///
+    /// # Safety
+    /// Meanwhile no other thread poses any of these runs, or runs of the same half.
     #[expect(unsafe_code, reason = "the workers share the posed surface")]
-    fn runs(&self, runs: Range<usize>) {
+    unsafe fn runs(&self, runs: Range<usize>) {
         let SkinLayout { runs: all, filled, rest, .. } = &self.job.layout;
-        // SAFETY: each run of the layout, which no code outside of this module can make or change, has blocks of its own, and
-        // the two shares of a run have different ones, and a spare vertex each in a mesh: no place is written by both, and
+        // SAFETY: each run of the layout, which no code outside of this module can make or change, has blocks of its own, and each half
+        // has a spare vertex of its own in a mesh. The caller keeps the halves apart, so no place is written by two threads, and
         // none is read.
         let out = unsafe { self.out.open() };
         let surface = SkinSurface { runs: &all[runs], filled, rest: ReadColumn::new(rest.as_slice()), out };

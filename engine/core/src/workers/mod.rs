@@ -16,6 +16,7 @@
 //! when the next step begins. [`WorkerPool::wake`] hides the time of waking behind whatever comes before the cloth.
 
 mod per_share;
+mod phase_check;
 
 use std::any::Any;
 use std::fmt;
@@ -33,6 +34,7 @@ use crate::sync::{
 };
 
 pub use per_share::PerShare;
+pub use phase_check::{PhaseCheck, RunningShare};
 
 /// Shares of a phase, and most workers of a pool.
 pub const SHARES: usize = 2;

@@ -320,7 +320,7 @@ impl GarmentSource {
     /// Garments in the shop's layer and with its photographs.
     fn finished(&self, mut worn: FittedGarment, wearer: &Body) -> Result<FittedGarment, FittingError> {
         for garment in &mut worn.garments {
-            garment.layer = self.layer.unwrap_or(garment.layer);
+            garment.set_layer(self.layer.unwrap_or(garment.layer));
             if let Some(photographs) = &self.photographs {
                 photographs.lay_on(garment, wearer).map_err(|e| FittingError::Input(format!("{}: {e}", self.name)))?;
             }

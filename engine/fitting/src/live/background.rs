@@ -3,6 +3,8 @@
 use std::io;
 use std::thread::{self, JoinHandle};
 
+use toile_engine::frame_loop::thread_roles::{self, ThreadRole};
+
 /// A job that has ended.
 #[derive(Debug)]
 pub enum Finished<T> {
@@ -42,7 +44,11 @@ impl<T: Send + 'static> BackgroundJob<T> {
     /// Where the system gives no thread.
     pub fn start(&mut self, name: &str, work: impl FnOnce() -> T + Send + 'static) -> io::Result<()> {
         self.abandoned = false;
-        self.thread = Some(thread::Builder::new().name(name.to_owned()).spawn(work)?);
+        let placed = move || {
+            thread_roles::apply(ThreadRole::Background);
+            work()
+        };
+        self.thread = Some(thread::Builder::new().name(name.to_owned()).spawn(placed)?);
         Ok(())
     }
 

@@ -15,6 +15,7 @@ use toile_base::clock::SECOND_NS;
 use toile_base::frame::{DepthFrame, Joints};
 use toile_engine::clock::Clock;
 use toile_engine::frame_loop::sensor_thread::{DepthImage, FrameSource, SourceFrame};
+use toile_engine::frame_loop::thread_roles::{self, ThreadRole};
 use toile_engine::meter::Meter;
 use toile_engine::triple_buffer::{Reader, TripleBuffer, Writer};
 use toile_sensors::segment::Zone;
@@ -125,11 +126,17 @@ where
         pictures.map(|own| (own.relay(), own)).map_or((None, None), |((to, from), own)| (Some(to), Some((from, own))));
     let meters = CameraMeters::default();
     let watcher = Tracking { handle: handle.clone(), clock: clock.clone(), options, meters, pictures };
-    let tracker = thread::Builder::new().name("toile-tracker".into()).spawn(move || watcher.run(seen, tracked))?;
+    let track = move || {
+        thread_roles::apply(ThreadRole::Camera);
+        watcher.run(seen, tracked)
+    };
+    let tracker = thread::Builder::new().name("toile-tracker".into()).spawn(track)?;
     let (woken, shared, own) = (tracker.thread().clone(), handle.clone(), clock.clone());
-    let camera = thread::Builder::new()
-        .name("toile-camera".into())
-        .spawn(move || wait_for_frames((depth, colours), &own, &shared, news, &woken))?;
+    let wait = move || {
+        thread_roles::apply(ThreadRole::Camera);
+        wait_for_frames((depth, colours), &own, &shared, news, &woken);
+    };
+    let camera = thread::Builder::new().name("toile-camera".into()).spawn(wait)?;
     let threads = CameraThreads { handle: handle.clone(), camera: Some(camera), tracker: Some(tracker) };
     Ok((CameraFeed::new(reader, threads, clock), handle))
 }

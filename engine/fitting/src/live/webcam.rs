@@ -9,6 +9,7 @@ use std::time::Duration;
 use toile_base::body::Sex;
 use toile_base::frame::Joints;
 use toile_engine::clock::Clock;
+use toile_engine::frame_loop::thread_roles::{self, ThreadRole};
 use toile_engine::triple_buffer::{TripleBuffer, Writer};
 use toile_pose::files::PoseError;
 use toile_pose::joints::JointPlacer;
@@ -168,9 +169,11 @@ where
     handle.follow(joints.options.sex);
     let TripleBuffer { writer, reader } = TripleBuffer::new(&None);
     let (shared, own) = (handle.clone(), clock.clone());
-    let thread = thread::Builder::new()
-        .name("toile-webcam".into())
-        .spawn(move || look_at_pictures((colour, joints, pictures), &own, &shared, writer))?;
+    let work = move || {
+        thread_roles::apply(ThreadRole::Camera);
+        look_at_pictures((colour, joints, pictures), &own, &shared, writer)
+    };
+    let thread = thread::Builder::new().name("toile-webcam".into()).spawn(work)?;
     let threads = CameraThreads::one(handle.clone(), thread);
     Ok((CameraFeed::new(reader, threads, clock), handle))
 }

@@ -12,6 +12,7 @@ use glam::Vec3;
 use toile_assets::scene_file::{SceneFile, SceneSource};
 use toile_base::body::Body;
 use toile_base::frame::Joints;
+use toile_base::garment::Garment;
 use toile_base::mesh::SkinWeights;
 use toile_base::numeric::statistics::quantile;
 use toile_base::rig::Rig;
@@ -118,9 +119,10 @@ pub fn measure(body: Option<(&Body, &Rig, &[Joints])>, workers: usize) -> Result
 
 /// The skirt of another scene on a shopper, whose skin it then meets.
 fn skirt_on(other: &PlannedScene, body: &Body, rig: &Rig, track: &[Joints]) -> Result<PlannedScene, PlanError> {
-    let mut skirt = other.garments[0].clone();
+    let (mut skirt, layout) = other.garments[0].clone().into_parts();
     let (pelvis, _) = SkinWeights::strongest([(Joint::Pelvis.index() as u8, 1.0)]);
     skirt.fixed_weights.iter_mut().for_each(|w| *w = pelvis);
+    let skirt = Garment::new(skirt, layout).expect("other bones leave the constraints as they are");
     let mut settings = other.settings[0];
     settings.contact.folds = 0;
     PlannedScene::worn(body, rig, vec![skirt], settings, track)

@@ -42,6 +42,8 @@ impl From<GarmentContactCounts> for ContactReport {
             crowded,
             crossings_most,
             left_out,
+            // A scene steps its own garments.
+            refused: _,
         } = counts;
         Self { asked, contacts, contacts_most, pairs_most, pairs_room, crowded, crossings_most, left_out }
     }

@@ -6,6 +6,7 @@ use std::io::{self, Write};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
 use std::thread;
 
+use toile_engine::frame_loop::thread_roles::{self, ThreadRole};
 use toile_engine::triple_buffer::Reader;
 use toile_fitting::live::depth_camera::CameraFigures;
 use toile_sensors::source::live::CameraState;
@@ -22,6 +23,7 @@ pub fn serve(port: u16, mut figures: Reader<HealthFigures>) -> io::Result<Socket
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
     let address = listener.local_addr()?;
     let work = move || {
+        thread_roles::apply(ThreadRole::Service);
         for stream in listener.incoming().flatten() {
             // A client that goes away before the answer has no use for it.
             let _ = answer(stream, figures.latest());

@@ -31,6 +31,7 @@ use toile_base::frame::Joints;
 use toile_engine::clock::{Clock, RealClock};
 use toile_engine::frame_loop::physics_thread::WorldScene;
 use toile_engine::frame_loop::render_thread::Renderer;
+use toile_engine::frame_loop::thread_roles::{self, ThreadRole};
 use toile_engine::frame_loop::threads;
 use toile_engine::triple_buffer::Writer;
 use toile_engine::world::World;
@@ -179,7 +180,7 @@ where
     let dressed = stock.first.on_mannequin(&pose)?;
     let SensorFeeds { feed, played, pictures, switch, portraits } = feed(config, session, clock)?;
     let workers = config.machine.workers.unwrap_or_else(workers);
-    let (crew, worker) = threads::worker_pool(workers).map_err(KioskError::input)?;
+    let (crew, worker) = threads::worker_pool(workers, ThreadRole::Physics).map_err(KioskError::input)?;
     let locked = if config.machine.lock_memory { memory::lock(options.may_lock_memory) } else { Ok(()) };
     let service_options = ServiceOptions {
         begun,
@@ -198,6 +199,8 @@ where
     let renderer = (frontend.renderer)(&dressed.world, pictures)?;
     let first = DressedScene::new(dressed, |world| (WorldScene::new(world.with_workers(crew)), E::Outfit::default()));
     let parts = LoopParts { first, renderer, source: feed, account: ThreadAccount::new(), recording };
+    // From here on this thread keeps off the cores of the physics, and so do those that it starts without a role.
+    thread_roles::apply(ThreadRole::Service);
     let (live, handover) = LiveLoop::start(parts, clock, LoopOptions::default()).map_err(KioskError::internal)?;
     stop.graceful();
     let changer = SceneChanger::new(handover, true, flight_recorder.clone());

@@ -10,6 +10,7 @@ use std::time::Duration;
 
 use toile_assets::catalogue::Catalogue;
 use toile_base::frame::Joints;
+use toile_engine::frame_loop::thread_roles::{self, ThreadRole};
 use toile_fitting::dress::try_on::DressedWorld;
 
 use super::config::Config;
@@ -130,7 +131,11 @@ impl<H: Send + 'static> StockWatch<H> {
         let (read, last) = (stock.seen.clone(), stock.seen.clone());
         let watcher = Watcher { config, stock, pose, hang, read, last, said, figures: figures.clone() };
         let thread = thread::Builder::new().name("toile-stock".into());
-        thread.spawn(move || watcher.run(every, &ended, &news_in)).map_err(KioskError::internal)?;
+        let watch = move || {
+            thread_roles::apply(ThreadRole::Background);
+            watcher.run(every, &ended, &news_in);
+        };
+        thread.spawn(watch).map_err(KioskError::internal)?;
         Ok(Some(Self { news, _end: end, next: None, lines: Vec::new(), figures, ended: false }))
     }
 

@@ -11,6 +11,8 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use toile_engine::frame_loop::thread_roles::{self, ThreadRole};
+
 use crate::http::{LONGEST, read_request};
 
 /// How long a picture is served.
@@ -51,7 +53,11 @@ impl PictureServer {
         let url = format!("http://{}{path}", listener.local_addr()?);
         let forgotten = Arc::new(AtomicBool::new(false));
         let mut served = ServedPicture { path, png, forgotten: forgotten.clone(), ends: Instant::now() + length };
-        thread::Builder::new().name("toile-picture".into()).spawn(move || served.serve(&listener))?;
+        let serve = move || {
+            thread_roles::apply(ThreadRole::Service);
+            served.serve(&listener);
+        };
+        thread::Builder::new().name("toile-picture".into()).spawn(serve)?;
         Ok(Self { url, forgotten })
     }
 

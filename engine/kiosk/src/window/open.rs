@@ -93,6 +93,7 @@ pub fn run<T: Send>(
             serve(channels)
         });
         let service = service.map_err(KioskError::internal)?;
+        thread_roles::apply(ThreadRole::Service);
         let seen = app.run(events);
         stop.request();
         let served = service.join().unwrap_or_else(|_| Err(KioskError::Internal("the service panicked".into())));

@@ -4,9 +4,7 @@
 use std::sync::Arc;
 use std::thread;
 
-use thread_priority::ThreadPriority;
-#[cfg(target_os = "linux")]
-use thread_priority::{NormalThreadSchedulePolicy, ThreadPriorityValue, ThreadSchedulePolicy};
+use toile_engine::frame_loop::thread_roles::{self, ThreadRole};
 use toile_engine::world::Snapshot;
 use toile_view::image::Size;
 use toile_view::raster::{AdapterChoice, DeviceNeeds, Gpu, PresentOutcome, PresentPacing, Presenter};
@@ -47,7 +45,8 @@ impl WindowSurface {
             // lower priority.
             drop((surface, gpu));
             let again = || {
-                lower_priority();
+                // Where the system does not let it, the share of `frame_pacing` is all that holds its threads back.
+                thread_roles::apply(ThreadRole::Driver);
                 open(window)
             };
             let again = thread::scope(|scope| scope.spawn(again).join());
@@ -156,23 +155,4 @@ fn open(window: &Arc<Window>) -> Result<(Gpu, wgpu::Surface<'static>), String> {
     let gpu = Gpu::open_to_draw(instance, Some(&surface), &AdapterChoice::Fastest, DeviceNeeds::default())
         .map_err(|e| e.to_string())?;
     Ok((gpu, surface))
-}
-
-/// This thread, and those that it starts, run at a lower priority (on Linux with a nice value of 9). Where the system does
-/// not let it, the share of [`super::frame_pacing`] is all that holds it back.
-fn lower_priority() {
-    #[cfg(target_os = "linux")]
-    {
-        let this = thread_priority::thread_native_id();
-        let policy = ThreadSchedulePolicy::Normal(NormalThreadSchedulePolicy::Other);
-        // A quarter of the way from the least to the most.
-        if let Ok(quarter) = ThreadPriorityValue::try_from(25) {
-            let priority = ThreadPriority::Crossplatform(quarter);
-            _ = thread_priority::set_thread_priority_and_policy(this, priority, policy);
-        }
-    }
-    #[cfg(not(target_os = "linux"))]
-    {
-        _ = thread_priority::set_current_thread_priority(ThreadPriority::Min);
-    }
 }

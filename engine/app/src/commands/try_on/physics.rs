@@ -2,6 +2,8 @@
 
 use toile_base::garment::Garment;
 use toile_base::limits::STEP_HZ;
+use toile_engine::cloth::Cloth;
+use toile_engine::cloth::contact::garments::GarmentContact;
 use toile_engine::world::World;
 use toile_fitting::scene::StepTimes;
 use toile_fitting::scene::contact::ContactReport;
@@ -33,6 +35,11 @@ pub fn physics(world: &World) -> report::PhysicsReport {
         }
     }
     warnings.extend(contact(world).iter().flat_map(ContactReport::warnings));
+    let lists = world.cloths().iter().map(Cloth::lists).chain(world.layers().map(GarmentContact::lists));
+    let lost = lists.map(|lists| lists.lost).sum::<u64>();
+    if lost > 0 {
+        warnings.push(format!("lists of a step were full and lost {lost} entries, which is a fault of the program; report it"));
+    }
     let held = world.colliders().held();
     if held > 0 {
         warnings.push(format!("collision spheres jumped or were not finite and were held {held} times"));

@@ -24,6 +24,8 @@ pub struct GuardEvents {
     /// Sphere steps in which a collider was not where it was said to be, because it had jumped or was not finite; since
     /// the colliders were made.
     pub held_colliders: u64,
+    /// Steps that were refused because they were asked for with another garment than the state's own.
+    pub refused: u64,
 }
 
 impl std::ops::Add for GuardEvents {
@@ -38,6 +40,7 @@ impl std::ops::Add for GuardEvents {
             held_settings: self.held_settings + more.held_settings,
             teleports: self.teleports + more.teleports,
             held_colliders: self.held_colliders + more.held_colliders,
+            refused: self.refused + more.refused,
         }
     }
 }

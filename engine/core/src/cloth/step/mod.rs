@@ -20,14 +20,18 @@ use toile_base::numeric::portable;
 use super::forces::root::{Carried, RootStep};
 use super::{Cloth, Settings, Step};
 use crate::lanes::{Shared, Store};
-use crate::workers::{PerShare, WorkerPool};
+use crate::workers::{PerShare, PhaseCheck, WorkerPool};
 use program::METERED_STAGES;
 use work::{StepWork, WorkColumns};
 
 impl Cloth {
-    /// One step of the settings' length, both owners' shares on the caller's thread.
+    /// One step of the settings' length, both owners' shares on the caller's thread. Another garment than the state's own is refused
+    /// and counted ([`guard::GuardEvents::refused`]).
     #[expect(unsafe_code, reason = "the stages of a step are done in their order")]
     pub fn step(&mut self, garment: &Garment, step: &Step<'_>) {
+        if !self.accepts(garment) {
+            return;
+        }
         let settings = self.sound(step.settings);
         let step = &Step { settings: &settings, ..*step };
         let carried = self.begin(garment, step);
@@ -35,11 +39,13 @@ impl Cloth {
         let (mut stage_ns, mut greater_share_ns) = ([0; METERED_STAGES.len()], [0; METERED_STAGES.len()]);
         let work = self.work(garment, step, carried);
         let mut begun = timed.then(Instant::now);
-        for (stage, substep) in work.prepared.program.stages() {
+        for phase in 0..work.prepared.program.len() {
+            let (stage, _) = work.prepared.program.stage(phase);
             let mut greater = 0;
             for owner in 0..OWNERS {
-                // SAFETY: this thread does the shares one after the other, in the order of the program. `work` borrows the cloth alone.
-                unsafe { work.run(stage, substep, owner) };
+                // SAFETY: the cloth was made of this garment, as was checked above. This thread does the shares one after the other, in
+                // the order of the program. `work` borrows the cloth alone.
+                unsafe { work.run(phase, owner) };
                 if let Some(start) = begun {
                     let now = Instant::now();
                     let share = (now - start).as_nanos() as u64;
@@ -62,19 +68,19 @@ impl Cloth {
         if pool.workers() < OWNERS || garment.layout().spans[1].is_empty() || step.settings.timed {
             return self.step(garment, step);
         }
+        if !self.accepts(garment) {
+            return;
+        }
         let settings = self.sound(step.settings);
         let step = &Step { settings: &settings, ..*step };
         let carried = self.begin(garment, step);
         let work = self.work(garment, step, carried);
-        let program = &work.prepared.program;
         let share = |phase: usize, owner: usize| {
-            let (stage, substep) = program.stage(phase);
-            // SAFETY: a phase is one stage, in the order of the program. `WorkerPool::run` calls this once for each share of a phase
-            // and has a barrier after each phase. `work` borrows the cloth alone. Nothing checks yet that the cloth was made of this
-            // garment: the caller of `step_with` answers for that.
-            unsafe { work.run(stage, substep, owner) };
+            // SAFETY: the cloth was made of this garment, as was checked above. `WorkerPool::run` calls this once for each share of each
+            // phase of the program, in their order, and has a barrier after each phase. `work` borrows the cloth alone.
+            unsafe { work.run(phase, owner) };
         };
-        let failed = pool.run(program.len(), share).is_err();
+        let failed = pool.run(work.prepared.program.len(), share).is_err();
         let limited = work.limited();
         self.end(garment, step, limited, failed);
     }
@@ -175,6 +181,38 @@ impl Cloth {
             gravity_step: step.settings.gravity * dt,
             damping_factor: portable::exp(-garment.fabric.damping_per_s * dt),
             width: step.settings.width,
+            check: PhaseCheck::default(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+    use toile_bake::{Shape, bake};
+    use toile_base::fabric::Fabric;
+    use toile_base::skeleton::BONES;
+
+    use super::*;
+    use crate::colliders::Colliders;
+
+    #[test]
+    fn another_garment_is_refused_and_counted() {
+        let place = |r: u32, c: u32| (Vec3::new(0.02 * c as f32, 1.0 - 0.02 * r as f32, 0.0), r == 0);
+        let [own, other] = [(); 2].map(|()| {
+            bake("sheet", "one", &Shape::sheet(6, 6, place), &Fabric::cotton_lawn()).expect("a sheet can be baked")
+        });
+        let colliders = Colliders::new(&[], &[], false).expect("no colliders are within every limit");
+        let (palette, settings) = ([Affine3A::IDENTITY; BONES], Settings::default());
+        let step = Step { palette: &palette, colliders: &colliders, settings: &settings };
+        let mut cloth = Cloth::new(&own, &colliders);
+        let start = cloth.positions.clone();
+        cloth.prepare(&other, &settings);
+        cloth.step(&other, &step);
+        cloth.step_with(&mut WorkerPool::new(1).expect("one worker is the caller"), &other, &step);
+        assert_eq!((cloth.events.refused, &cloth.positions), (3, &start), "an equal garment is another one");
+        cloth.step(&own.clone(), &step);
+        assert_eq!(cloth.events.refused, 3, "a clone is the same garment");
+        assert_ne!(cloth.positions, start);
     }
 }

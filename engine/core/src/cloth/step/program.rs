@@ -8,6 +8,7 @@
 
 use toile_base::garment::Layout;
 
+use crate::bounded::{BoundedVec, Fill};
 use crate::cloth::Quality;
 use crate::cloth::forces::bending_matrix::BendingMatrix;
 use crate::cloth::forces::stiff_bending::MAX_BENDING_STAGES;
@@ -173,7 +174,7 @@ pub struct Program {
     /// After bending, at each quality, in columns alone.
     constraints: [Box<[Stage]>; Quality::ALL.len()],
     /// Those of a substep; has room for the longest.
-    substep: Vec<Stage>,
+    substep: BoundedVec<Stage>,
     substeps: u32,
     made_for: Option<(Quality, Bending, [bool; 2])>,
 }
@@ -185,7 +186,7 @@ impl Program {
         let bending = Bending { stages: if stiff { MAX_BENDING_STAGES } else { 1 }, ..bending };
         // No more changes between columns and records than links.
         let longest = bending.len() + constraints.iter().map(|c| 2 * c.len()).max().unwrap_or(0);
-        Self { constraints, substep: Vec::with_capacity(longest), substeps: 0, made_for: None }
+        Self { constraints, substep: BoundedVec::new(longest), substeps: 0, made_for: None }
     }
 
     /// Lists the stages for some settings; `records` says whether shear and weft links are solved by records. Allocates
@@ -232,13 +233,13 @@ impl Program {
         }
     }
 
+    /// How full the list of a substep was so far.
+    pub fn usage(&self) -> Fill {
+        self.substep.usage()
+    }
+
     /// The stages of one substep.
     pub fn of_substep(&self) -> &[Stage] {
         &self.substep
-    }
-
-    /// All stages in order, each with the number of its substep.
-    pub fn stages(&self) -> impl Iterator<Item = (Stage, u32)> {
-        (0..self.len()).map(|phase| self.stage(phase))
     }
 }

@@ -1,7 +1,7 @@
 //! The stages of a step: the work of each on one owner's share of a garment.
 //!
 //! [`OwnerShare::run`] is the list of all stages; their order is [`program`](super::program)'s. A stage has two shares, one for
-//! each owner of particles, which may run at once; all of a stage is over before any of the next begins.
+//! each owner of particles, which may run at once; all of a stage is over before any of the next begins. Debug builds check that.
 
 use std::sync::atomic::AtomicU64;
 use std::sync::atomic::Ordering::Relaxed;
@@ -27,7 +27,7 @@ use crate::cloth::{
     links::{self, diagonals, fibers, lists, record_links, records, tethers},
 };
 use crate::lanes::{ReadColumn, Shared, Width, WriteColumn};
-use crate::workers::PerShare;
+use crate::workers::{PerShare, PhaseCheck};
 
 /// Everything that the shares of one step have in common.
 pub struct StepWork<'a> {
@@ -55,6 +55,8 @@ pub struct StepWork<'a> {
     pub damping_factor: f32,
     /// Lanes that the kernels run on.
     pub width: Width,
+    /// Finds shares that do not keep to the program.
+    pub check: PhaseCheck,
 }
 
 /// The columns of a step.
@@ -89,24 +91,25 @@ struct OwnerShare<'w, 'a> {
 }
 
 impl StepWork<'_> {
-    /// Does one owner's share of a stage.
+    /// Does one owner's share of a phase of the program.
     ///
     /// # Safety
-    /// All shares of earlier stages happened before this call, and no share of a later stage begins before its end. At most the
-    /// other owner's share of this stage runs meanwhile, and then the cloth was made of `garment`.
-    pub unsafe fn run(&self, stage: Stage, substep: u32, owner: usize) {
-        // SAFETY: the caller keeps the stages apart, so earlier writes are seen. Within a stage no place that one owner writes
-        // is touched by the other:
-        // - the ranges of `Layout::spans` hold each particle once (wind, root motion, prediction, contact, velocities,
-        //   tethers, records filled and read back, and turns of stiff bending write nothing else; a tether reads anchors,
-        //   which are fixed and not written);
+    /// The cloth was made of `garment`. The phases are done in the order of the program, each owner's share of each once. All shares of
+    /// earlier phases happened before this call, and no share of a later phase begins before its end. At most the other owner's share of
+    /// this phase runs meanwhile.
+    pub unsafe fn run(&self, phase: usize, owner: usize) {
+        let _running = self.check.begin(phase, owner);
+        let (stage, substep) = self.prepared.program.stage(phase);
+        // SAFETY: the caller keeps the stages apart, so earlier writes are seen. Within a stage no owner touches what the other writes:
+        // - the ranges of `Layout::spans` hold each particle once (wind, root motion, prediction, contact, velocities, tethers, records
+        //   filled and read back, and turns of stiff bending write nothing else; a tether reads anchors, which are not written);
         // - a row of the bending matrix is its particle's owner's, and what bends is not what is pushed; a slot of friction is the
         //   owner's of the particle in its middle, a row that it pushes its own particle's;
         // - the curves of links write to columns of their places, of which each is one owner's, and only read particles;
-        // - constraints of one set and different owners share no particle (`garment::layout`), and each has its own tension;
-        //   links by records fill up with one spare record an owner;
+        // - constraints of one set and different owners share no particle (`garment::layout`), and each has its own tension; links by
+        //   records fill up with one spare record an owner;
         // - each owner has a scratch of its own, and half of the tensions to clear.
-        // `Garment::new` checks spans, anchors, sets and places.
+        // `Garment::new` checks spans, anchors, sets and places, and the caller knows that the columns are of this garment.
         let columns = unsafe { self.columns.open() };
         OwnerShare { work: self, columns, owner, substep }.run(stage);
     }

@@ -63,7 +63,7 @@ impl Eight {
     #[inline(always)]
     pub(super) unsafe fn read_records(from: impl Records, k: usize) -> [Self; RECORD] {
         // SAFETY: `load_records` checked that eight records from the `k`th on lie within the column, with all their numbers.
-        // `pair` reads two of them in each of the four calls; `Width::run` detected AVX2.
+        // `pair` reads two of them in each of the four calls; `Avx2::detect` found AVX2.
         unsafe {
             let [x, y, z, w] = Self::turned([
                 Self::pair(from, k),
@@ -77,7 +77,7 @@ impl Eight {
     #[inline(always)]
     pub(super) unsafe fn write_records([x, y, z, w]: [Self; RECORD], to: impl Records, k: usize) {
         // SAFETY: `store_records` checked that eight records from the `k`th on lie within the column, with all their numbers.
-        // `part` writes two of them in each of the four calls; `Width::run` detected AVX2.
+        // `part` writes two of them in each of the four calls; `Avx2::detect` found AVX2.
         unsafe {
             let [a, b, c, d] = Self::turned([x.0, y.0, z.0, w.0]);
             Self::part(a, to, k);
@@ -89,7 +89,7 @@ impl Eight {
     #[inline(always)]
     unsafe fn pair(from: impl Records, k: usize) -> __m256 {
         // SAFETY: `read_records` passes a `k` for which it knows records `k` and `k + 4`. The loads ask for no alignment, and
-        // `Width::run` detected AVX2.
+        // `Avx2::detect` found AVX2.
         unsafe {
             let low = _mm256_castps128_ps256(_mm_loadu_ps(from.place(k)));
             _mm256_insertf128_ps::<1>(low, _mm_loadu_ps(from.place(k + 4)))
@@ -98,7 +98,7 @@ impl Eight {
     #[inline(always)]
     unsafe fn part(pair: __m256, to: impl Records, k: usize) {
         // SAFETY: `write_records` passes a `k` for which it knows records `k` and `k + 4`. The stores ask for no alignment, and
-        // `Width::run` detected AVX2.
+        // `Avx2::detect` found AVX2.
         unsafe {
             _mm_storeu_ps(to.place(k), _mm256_castps256_ps128(pair));
             _mm_storeu_ps(to.place(k + 4), _mm256_extractf128_ps::<1>(pair));
@@ -106,7 +106,7 @@ impl Eight {
     }
     #[inline(always)]
     unsafe fn turned(v: [__m256; 4]) -> [__m256; 4] {
-        // SAFETY: `Width::run` detected AVX2 before it started this kernel; the block uses registers only.
+        // SAFETY: `Avx2::detect` found AVX2 before this kernel started; the block uses registers only.
         unsafe {
             turned!(
                 v,
@@ -125,7 +125,7 @@ impl Sixteen {
     #[inline(always)]
     pub(super) unsafe fn read_records(from: impl Records, k: usize) -> [Self; RECORD] {
         // SAFETY: `load_records` checked that 16 records from the `k`th on lie within the column, with all their numbers.
-        // `four` reads four of them in each of the four calls; `Width::run` detected AVX-512.
+        // `four` reads four of them in each of the four calls; `Avx512::detect` found AVX-512.
         unsafe {
             let [x, y, z, w] = Self::turned([
                 Self::four(from, k),
@@ -139,7 +139,7 @@ impl Sixteen {
     #[inline(always)]
     pub(super) unsafe fn write_records([x, y, z, w]: [Self; RECORD], to: impl Records, k: usize) {
         // SAFETY: `store_records` checked that 16 records from the `k`th on lie within the column, with all their numbers.
-        // `part` writes four of them in each of the four calls; `Width::run` detected AVX-512.
+        // `part` writes four of them in each of the four calls; `Avx512::detect` found AVX-512.
         unsafe {
             let [a, b, c, d] = Self::turned([x.0, y.0, z.0, w.0]);
             Self::part(a, to, k);
@@ -151,7 +151,7 @@ impl Sixteen {
     #[inline(always)]
     unsafe fn four(from: impl Records, k: usize) -> __m512 {
         // SAFETY: `read_records` passes a `k` for which it knows records `k`, `k + 4`, `k + 8` and `k + 12`.
-        // The loads ask for no alignment, and `Width::run` detected AVX-512.
+        // The loads ask for no alignment, and `Avx512::detect` found AVX-512.
         unsafe {
             let v = _mm512_castps128_ps512(_mm_loadu_ps(from.place(k)));
             let v = _mm512_insertf32x4::<1>(v, _mm_loadu_ps(from.place(k + 4)));
@@ -162,7 +162,7 @@ impl Sixteen {
     #[inline(always)]
     unsafe fn part(four: __m512, to: impl Records, k: usize) {
         // SAFETY: `write_records` passes a `k` for which it knows records `k`, `k + 4`, `k + 8` and `k + 12`.
-        // The stores ask for no alignment, and `Width::run` detected AVX-512.
+        // The stores ask for no alignment, and `Avx512::detect` found AVX-512.
         unsafe {
             _mm_storeu_ps(to.place(k), _mm512_castps512_ps128(four));
             _mm_storeu_ps(to.place(k + 4), _mm512_extractf32x4_ps::<1>(four));
@@ -172,7 +172,7 @@ impl Sixteen {
     }
     #[inline(always)]
     unsafe fn turned(v: [__m512; 4]) -> [__m512; 4] {
-        // SAFETY: `Width::run` detected AVX-512 before it started this kernel; the block uses registers only.
+        // SAFETY: `Avx512::detect` found AVX-512 before this kernel started; the block uses registers only.
         unsafe {
             turned!(
                 v,
@@ -208,7 +208,7 @@ impl Eight {
     #[inline(always)]
     pub(super) unsafe fn write_doubles([a, b, c, d, e, f, g, h]: [Self; DOUBLE], to: RecordsAt<'_>, k: usize) {
         // SAFETY: `store_doubles` checked that eight double records from the `k`th on lie within the column.
-        // Each has eight numbers. The stores ask for no alignment, and `Width::run` detected AVX2.
+        // Each has eight numbers. The stores ask for no alignment, and `Avx2::detect` found AVX2.
         unsafe {
             let first = Self::turned([a.0, b.0, c.0, d.0]);
             let second = Self::turned([e.0, f.0, g.0, h.0]);
@@ -224,7 +224,7 @@ impl Sixteen {
     #[inline(always)]
     pub(super) unsafe fn write_doubles([a, b, c, d, e, f, g, h]: [Self; DOUBLE], to: RecordsAt<'_>, k: usize) {
         // SAFETY: `store_doubles` checked that 16 double records from the `k`th on lie within the column.
-        // `halves` writes two of them in each of the eight calls; `Width::run` detected AVX-512.
+        // `halves` writes two of them in each of the eight calls; `Avx512::detect` found AVX-512.
         unsafe {
             let first = Self::turned([a.0, b.0, c.0, d.0]);
             let second = Self::turned([e.0, f.0, g.0, h.0]);
@@ -240,7 +240,7 @@ impl Sixteen {
     #[inline(always)]
     unsafe fn halves(two: __m512d, to: RecordsAt<'_>, k: usize) {
         // SAFETY: `write_doubles` passes a `k` for which it knows double records `k` and `k + 4`, of eight numbers each.
-        // The stores ask for no alignment, and `Width::run` detected AVX-512.
+        // The stores ask for no alignment, and `Avx512::detect` found AVX-512.
         unsafe {
             let two = _mm512_castpd_ps(two);
             _mm256_storeu_ps(to.place(k), _mm512_castps512_ps256(two));

@@ -20,6 +20,7 @@ use toile_base::garment::Part;
 use toile_base::limits::MAX_CAPSULES;
 
 use crate::body_surface::{BodyPart, BodySurface};
+use crate::bounded::Fill;
 use crate::cloth::state::ParticleColumns;
 use crate::colliders::Colliders;
 use crate::lanes::Width;
@@ -69,6 +70,11 @@ impl Contacts {
         let [a, b] = [self.owners[0].tally, self.owners[1].tally];
         let most_pairs = [0, 1].map(|k| a.most_pairs[k] + b.most_pairs[k]);
         ContactCounts { near: a.near + b.near, swept: a.swept + b.swept, ignored: a.ignored.max(b.ignored), most_pairs }
+    }
+
+    /// How full the lists of both workers were so far.
+    pub fn usage(&self) -> Fill {
+        self.owners[0].skin.usage().and(self.owners[1].skin.usage())
     }
 
     /// Memory that it holds (bytes).

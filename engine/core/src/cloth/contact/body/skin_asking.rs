@@ -6,6 +6,7 @@ use toile_base::garment::Part;
 
 use super::ContactSettings;
 use crate::body_surface::{BodySurface, PartSurface};
+use crate::bounded::{BoundedVec, Fill};
 use crate::cloth::state::{ParticleColumns, get};
 use crate::lanes::{Kernel, Lanes, MOST, Mask, ReadColumn, Store, V3, Width, WriteColumn};
 use crate::surface::{NearestPoint, NearestVertex};
@@ -44,11 +45,11 @@ pub struct PartList {
 #[derive(Debug, Clone)]
 pub struct AskingList {
     /// Their places in the part's list.
-    places: Vec<u32>,
+    places: BoundedVec<u32>,
     /// The particles.
-    pub particles: Vec<u32>,
+    pub particles: BoundedVec<u32>,
     /// For each the triangle to start from, then what was found.
-    pub found: Vec<NearestPoint>,
+    pub found: BoundedVec<NearestPoint>,
 }
 
 impl PartList {
@@ -134,8 +135,7 @@ impl PartList {
 impl AskingList {
     /// Makes an empty list with room for `most` particles. At load.
     pub fn new(most: usize) -> Self {
-        let reserved = || Vec::with_capacity(most);
-        Self { places: reserved(), particles: reserved(), found: Vec::with_capacity(most) }
+        Self { places: BoundedVec::new(most), particles: BoundedVec::new(most), found: BoundedVec::new(most) }
     }
 
     /// Lists the particles of a part that may lie by the skin in this step, by how far they and the skin, which moved so far in the
@@ -177,10 +177,14 @@ impl AskingList {
         }
     }
 
+    /// How full it was so far.
+    pub fn usage(&self) -> Fill {
+        self.places.usage().and(self.particles.usage()).and(self.found.usage())
+    }
+
     /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
-        size_of::<u32>() * (self.places.capacity() + self.particles.capacity())
-            + size_of::<NearestPoint>() * self.found.capacity()
+        self.places.bytes() + self.particles.bytes() + self.found.bytes()
     }
 }
 
@@ -192,7 +196,7 @@ struct Approach<'a> {
     looked: [ReadColumn<'a>; 3],
     moved: f32,
     how: &'a ContactSettings,
-    places: &'a mut Vec<u32>,
+    places: &'a mut BoundedVec<u32>,
 }
 
 impl Kernel for Approach<'_> {

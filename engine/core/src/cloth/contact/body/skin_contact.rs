@@ -13,6 +13,7 @@ use super::near::ParticleBlock;
 use super::skin_asking::{AskingList, DISAGREE_M, LookAnew, PartList, turn};
 use super::touch::{ContactSurface, Friction, push};
 use crate::body_surface::{BodyPart, BodySurface, PartSurface};
+use crate::bounded::{BoundedVec, Fill};
 use crate::cloth::state::{ParticleColumns, get, set};
 use crate::lanes::{Kernel, Lanes, MOST, Mask, ReadColumn, Readable, Store, V3, Width, WriteColumn, reciprocal_root};
 use crate::surface::{FindNearest, NearestPoint, SurfaceMesh};
@@ -40,7 +41,7 @@ pub struct SkinContacts {
     /// The limb by whose skin each particle lies, where it does `[particles of the garment]`.
     by: Box<[Option<BodyPart>]>,
     /// Particles that may touch the skin in this step, and the planes there.
-    particles: Vec<u32>,
+    particles: BoundedVec<u32>,
     planes: [Store; NUMBERS],
     /// Walks of the particles of a part while they are measured: the next step goes on from where it was itself.
     measured: Box<[NearestPoint]>,
@@ -73,7 +74,7 @@ impl SkinContacts {
             measured: vec![NearestPoint::default(); longest].into(),
             by: vec![None; parts.len()].into(),
             planes: [(); NUMBERS].map(|()| Store::zeros(particles.len().next_multiple_of(MOST))),
-            particles: Vec::with_capacity(particles.len()),
+            particles: BoundedVec::new(particles.len()),
             tick: 0,
             asked: false,
         }
@@ -170,20 +171,25 @@ impl SkinContacts {
         }
     }
 
+    /// How full its lists were so far.
+    pub fn usage(&self) -> Fill {
+        self.asking.usage().and(self.particles.usage())
+    }
+
     /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
         self.lists.iter().map(PartList::bytes).sum::<usize>()
             + self.asking.bytes()
             + size_of_val(&*self.by)
             + size_of_val(&*self.measured)
-            + size_of::<u32>() * self.particles.capacity()
+            + self.particles.bytes()
             + self.planes.iter().map(Store::bytes).sum::<usize>()
     }
 }
 
 /// The planes of a step as they are made.
 struct PlaneList<'a> {
-    particles: &'a mut Vec<u32>,
+    particles: &'a mut BoundedVec<u32>,
     planes: [WriteColumn<'a>; NUMBERS],
 }
 
@@ -274,9 +280,10 @@ impl LieBySkin<'_, '_> {
             set(self.cols.skin, i as usize, Vec3A::new(numbers[0][lane], numbers[1][lane], numbers[2][lane]));
             if touches >> lane & 1 == 1 {
                 let at = self.to.particles.len();
-                self.to.particles.push(i);
-                for (column, numbers) in self.to.planes.iter().zip(&numbers) {
-                    column.set(at, numbers[lane]);
+                if self.to.particles.push(i) {
+                    for (column, numbers) in self.to.planes.iter().zip(&numbers) {
+                        column.set(at, numbers[lane]);
+                    }
                 }
             }
         }

@@ -14,6 +14,7 @@ use super::contact::{CONTACTS_AN_EDGE, ContactMemory, LayerContact};
 use super::contact_list::ContactList;
 use super::garment_surface::GarmentSurface;
 use super::pair::{GarmentPair, PairScene};
+use crate::bounded::{BoundedVec, Fill};
 use crate::cloth::state::get;
 use crate::surface::NO_TRIANGLE;
 
@@ -36,7 +37,7 @@ pub struct BorderEdges {
     /// What the contacts of each in the last step have left behind `[edges]`.
     remembered: Box<[ContactMemory]>,
     /// Of each contact of this step, in their order, which edge made it.
-    made: Vec<u32>,
+    made: BoundedVec<u32>,
 }
 
 /// An edge that looks for others, along a normal.
@@ -61,7 +62,7 @@ impl BorderEdges {
     pub fn new(surface: &GarmentSurface, particles: Range<usize>) -> Self {
         let own = surface.border_edges.iter().filter(|edge| particles.contains(&(edge[0] as usize)));
         let edges: Box<[[u32; 2]]> = own.copied().collect();
-        let made = Vec::with_capacity(CONTACTS_AN_EDGE * edges.len());
+        let made = BoundedVec::new(CONTACTS_AN_EDGE * edges.len());
         Self { remembered: vec![ContactMemory::default(); edges.len()].into(), made, edges }
     }
 
@@ -94,15 +95,21 @@ impl BorderEdges {
             let Some(triangle) = near(edge[0]) else { continue };
             let Some((normal, found)) = find_of(pair, scene, edge, triangle) else { continue };
             for (_, contact) in found {
-                contacts.push(contact.going_on(remembered, normal), normal);
-                self.made.push(e as u32);
+                if contacts.push(contact.going_on(remembered, normal), normal) {
+                    self.made.push(e as u32);
+                }
             }
         }
     }
 
+    /// How full their list was so far.
+    pub fn usage(&self) -> Fill {
+        self.made.usage()
+    }
+
     /// Memory that they hold (bytes).
     pub fn bytes(&self) -> usize {
-        size_of_val(&*self.edges) + size_of_val(&*self.remembered) + size_of::<u32>() * self.made.capacity()
+        size_of_val(&*self.edges) + size_of_val(&*self.remembered) + self.made.bytes()
     }
 }
 

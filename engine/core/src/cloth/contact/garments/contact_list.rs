@@ -3,18 +3,19 @@
 use glam::Vec3A;
 
 use super::contact::{ContactPush, LayerContact};
+use crate::bounded::{BoundedVec, Fill};
 
 /// Contacts, and what each does in the same place; what gathers reads the second alone. All storage is made once.
 #[derive(Debug, Clone)]
 pub struct ContactList {
-    contacts: Vec<LayerContact>,
-    pushes: Vec<ContactPush>,
+    contacts: BoundedVec<LayerContact>,
+    pushes: BoundedVec<ContactPush>,
 }
 
 impl ContactList {
     /// Room for so many. At load.
     pub fn new(most: usize) -> Self {
-        Self { contacts: Vec::with_capacity(most), pushes: Vec::with_capacity(most) }
+        Self { contacts: BoundedVec::new(most), pushes: BoundedVec::new(most) }
     }
 
     /// Has none.
@@ -23,12 +24,9 @@ impl ContactList {
         self.pushes.clear();
     }
 
-    /// Adds one, along a normal, if there is room.
-    pub fn push(&mut self, contact: LayerContact, normal: Vec3A) {
-        if self.contacts.len() < self.contacts.capacity() {
-            self.contacts.push(contact);
-            self.pushes.push(ContactPush::along(normal));
-        }
+    /// Adds one, along a normal; returns whether it fitted.
+    pub fn push(&mut self, contact: LayerContact, normal: Vec3A) -> bool {
+        self.contacts.push(contact) && self.pushes.push(ContactPush::along(normal))
     }
 
     /// How many there are.
@@ -53,11 +51,16 @@ impl ContactList {
 
     /// Both of each, to be changed.
     pub fn pairs_mut(&mut self) -> impl Iterator<Item = (&mut LayerContact, &mut ContactPush)> {
-        self.contacts.iter_mut().zip(&mut self.pushes)
+        self.contacts.iter_mut().zip(&mut *self.pushes)
+    }
+
+    /// How full it was so far.
+    pub fn usage(&self) -> Fill {
+        self.contacts.usage()
     }
 
     /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
-        size_of::<LayerContact>() * self.contacts.capacity() + size_of::<ContactPush>() * self.pushes.capacity()
+        self.contacts.bytes() + self.pushes.bytes()
     }
 }

@@ -7,6 +7,7 @@ use glam::Vec3A;
 
 use super::fold_motion::FoldMotion;
 use super::fold_surface::{FoldSurface, Joined};
+use crate::bounded::BoundedVec;
 use crate::lanes::{Kernel, Lanes, MOST, Mask, ReadColumn, V3};
 use crate::surface::{ClusterBoxes, Clusters};
 
@@ -45,7 +46,7 @@ pub struct FindFolds<'a> {
     /// Pairs farther apart than this part of what they keep apart are left out (1); more than any where all are wanted.
     pub nearest: f32,
     /// What is found; as many as there is room for.
-    pub pairs: &'a mut Vec<FoldPair>,
+    pub pairs: &'a mut BoundedVec<FoldPair>,
 }
 
 /// Parts of a share, each of which can be looked at in a step of its own.
@@ -222,11 +223,7 @@ impl FindFolds<'_> {
         if !(distance2 < reach * reach && distance2 < nearest * nearest) {
             return 0;
         }
-        if self.pairs.len() == self.pairs.capacity() {
-            return 1;
-        }
-        self.pairs.push(FoldPair { particles, gap });
-        0
+        u64::from(!self.pairs.push(FoldPair { particles, gap }))
     }
 }
 

@@ -19,6 +19,7 @@ use super::fold_motion::FoldMotion;
 use super::fold_surface::FoldSurface;
 use super::pair::{PairScene, opposite};
 use super::uncross::{Tangle, Uncross};
+use crate::bounded::BoundedVec;
 use crate::cloth::state::get;
 
 /// Capacity of one worker for pairs of a garment's particles, per particle. If there are more pairs, it keeps the nearest, relative
@@ -54,7 +55,7 @@ pub struct FoldScene<'a> {
 pub struct FoldShare {
     share: usize,
     /// Of each part of its clusters the pairs that were found when that was last looked at.
-    pairs: [Vec<FoldPair>; PARTS],
+    pairs: [BoundedVec<FoldPair>; PARTS],
     /// Whether the pairs of all parts have to be found, because nothing is known of them.
     unknown: bool,
     /// Most pairs that were kept at once.
@@ -84,7 +85,7 @@ impl FoldShare {
     pub fn new(particles: usize, share: usize) -> Self {
         Self {
             share,
-            pairs: [(); PARTS].map(|()| Vec::with_capacity(PAIRS_A_PARTICLE * particles / PARTS)),
+            pairs: [(); PARTS].map(|()| BoundedVec::new(PAIRS_A_PARTICLE * particles / PARTS)),
             unknown: true,
             most: 0,
             crowded: 0,
@@ -121,8 +122,12 @@ impl FoldShare {
             let free = self.uncross.is_sure(i) && self.uncross.is_sure(j) || folds.surface.is_local(i, j);
             let along = || if free { away.try_normalize() } else { None };
             match side(scene, folds.surface, i, j) {
-                Some(normal) => contacts.push(LayerContact::with_particle(i, j, pair.gap.min(thickness)), normal),
-                None => along().into_iter().for_each(|n| contacts.push(LayerContact::with_particle(i, j, pair.gap), n)),
+                Some(normal) => _ = contacts.push(LayerContact::with_particle(i, j, pair.gap.min(thickness)), normal),
+                None => {
+                    if let Some(normal) = along() {
+                        contacts.push(LayerContact::with_particle(i, j, pair.gap), normal);
+                    }
+                }
             }
         }
         let parts = &scene.surfaces[0].parts;
@@ -139,19 +144,19 @@ impl FoldShare {
             }
         }
         self.unknown = false;
-        self.most = self.most.max(self.pairs.iter().map(Vec::len).sum());
+        self.most = self.most.max(self.pairs.iter().map(|p| p.len()).sum());
     }
 
     /// Forgets what was found, because steps are made without it.
     pub fn forget(&mut self) {
-        self.pairs.iter_mut().for_each(Vec::clear);
+        self.pairs.iter_mut().for_each(BoundedVec::clear);
         self.unknown = true;
     }
 
     /// Counts of the pairs and crossings that did not fit.
     pub fn counts(&self) -> FoldCounts {
         let Uncross { most, left_out, .. } = self.uncross;
-        let pairs_room = self.pairs.iter().map(Vec::capacity).sum::<usize>() as u64;
+        let pairs_room = self.pairs.iter().map(|p| p.usage().capacity).sum();
         let (pairs_most, crossings_most) = (self.most as u64, most as u64);
         FoldCounts { pairs_most, pairs_room, crowded: self.crowded, crossings_most, left_out }
     }
@@ -179,7 +184,7 @@ impl FoldShare {
 
     /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
-        size_of::<FoldPair>() * self.pairs.iter().map(Vec::capacity).sum::<usize>() + self.uncross.bytes()
+        self.pairs.iter().map(BoundedVec::bytes).sum::<usize>() + self.uncross.bytes()
     }
 }
 

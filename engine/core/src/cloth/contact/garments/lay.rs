@@ -1,7 +1,7 @@
 //! Dressing: outer garments are laid outside of inner ones, and what is tucked in inside. At load.
 
 use glam::{Vec3, Vec3A};
-use toile_base::garment::{Garment, GarmentData};
+use toile_base::garment::Garment;
 
 use super::garment_surface::GarmentSurface;
 use super::order::wearing_order;
@@ -75,11 +75,11 @@ fn near(surface: &GarmentSurface, start: &[Vec3], points: &[Vec3]) -> Vec<(u32, 
 fn particles_out(garments: &mut [Garment], outer: usize, inner: usize, apart: f32) -> bool {
     let near = near(&GarmentSurface::new(&garments[inner]), &garments[inner].start, &garments[outer].start);
     let mut moved = false;
-    let GarmentData { tuck, start, .. } = &mut *garments[outer];
-    let tuck = tuck.as_ref().filter(|tuck| tuck.into == inner);
+    let tuck = garments[outer].tuck.clone().filter(|tuck| tuck.into == inner);
+    let start = garments[outer].start_mut();
     for (i, _, normal, front) in near {
         // Where it belongs is in front, of what is tucked in behind.
-        let side = if tuck.is_some_and(|tuck| tuck.particles[i as usize]) { -1.0 } else { 1.0 };
+        let side = if tuck.as_ref().is_some_and(|tuck| tuck.particles[i as usize]) { -1.0 } else { 1.0 };
         if side * front < apart {
             start[i as usize] += Vec3::from(normal * (side * apart - front));
             moved |= side * front < 0.5 * apart;
@@ -115,6 +115,6 @@ fn faces_out(garments: &mut [Garment], outer: usize, inner: usize, apart: f32) -
         let kept = &mut longest[v as usize];
         *kept = if push.length_squared() > kept.length_squared() { push } else { *kept };
     }
-    garments[outer].start.iter_mut().zip(longest).for_each(|(p, push)| *p += Vec3::from(push));
+    garments[outer].start_mut().iter_mut().zip(longest).for_each(|(p, push)| *p += Vec3::from(push));
     moved
 }

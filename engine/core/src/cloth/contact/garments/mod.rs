@@ -33,10 +33,13 @@ mod uncross;
 #[expect(unsafe_code, reason = "the workers of a step share the contacts")]
 mod work;
 
+use std::sync::Arc;
+
 use glam::Vec3;
-use toile_base::garment::Garment;
+use toile_base::garment::{Garment, Layout};
 use toile_base::limits::MAX_GARMENTS;
 
+use crate::bounded::Fill;
 use bearing::GarmentBearing;
 use garment_surface::{GarmentMotion, GarmentSurface};
 use order::heights;
@@ -74,6 +77,8 @@ pub struct GarmentContactCounts {
     pub crossings_most: u64,
     /// Crossings that there was no room for, summed over the steps.
     pub left_out: u64,
+    /// Steps that were refused because they were asked for with other garments than the layers' own, or with states of others.
+    pub refused: u64,
 }
 
 impl GarmentContactCounts {
@@ -96,6 +101,8 @@ impl GarmentContactCounts {
 /// The contact between the garments of an outfit. All storage is made once.
 #[derive(Debug, Clone)]
 pub struct GarmentContact {
+    /// The constraints of the garments that all of this was made for.
+    layouts: Box<[Arc<Layout>]>,
     surfaces: Box<[GarmentSurface]>,
     motions: Box<[GarmentMotion]>,
     pairs: Box<[GarmentPair]>,
@@ -141,6 +148,7 @@ impl GarmentContact {
         }
         let halves = |share: usize| pairs.iter().map(|p| PairShare::new(p, &surfaces, share)).collect::<Vec<_>>();
         Some(Self {
+            layouts: garments.iter().map(|g| Arc::clone(g.shared_layout())).collect(),
             motions: surfaces.iter().map(GarmentMotion::new).collect(),
             shares: halves(0).into_iter().chain(halves(1)).collect(),
             bearing: garments.iter().map(|g| GarmentBearing::new(g.particles())).collect(),
@@ -160,6 +168,13 @@ impl GarmentContact {
     /// What layer contact did so far.
     pub fn counts(&self) -> GarmentContactCounts {
         self.counts
+    }
+
+    /// How full the lists were that steps fill: the fullest of them, and what all of them lost. Each can hold all that may come; pairs
+    /// and crossings of folds have limits of their own, which [`Self::counts`] reports.
+    pub fn lists(&self) -> Fill {
+        let shares = self.shares.iter().map(PairShare::usage);
+        shares.chain(self.touching.iter().map(TouchLists::usage)).fold(Fill::default(), Fill::and)
     }
 
     /// Memory that it holds (bytes).

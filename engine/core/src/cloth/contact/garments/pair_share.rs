@@ -8,6 +8,7 @@ use super::contact_list::ContactList;
 use super::fold_share::{FoldCounts, FoldScene, FoldShare};
 use super::garment_surface::GarmentSurface;
 use super::pair::{FASTER, GarmentPair, PairScene, REACH_M};
+use crate::bounded::{BoundedVec, Fill};
 use crate::cloth::state::get;
 use crate::lanes::{Kernel, Lanes, MOST, Mask, Readable, Store, V3, WriteColumn};
 use crate::surface::{FindNearest, NearestPoint, NearestVertex, SurfaceMesh};
@@ -48,8 +49,8 @@ pub struct PairShare {
     /// How far each particle and its face can still move before it needs to be looked at (m).
     slack: Store,
     /// Particles that are looked at in this step, and what is found.
-    list: Vec<u32>,
-    found: Vec<NearestPoint>,
+    list: BoundedVec<u32>,
+    found: BoundedVec<NearestPoint>,
     /// The contacts of this step.
     pub contacts: ContactList,
     /// Particles looked at in this step.
@@ -77,8 +78,8 @@ impl PairShare {
             remembered: vec![Remembered::default(); len].into(),
             corner: vec![0; len].into(),
             slack: Store::zeros(len),
-            list: Vec::with_capacity(len),
-            found: Vec::with_capacity(len),
+            list: BoundedVec::new(len),
+            found: BoundedVec::new(len),
             contacts: ContactList::new(most),
             borders,
             asked: 0,
@@ -202,13 +203,18 @@ impl PairShare {
         self.folds.as_ref().map(FoldShare::counts).unwrap_or_default()
     }
 
+    /// How full its lists were so far.
+    pub fn usage(&self) -> Fill {
+        self.list.usage().and(self.found.usage()).and(self.contacts.usage()).and(self.borders.usage())
+    }
+
     /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.remembered)
             + size_of_val(&*self.corner)
             + self.slack.bytes()
-            + size_of::<u32>() * self.list.capacity()
-            + size_of::<NearestPoint>() * self.found.capacity()
+            + self.list.bytes()
+            + self.found.bytes()
             + self.contacts.bytes()
             + self.borders.bytes()
             + self.folds.as_ref().map_or(0, FoldShare::bytes)
@@ -266,7 +272,7 @@ struct SpendSlack<'a> {
     /// Length of the step (s).
     seconds: f32,
     /// Those that are to be looked at.
-    list: &'a mut Vec<u32>,
+    list: &'a mut BoundedVec<u32>,
 }
 
 impl Kernel for SpendSlack<'_> {

@@ -2,7 +2,7 @@
 
 use toile_base::limits::MAX_GARMENTS;
 
-use crate::cloth::step::program::{BEFORE, Stage};
+use crate::cloth::step::program::BEFORE;
 
 /// One phase of a step: both workers' shares of it may run at once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -13,8 +13,8 @@ pub enum LayerPhase {
     Find,
     /// Which contacts act on each particle.
     Lists,
-    /// What comes before the first substep of each garment.
-    Before(Stage),
+    /// One of the stages before the first substep, of each garment ([`BEFORE`]).
+    Before(usize),
     /// The end of a shared garment's substep: contact with the body, last as ever, and the velocities.
     Finish(usize, usize),
     /// A stage of a shared garment before contact, counted within the substep, in a substep.
@@ -60,7 +60,7 @@ impl LayerPhases {
             0 => LayerPhase::Motions,
             1 => LayerPhase::Find,
             2 => LayerPhase::Lists,
-            before if before < 3 + BEFORE.len() => LayerPhase::Before(BEFORE[before - 3]),
+            before if before < 3 + BEFORE.len() => LayerPhase::Before(before - 3),
             last if last + 1 == self.count() => LayerPhase::End,
             later => {
                 let later = later - 3 - BEFORE.len();

@@ -1,6 +1,8 @@
 //! One step of all garments of an outfit, substep by substep together.
 
-use toile_base::garment::Garment;
+use std::sync::Arc;
+
+use toile_base::garment::{Garment, Layout};
 use toile_base::limits::MAX_GARMENTS;
 
 use super::GarmentContact;
@@ -16,6 +18,17 @@ impl GarmentContact {
         self.pairs.iter().any(|p| p.every(every) > 0)
     }
 
+    /// Whether these are the garments that the layers were made of, each with a state of its own; counts what it refuses.
+    fn accepts(&mut self, cloths: &[Cloth], garments: &[Garment]) -> bool {
+        let same = |(layout, garment): (&Arc<Layout>, &Garment)| Arc::ptr_eq(layout, garment.shared_layout());
+        let accepted = cloths.len() == garments.len()
+            && self.layouts.len() == garments.len()
+            && self.layouts.iter().zip(garments).all(same)
+            && cloths.iter().zip(garments).all(|(cloth, garment)| cloth.is_of(garment));
+        self.counts.refused += u64::from(!accepted);
+        accepted
+    }
+
     /// Forgets what was found, because no step will be made with it.
     pub fn forget(&mut self) {
         self.paces.iter_mut().for_each(PairPace::forget);
@@ -23,7 +36,8 @@ impl GarmentContact {
 
     /// One step of the garments that these layers were made of, each worker its owner's particles of each: the same bits with one
     /// worker.
-    /// All take as many substeps as the garment that asks for most.
+    /// All take as many substeps as the garment that asks for most. Other garments than the layers' own, and states of others, are
+    /// refused and counted ([`super::GarmentContactCounts::refused`]).
     ///
     /// # Errors
     /// Where a worker panicked: the garments then keep what they had published.
@@ -35,6 +49,9 @@ impl GarmentContact {
         garments: &[Garment],
         step: &Step<'_>,
     ) -> Result<(), SharePanicked> {
+        if !self.accepts(cloths, garments) {
+            return Ok(());
+        }
         let asked = garments.iter().map(|g| step.settings.substeps_of(g.substeps)).max().unwrap_or(1);
         let mut settings = Settings { substeps: Some(asked), substep_share: 1.0, ..*step.settings };
         cloths.iter_mut().for_each(|cloth| settings = cloth.sound(&settings));
@@ -52,12 +69,11 @@ impl GarmentContact {
         }
         let parts = LayerParts { surfaces, pairs, paces, worker, turns: *turns, motions, shares, touching, bearing };
         let work = LayerWork::new(&works, parts, substeps);
-        let phases = work.phases();
-        let done = pool.run(phases.count(), |phase, share| {
-            // SAFETY: `WorkerPool::run` does the phases of this work in their order, each share once, with a barrier after each phase.
-            // `work` borrows the cloths and these layers alone. Nothing checks yet that they were made of these garments: the caller
-            // of `step` answers for that.
-            unsafe { work.run(phases.at(phase), share) };
+        let done = pool.run(work.phases(), |phase, share| {
+            // SAFETY: these layers and the cloths were made of these garments, as was checked above. `WorkerPool::run` does the phases of
+            // this work in their order, each share once, with a barrier after each phase. `work` borrows the cloths and these layers
+            // alone.
+            unsafe { work.run(phase, share) };
         });
         let limited: heapless::Vec<u64, MAX_GARMENTS> = works.iter().map(|w| w.limited()).collect();
         let times = work.times();

@@ -19,7 +19,7 @@ fn sheet(side: u32, corner: Vec3, layer: u8) -> Garment {
     fabric.thickness_mm = 4.0;
     let place = |r: u32, c: u32| (corner + Vec3::new(c as f32 * 0.02, 0.0, r as f32 * 0.02), false);
     let mut garment = bake("sheet", "one", &Shape::sheet(side, side, place), &fabric).unwrap();
-    garment.layer = layer;
+    garment.set_layer(layer);
     garment
 }
 
@@ -84,6 +84,23 @@ fn garments_that_cannot_meet_have_only_their_folds() {
 }
 
 #[test]
+fn other_garments_are_refused_and_counted() {
+    let mut scene = SheetScene::new(pile(2, 0.006), 1, Width::widest());
+    let before = scene.height(1);
+    let own = std::mem::replace(&mut scene.garments, pile(2, 0.006));
+    scene.steps(1);
+    assert_eq!((scene.layers.counts().refused, scene.height(1)), (1, before), "equal garments are others");
+    scene.garments = own;
+    scene.cloths.swap(0, 1);
+    scene.steps(1);
+    assert_eq!(scene.layers.counts().refused, 2, "each garment has its own state");
+    scene.cloths.swap(0, 1);
+    scene.steps(1);
+    assert_eq!(scene.layers.counts().refused, 2);
+    assert!(scene.height(1) < before, "the upper sheet falls");
+}
+
+#[test]
 fn sheets_come_to_rest_a_thickness_apart_and_stay() {
     let mut scene = SheetScene::new(pile(3, 0.006), 1, Width::widest());
     scene.steps(240);
@@ -113,7 +130,9 @@ fn borne(layers: &GarmentContact, garment: usize, w: &[f32]) -> Vec3A {
 fn a_floor_bears_the_weight_of_all_that_lies_on_the_lowest_sheet() {
     let mut garments = pile(5, 0.006);
     // A coat of five times the weight.
-    garments[3].inverse_mass.iter_mut().for_each(|w| *w *= 0.2);
+    let (mut data, layout) = garments.remove(3).into_parts();
+    data.inverse_mass.iter_mut().for_each(|w| *w *= 0.2);
+    garments.insert(3, Garment::new(data, layout).unwrap());
     let mut scene = SheetScene::new(garments, 1, Width::widest());
     scene.steps(480);
     let dt = scene.settings.step_seconds / scene.settings.substeps_of(scene.garments[0].substeps) as f32;
@@ -210,14 +229,14 @@ fn tube(radius: f32, top: f32, rows: u32, layer: u8) -> Garment {
         (1..rows).flat_map(|r| (0..COLUMNS).map(move |c| [row(r, c), row(r, c + 1), row(r - 1, c + 1), row(r - 1, c)]));
     shape.faces = faces.collect();
     let mut garment = bake("tube", "one", &shape, &toile_assets::fabric::built_in("cotton-jersey").unwrap()).unwrap();
-    garment.layer = layer;
+    garment.set_layer(layer);
     garment
 }
 
 /// A shirt 20 mm wider than the trousers over whose waistband, at 1 m, it comes down by 160 mm.
 fn shirt_and_trousers() -> Vec<Garment> {
     let mut trousers = tube(0.10, 1.0, 20, 1);
-    trousers.name = "trousers".into();
+    trousers.set_name("trousers".into());
     vec![trousers, tube(0.12, 1.3, 24, 2)]
 }
 
@@ -358,7 +377,7 @@ fn strip(across: bool, height: f32, held: bool, layer: u8) -> Garment {
         (at, held && (c == 0 || c == 5))
     };
     let mut garment = bake("strip", "one", &Shape::sheet(2, 6, place), &fabric).unwrap();
-    garment.layer = layer;
+    garment.set_layer(layer);
     garment
 }
 

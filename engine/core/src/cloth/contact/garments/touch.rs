@@ -11,6 +11,7 @@ use super::contact::{LayerContact, VERTICES};
 use super::fold_share::FoldShare;
 use super::garment_surface::GarmentSurface;
 use super::pair::GarmentPair;
+use crate::bounded::{BoundedVec, Fill};
 
 /// One contact that acts on a particle.
 #[derive(Debug, Clone, Copy, Default)]
@@ -46,8 +47,8 @@ pub struct TouchLists {
     /// The particles of each owner, first and behind the last of each run.
     spans: [Box<[[u32; 2]]>; OWNERS],
     /// By level, then by owner and particle.
-    touches: Vec<Touch>,
-    touched: Vec<Touched>,
+    touches: BoundedVec<Touch>,
+    touched: BoundedVec<Touched>,
     /// Where in `touched` each part of each level begins and ends. The garment's own level has every particle that anything touches at
     /// any level.
     ranges: [[[u32; 2]; OWNERS]; MOST_LEVELS],
@@ -90,8 +91,8 @@ impl TouchLists {
         Self {
             garment,
             spans,
-            touches: Vec::with_capacity(pairs.iter().map(most).sum()),
-            touched: Vec::with_capacity(MOST_LEVELS * particles),
+            touches: BoundedVec::new(pairs.iter().map(most).sum()),
+            touched: BoundedVec::new(MOST_LEVELS * particles),
             ranges: Default::default(),
             counts: [(); 2].map(|()| vec![0; particles].into()),
             load: [(); 2].map(|()| vec![0.0; particles].into()),
@@ -165,7 +166,10 @@ impl TouchLists {
         touches.resize(next as usize, Touch::default());
         each(&mut |i, touch| {
             let place = &mut count[i as usize];
-            touches[*place as usize] = touch;
+            // None where there was no room for all.
+            if let Some(to) = touches.get_mut(*place as usize) {
+                *to = touch;
+            }
             *place += 1;
         });
     }
@@ -199,7 +203,8 @@ impl TouchLists {
 
     /// The touches of a particle, of those that are listed for a level.
     pub fn of(&self, touched: &Touched) -> &[Touch] {
-        &self.touches[touched.touches[0] as usize..touched.touches[1] as usize]
+        let [begin, end] = touched.touches.map(|at| (at as usize).min(self.touches.len()));
+        &self.touches[begin..end]
     }
 
     /// Sum of the shares of the contacts of a level on each particle `[particles]`.
@@ -207,12 +212,17 @@ impl TouchLists {
         &self.load[usize::from(level != self.own_level())]
     }
 
+    /// How full they were so far.
+    pub fn usage(&self) -> Fill {
+        self.touches.usage().and(self.touched.usage())
+    }
+
     /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
         self.load.iter().map(|load| size_of_val(&**load)).sum::<usize>()
             + self.counts.iter().map(|count| size_of_val(&**count)).sum::<usize>()
             + self.spans.iter().map(|span| size_of_val(&**span)).sum::<usize>()
-            + size_of::<Touch>() * self.touches.capacity()
-            + size_of::<Touched>() * self.touched.capacity()
+            + self.touches.bytes()
+            + self.touched.bytes()
     }
 }

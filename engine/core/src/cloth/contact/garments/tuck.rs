@@ -76,7 +76,8 @@ pub fn tuck_in(garments: &mut [Garment], tucked: usize) -> Result<(), TuckError>
         return Err(TuckError::Long { garment: garment(), into: name, reaches_mm: deepest * 1e3 });
     }
     let particles = (0..own.particles()).map(|i| below(i) > -SLIPS_M).collect();
-    garments[tucked].tuck = Some(Tuck { into, band, particles });
+    let tuck = Tuck { into, band, particles };
+    garments[tucked].set_tuck(Some(tuck)).expect("it speaks of each particle of its garment");
     Ok(())
 }
 

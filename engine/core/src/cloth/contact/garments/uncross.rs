@@ -10,6 +10,7 @@ use toile_base::numeric::portable;
 
 use super::contact::LayerContact;
 use super::contact_list::ContactList;
+use crate::bounded::BoundedVec;
 use crate::cloth::state::get;
 use crate::lanes::WriteColumn;
 use crate::surface::SurfaceMesh;
@@ -67,7 +68,7 @@ impl Crossing {
 /// The crossings of one worker's half of a garment.
 #[derive(Debug, Clone)]
 pub struct Uncross {
-    active: Vec<Crossing>,
+    active: BoundedVec<Crossing>,
     /// Number of steps for which each particle keeps apart from no other `[particles]`.
     unsure: Box<[u8]>,
     /// Most crossings that were kept at once.
@@ -90,7 +91,7 @@ pub struct Tangle<'a> {
 impl Uncross {
     /// Room for a garment of so many particles. At load.
     pub fn new(particles: usize) -> Self {
-        Self { active: Vec::with_capacity(MOST_CROSSINGS), unsure: vec![0; particles].into(), most: 0, left_out: 0 }
+        Self { active: BoundedVec::new(MOST_CROSSINGS), unsure: vec![0; particles].into(), most: 0, left_out: 0 }
     }
 
     /// Whether none of a particle's edges has crossed anything lately.
@@ -160,8 +161,7 @@ impl Uncross {
 
     /// Keeps a crossing, if need be in place of the one that reaches farthest through.
     fn keep(&mut self, crossing: Crossing) {
-        if self.active.len() < MOST_CROSSINGS {
-            self.active.push(crossing);
+        if self.active.push(crossing) {
             return;
         }
         self.left_out += 1;
@@ -174,7 +174,7 @@ impl Uncross {
 
     /// Memory that it holds (bytes).
     pub fn bytes(&self) -> usize {
-        size_of::<Crossing>() * self.active.capacity() + self.unsure.len()
+        self.active.bytes() + self.unsure.len()
     }
 }
 
@@ -255,7 +255,7 @@ mod tests {
             (0..count).for_each(|k| uncross.keep(crossing(order(k))));
             let mut all: Vec<_> = uncross.active.iter().map(Crossing::order).collect();
             all.sort_unstable();
-            (all, uncross.left_out, uncross.active.capacity())
+            (all, uncross.left_out, uncross.active.usage().capacity as usize)
         };
         let (first, left_out, capacity) = kept(&|k| k);
         assert_eq!((first.len(), left_out, capacity), (MOST_CROSSINGS, 500, MOST_CROSSINGS));

@@ -3,6 +3,8 @@
 //! A barrier of the workers stands between two phases. Within a phase a worker alone writes its data. Particles belong to the worker
 //! of their owner's share, or of their garment if one worker owns it whole. Contacts belong to the worker of their half of the
 //! particles. Pushes of contacts on particles belong to the worker of one half of the touched particles.
+//!
+//! Debug builds check that the shares keep to the order of the phases, and that each phase uses only the data that it may use.
 
 use std::marker::PhantomData;
 use std::sync::atomic::AtomicU64;
@@ -23,9 +25,10 @@ use super::phases::{LayerPhase, LayerPhases};
 use super::touch::TouchLists;
 use super::turns::{Turn, Turns};
 use crate::cloth::state::ParticleColumns;
-use crate::cloth::step::program::{LAYERS_METERED, METERED_STAGES, Stage};
+use crate::cloth::step::program::{BEFORE, LAYERS_METERED, METERED_STAGES};
 use crate::cloth::step::work::StepWork;
 use crate::lanes::Width;
+use crate::workers::PhaseCheck;
 
 /// Things of which each belongs to one worker at a time.
 struct Cells<'a, T> {
@@ -87,9 +90,11 @@ pub struct LayerWork<'a> {
     touching: Cells<'a, TouchLists>,
     resting: heapless::Vec<Cells<'a, Resting>, MAX_GARMENTS>,
     bearing: heapless::Vec<Cells<'a, Bearing>, MAX_GARMENTS>,
-    substeps: usize,
+    phases: LayerPhases,
     /// Time of the stages of all garments (ns), where they are timed.
     times: [AtomicU64; METERED_STAGES.len()],
+    /// Finds shares that do not keep to the order of the phases.
+    check: PhaseCheck,
 }
 
 /// What of the layers a step works on.
@@ -118,6 +123,9 @@ impl<'a> LayerWork<'a> {
     /// The work of a step.
     pub fn new(works: &'a [StepWork<'a>], parts: LayerParts<'a>, substeps: usize) -> Self {
         let LayerParts { surfaces, pairs, paces, worker, turns, motions, shares, touching, bearing } = parts;
+        let shared = (0..works.len()).filter(|&g| is_shared(&works[g])).map(|g| (g, last_stage(&works[g]))).collect();
+        let whole = works.iter().any(|work| !is_shared(work));
+        let phases = LayerPhases { shared, whole, turns: turns.count(), substeps };
         let (motions, shares, touching) = (Cells::new(motions), Cells::new(shares), Cells::new(touching));
         let (resting, bearing) =
             bearing.iter_mut().map(|b| (Cells::new(&mut b.resting), Cells::new(&mut b.bearing))).unzip();
@@ -133,8 +141,9 @@ impl<'a> LayerWork<'a> {
             touching,
             resting,
             bearing,
-            substeps,
+            phases,
             times: Default::default(),
+            check: PhaseCheck::default(),
         }
     }
 
@@ -143,81 +152,95 @@ impl<'a> LayerWork<'a> {
         self.times.each_ref().map(|t| t.load(Relaxed))
     }
 
-    /// Does something that counts towards a metered stage.
-    fn meter(&self, stage: usize, act: impl FnOnce()) {
-        let begun = self.works[0].step.settings.timed.then(Instant::now);
-        act();
-        if let Some(begun) = begun {
-            // Relaxed: a sum that is read when all is done.
-            self.times[stage].fetch_add(begun.elapsed().as_nanos() as u64, Relaxed);
-        }
+    /// Number of phases of the step.
+    pub fn phases(&self) -> usize {
+        self.phases.count()
     }
 
     /// Does one worker's share of a phase.
     ///
     /// # Safety
-    /// The layers and the cloths were made of the garments of this step. The phases are those of [`Self::phases`], in their order, and
-    /// each share of a phase is done once. All shares of earlier phases happened before this call, and no share of a later phase begins
-    /// before its end.
-    pub unsafe fn run(&self, phase: LayerPhase, share: usize) {
-        match phase {
+    /// The layers and the cloths were made of the garments of this step. The phases are done in their order, from 0 to [`Self::phases`],
+    /// and each share of a phase is done once. All shares of earlier phases happened before this call, and no share of a later phase
+    /// begins before its end.
+    pub unsafe fn run(&self, phase: usize, share: usize) {
+        let _running = self.check.begin(phase, share);
+        LayerShare { work: self, phase: self.phases.at(phase), share }.run();
+    }
+}
+
+/// Whether both workers own particles of a garment.
+fn is_shared(work: &StepWork<'_>) -> bool {
+    !work.garment.layout().spans[1].is_empty()
+}
+
+/// The place within a substep of its last stage, which is contact with the body.
+fn last_stage(work: &StepWork<'_>) -> usize {
+    work.prepared.program.of_substep().len().saturating_sub(1)
+}
+
+/// One worker's share of one phase. Debug builds check that each method is called in the phases that make it sound.
+struct LayerShare<'w, 'a> {
+    work: &'w LayerWork<'a>,
+    phase: LayerPhase,
+    share: usize,
+}
+
+impl LayerShare<'_, '_> {
+    fn run(&self) {
+        let garments = || 0..self.work.works.len();
+        match self.phase {
             LayerPhase::Motions => self.meter(LAYERS_METERED, || {
-                self.each_garment(share, |g| {
+                self.each_garment(|g| {
                     self.give_way(g);
                     self.motion(g);
                 });
             }),
             LayerPhase::Find => self.meter(LAYERS_METERED, || {
-                self.each_pair(share, |p, own| match self.paces[p].search {
-                    Search::Anew(steps) => own.find(&self.pairs[p], &self.scene(p, steps)),
+                self.each_pair(|p, own| match self.work.paces[p].search {
+                    Search::Anew(steps) => own.find(&self.work.pairs[p], &self.scene(p, steps)),
                     Search::Keep => own.asked = 0,
                     Search::Off => own.rest(),
                 });
             }),
-            LayerPhase::Lists => self.meter(LAYERS_METERED, || self.each_garment(share, |g| self.fill_lists(g))),
-            LayerPhase::Before(stage) => (0..self.works.len()).for_each(|g| self.stage(g, stage, 0, share)),
-            LayerPhase::Finish(g, substep) => self.finish_before(g, substep, share),
-            LayerPhase::Stage(g, at, substep) => self.stage(g, self.stages(g).1[at], substep, share),
-            LayerPhase::Whole(substep) => (0..self.works.len()).filter(|&g| !self.is_shared(g)).for_each(|g| {
-                self.finish_before(g, substep, share);
-                self.stages(g).1.iter().for_each(|&stage| self.stage(g, stage, substep, share));
-            }),
-            LayerPhase::Solve(substep, at) => self.meter(LAYERS_METERED, || self.turn(substep, at, share)),
+            LayerPhase::Lists => self.meter(LAYERS_METERED, || self.each_garment(|g| self.fill_lists(g))),
+            LayerPhase::Before(phase) => garments().for_each(|g| self.stage(g, phase)),
+            LayerPhase::Finish(g, substep) => self.finish_before(g, substep),
+            LayerPhase::Stage(g, at, substep) => self.stage_of_substep(g, at, substep),
+            LayerPhase::Whole(substep) => {
+                garments().filter(|&g| !is_shared(&self.work.works[g])).for_each(|g| {
+                    self.finish_before(g, substep);
+                    (0..last_stage(&self.work.works[g])).for_each(|at| self.stage_of_substep(g, at, substep));
+                });
+            }
+            LayerPhase::Solve(substep, at) => self.meter(LAYERS_METERED, || self.turn(substep, at)),
             LayerPhase::Apply(at) => self.meter(LAYERS_METERED, || {
-                (0..self.works.len()).for_each(|g| self.apply(g, self.turns.at(at), share));
+                garments().for_each(|g| self.apply(g, self.work.turns.at(at)));
             }),
-            LayerPhase::End => (0..self.works.len()).for_each(|g| self.finish(g, self.substeps - 1, share)),
+            LayerPhase::End => garments().for_each(|g| self.finish(g, self.work.phases.substeps - 1)),
         }
     }
 
-    /// The phases of the step.
-    pub fn phases(&self) -> LayerPhases {
-        let all = || 0..self.works.len();
-        let shared = all().filter(|&g| self.is_shared(g)).map(|g| (g, self.stages(g).1.len())).collect();
-        let whole = all().any(|g| !self.is_shared(g));
-        LayerPhases { shared, whole, turns: self.turns.count(), substeps: self.substeps }
+    /// Does something that counts towards a metered stage.
+    fn meter(&self, stage: usize, act: impl FnOnce()) {
+        let begun = self.work.works[0].step.settings.timed.then(Instant::now);
+        act();
+        if let Some(begun) = begun {
+            // Relaxed: a sum that is read when all is done.
+            self.work.times[stage].fetch_add(begun.elapsed().as_nanos() as u64, Relaxed);
+        }
     }
 
-    /// Whether both workers own particles of a garment.
-    fn is_shared(&self, garment: usize) -> bool {
-        !self.works[garment].garment.layout().spans[1].is_empty()
+    fn each_garment(&self, act: impl Fn(usize)) {
+        (0..self.work.works.len()).filter(|&g| self.work.worker[g] == self.share).for_each(act);
     }
 
-    /// The last stage of a garment's substep, which is contact with the body, and those before.
-    fn stages(&self, garment: usize) -> (Stage, &[Stage]) {
-        let stages = self.works[garment].prepared.program.of_substep();
-        stages.split_last().map_or((Stage::ContactAndVelocities, stages), |(last, others)| (*last, others))
-    }
-
-    fn each_garment(&self, share: usize, act: impl Fn(usize)) {
-        (0..self.works.len()).filter(|&g| self.worker[g] == share).for_each(act);
-    }
-
-    fn each_pair(&self, share: usize, act: impl Fn(usize, &mut PairShare)) {
-        for p in 0..self.pairs.len() {
+    fn each_pair(&self, act: impl Fn(usize, &mut PairShare)) {
+        debug_assert!(matches!(self.phase, LayerPhase::Find | LayerPhase::Solve(..)));
+        for p in 0..self.work.pairs.len() {
             // SAFETY: `Find` and `Solve` alone call this. Each worker has its own half of the shares of pairs, and neither phase
             // reads them in another way. The other phases only read them.
-            act(p, unsafe { self.shares.own(share * self.pairs.len() + p) });
+            act(p, unsafe { self.work.shares.own(self.share * self.work.pairs.len() + p) });
         }
     }
 
@@ -225,24 +248,25 @@ impl<'a> LayerWork<'a> {
     fn particles(&self, garment: usize) -> ParticleColumns<'_> {
         // SAFETY: positions and velocities are written in `Before`, `Stage`, `Whole`, `Finish` and `End`, where each worker writes the
         // particles of its owner's share, as `StepWork::run` says, or of the garments that are its own, and in `Apply`, where each
-        // writes those of its part; `Motions` writes what the body gives, by the garment's
-        // worker; they are read by both in `Find`, `Lists` and `Solve`, in which no worker writes them.
-        unsafe { self.works[garment].columns.open() }.particles
+        // writes those of its part; `Motions` writes what the body gives, by the garment's worker; they are read by both in `Find`,
+        // `Lists` and `Solve`, in which no worker writes them.
+        unsafe { self.work.works[garment].columns.open() }.particles
     }
 
     fn width(&self) -> Width {
-        self.works[0].width
+        self.work.works[0].width
     }
 
     /// What the last step has shown of where the body is in its own way.
     fn give_way(&self, garment: usize) {
-        let seconds = self.works[0].step.settings.step_seconds;
+        let seconds = self.work.works[0].step.settings.step_seconds;
         let given = self.particles(garment).given;
+        debug_assert!(matches!(self.phase, LayerPhase::Motions) && self.work.worker[garment] == self.share);
         // SAFETY: `Motions` alone calls this, for each garment by its worker.
         let touching = unsafe { self.touching(garment) };
         if touching.gives || touching.any() {
             // SAFETY: `Motions` alone calls this, for each garment by its worker. No other code of this phase touches the bearing.
-            touching.gives = give_way(given, unsafe { self.bearing[garment].own_all() }, seconds);
+            touching.gives = give_way(given, unsafe { self.work.bearing[garment].own_all() }, seconds);
         }
     }
 
@@ -250,42 +274,46 @@ impl<'a> LayerWork<'a> {
         let looks = |(pair, pace): (&GarmentPair, &PairPace)| {
             matches!(pace.search, Search::Anew(_)) && (pair.particles == garment || pair.faces == garment)
         };
-        if !self.pairs.iter().zip(self.paces).any(looks) {
+        if !self.work.pairs.iter().zip(self.work.paces).any(looks) {
             return;
         }
+        debug_assert!(matches!(self.phase, LayerPhase::Motions) && self.work.worker[garment] == self.share);
         // SAFETY: `Motions` alone calls this, for each garment by its worker. The motions are read in the next phase only.
-        let motion = unsafe { self.motions.own(garment) };
-        let meets = self.works.len() > 1 && self.works[0].step.settings.contact.layers > 0;
-        motion.take(&self.surfaces[garment], self.particles(garment), self.width(), meets);
+        let motion = unsafe { self.work.motions.own(garment) };
+        let meets = self.work.works.len() > 1 && self.work.works[0].step.settings.contact.layers > 0;
+        motion.take(&self.work.surfaces[garment], self.particles(garment), self.width(), meets);
     }
 
     /// What a pair is found from, for so many steps.
     fn scene(&self, pair: usize, steps: u8) -> PairScene<'_> {
-        let GarmentPair { particles, faces, .. } = self.pairs[pair];
+        debug_assert!(matches!(self.phase, LayerPhase::Find));
+        let GarmentPair { particles, faces, .. } = self.work.pairs[pair];
         PairScene {
             columns: [particles, faces].map(|g| self.particles(g)),
-            surfaces: [particles, faces].map(|g| &self.surfaces[g]),
+            surfaces: [particles, faces].map(|g| &self.work.surfaces[g]),
             // SAFETY: `Find` alone calls this. The motions are written in `Motions`, the phase before.
-            motions: [particles, faces].map(|g| unsafe { self.motions.read(g) }),
-            step_seconds: self.works[0].step.settings.step_seconds * f32::from(steps),
-            tick: self.paces[pair].number,
+            motions: [particles, faces].map(|g| unsafe { self.work.motions.read(g) }),
+            step_seconds: self.work.works[0].step.settings.step_seconds * f32::from(steps),
+            tick: self.work.paces[pair].number,
             width: self.width(),
         }
     }
 
     /// The contacts of a list, in phases that do not write them.
     fn contacts(&self, list: usize) -> &ContactList {
+        debug_assert!(!matches!(self.phase, LayerPhase::Find | LayerPhase::Solve(..)));
         // SAFETY: contacts are written in `Find` and `Solve`, which do not call this.
-        unsafe { &self.shares.read(list).contacts }
+        unsafe { &self.work.shares.read(list).contacts }
     }
 
     fn fill_lists(&self, garment: usize) {
+        debug_assert!(matches!(self.phase, LayerPhase::Lists) && self.work.worker[garment] == self.share);
         // SAFETY: `Lists` alone calls this, for each garment by its worker.
         let touching = unsafe { self.touching(garment) };
-        touching.fill(self.pairs, |list| self.contacts(list).contacts());
+        touching.fill(self.work.pairs, |list| self.contacts(list).contacts());
         // SAFETY: `Lists` alone calls this, for each garment by its worker. No other code of this phase touches what its particles
         // bear or rest on.
-        let all = unsafe { (self.bearing[garment].own_all(), self.resting[garment].own_all()) };
+        let all = unsafe { (self.work.bearing[garment].own_all(), self.work.resting[garment].own_all()) };
         for (i, (bearing, resting)) in all.0.iter_mut().zip(all.1).enumerate() {
             if !touching.touches(i) {
                 bearing.rest(resting);
@@ -300,47 +328,56 @@ impl<'a> LayerWork<'a> {
     #[expect(clippy::mut_from_ref, reason = "each garment is one worker's")]
     unsafe fn touching(&self, garment: usize) -> &mut TouchLists {
         // SAFETY: the caller is the garment's worker in one of the two phases that write the touches and read them in no other way.
-        unsafe { self.touching.own(garment) }
+        unsafe { self.work.touching.own(garment) }
     }
 
     /// The same in phases that write none.
     fn touches(&self, garment: usize) -> &TouchLists {
+        debug_assert!(!matches!(self.phase, LayerPhase::Motions | LayerPhase::Lists));
         // SAFETY: `Motions` and `Lists` alone write the touches, and neither calls this.
-        unsafe { self.touching.read(garment) }
+        unsafe { self.work.touching.read(garment) }
     }
 
-    /// A worker's share of a stage: of a garment that is one worker's all or nothing.
-    fn stage(&self, garment: usize, stage: Stage, substep: usize, share: usize) {
+    /// A worker's share of a phase of a garment's program: of a garment that is one worker's all or nothing.
+    fn stage(&self, garment: usize, phase: usize) {
+        let own = &self.work.works[garment];
         let run = |owner: usize| {
             // SAFETY: the phases follow the program of the garment. If both workers own particles of it, a stage is one phase, and each
             // worker does its share of it. Otherwise the garment's worker alone does both shares of one stage after the other. The
-            // caller of `Self::run` knows that the cloth was made of the garment.
-            unsafe { self.works[garment].run(stage, substep as u32, owner) };
+            // caller of `LayerWork::run` knows that the cloth was made of the garment.
+            unsafe { own.run(phase, owner) };
         };
-        match self.is_shared(garment) {
-            true => self.meter(stage.metered(), || run(share)),
-            false if self.worker[garment] == share => self.meter(stage.metered(), || (0..OWNERS).for_each(run)),
-            false => {}
+        let metered = own.prepared.program.stage(phase).0.metered();
+        self.each_part(garment, metered, run);
+    }
+
+    /// The same of a place within a substep.
+    fn stage_of_substep(&self, garment: usize, at: usize, substep: usize) {
+        let stages = self.work.works[garment].prepared.program.of_substep().len();
+        self.stage(garment, BEFORE.len() + substep * stages + at);
+    }
+
+    /// Does something to the parts of a garment that are this worker's: one of a shared garment, both or none of another.
+    fn each_part(&self, garment: usize, metered: usize, act: impl Fn(usize)) {
+        if is_shared(&self.work.works[garment]) {
+            self.meter(metered, || act(self.share));
+        } else if self.work.worker[garment] == self.share {
+            self.meter(metered, || (0..OWNERS).for_each(act));
         }
     }
 
     /// The end of the substep before this one, if there is one.
-    fn finish_before(&self, garment: usize, substep: usize, share: usize) {
-        substep.checked_sub(1).into_iter().for_each(|before| self.finish(garment, before, share));
+    fn finish_before(&self, garment: usize, substep: usize) {
+        substep.checked_sub(1).into_iter().for_each(|before| self.finish(garment, before));
     }
 
     /// Contact with the body and the velocities, and what was seen of what holds what. Of a shared garment one owner's particles,
     /// which no other particles depend on.
-    fn finish(&self, garment: usize, substep: usize, share: usize) {
-        self.stage(garment, self.stages(garment).0, substep, share);
-        let note = |part: usize| {
+    fn finish(&self, garment: usize, substep: usize) {
+        self.stage_of_substep(garment, last_stage(&self.work.works[garment]), substep);
+        self.each_part(garment, LAYERS_METERED, |part| {
             self.each_touched(garment, part, |i, resting, bearing, columns| bearing.note_support(resting, i, columns));
-        };
-        match self.is_shared(garment) {
-            true => self.meter(LAYERS_METERED, || note(share)),
-            false if self.worker[garment] == share => self.meter(LAYERS_METERED, || (0..OWNERS).for_each(note)),
-            false => {}
-        }
+        });
     }
 
     /// Does something to each particle of a part of a garment that anything touches.
@@ -350,25 +387,30 @@ impl<'a> LayerWork<'a> {
         part: usize,
         act: impl Fn(usize, &mut Resting, &mut Bearing, ParticleColumns<'_>),
     ) {
+        debug_assert!(matches!(
+            self.phase,
+            LayerPhase::Apply(_) | LayerPhase::Finish(..) | LayerPhase::Whole(_) | LayerPhase::End
+        ));
         let (touches, columns) = (self.touches(garment), self.particles(garment));
         for touched in touches.touched(touches.own_level(), part) {
             let i = touched.particle as usize;
             // SAFETY: each particle is in one part, whose worker alone has them in the phases that call this: `Apply`,
             // `Finish`, `Whole` and `End`.
-            let (resting, bearing) = unsafe { (self.resting[garment].own(i), self.bearing[garment].own(i)) };
+            let (resting, bearing) = unsafe { (self.work.resting[garment].own(i), self.work.bearing[garment].own(i)) };
             act(i, resting, bearing, columns);
         }
     }
 
-    /// What the contacts of a turn do to the particles of a part of a garment; after the last turn these get what they bear.
-    fn apply(&self, garment: usize, turn: Turn, part: usize) {
-        self.gather(garment, turn, part);
-        if turn == self.turns.last() {
-            self.each_touched(garment, part, |i, _, bearing, columns| bearing.bear(i, columns));
+    /// What the contacts of a turn do to the particles of this worker's part of a garment; after the last turn these get what they bear.
+    fn apply(&self, garment: usize, turn: Turn) {
+        self.gather(garment, turn, self.share);
+        if turn == self.work.turns.last() {
+            self.each_touched(garment, self.share, |i, _, bearing, columns| bearing.bear(i, columns));
         }
     }
 
     fn gather(&self, garment: usize, turn: Turn, part: usize) {
+        debug_assert!(matches!(self.phase, LayerPhase::Apply(_)));
         let (touches, columns) = (self.touches(garment), self.particles(garment));
         let is_own = turn.level == touches.own_level();
         if !turn.up && touches.height() == turn.level {
@@ -380,7 +422,7 @@ impl<'a> LayerWork<'a> {
         for touched in touches.touched(turn.level, part) {
             let i = touched.particle as usize;
             // SAFETY: `Apply` alone calls this. Each particle is in one part, whose worker alone has what it bears and rests on.
-            let (resting, bearing) = unsafe { (self.resting[garment].own(i), self.bearing[garment].own(i)) };
+            let (resting, bearing) = unsafe { (self.work.resting[garment].own(i), self.work.bearing[garment].own(i)) };
             let own = touches.of(touched);
             match turn.up {
                 true => bearing.gather(resting, i, own, is_own, columns, |list| self.contacts(list.into()).pushes()),
@@ -393,9 +435,9 @@ impl<'a> LayerWork<'a> {
     }
 
     /// One turn's share of the contacts.
-    fn turn(&self, substep: usize, at: usize, share: usize) {
-        let turn = self.turns.at(at);
-        self.each_pair(share, |p, own| match (self.pairs[p].level == turn.level, turn.up) {
+    fn turn(&self, substep: usize, at: usize) {
+        let turn = self.work.turns.at(at);
+        self.each_pair(|p, own| match (self.work.pairs[p].level == turn.level, turn.up) {
             (false, _) => {}
             (true, true) => self.solve(p, own, substep == 0),
             (true, false) => self.pass(p, own),
@@ -403,31 +445,33 @@ impl<'a> LayerWork<'a> {
     }
 
     fn pass(&self, pair: usize, own: &mut PairShare) {
-        let pair = &self.pairs[pair];
+        let pair = &self.work.pairs[pair];
         if pair.is_fold() {
             return;
         }
+        debug_assert!(matches!(self.phase, LayerPhase::Solve(..)));
         let (above, of) = if pair.wearing == Wearing::Outer { (0, pair.particles) } else { (1, pair.faces) };
         let borne = |i: u32| {
             // SAFETY: `Solve` alone calls this. What particles bear is written in other phases only.
-            let bearing = unsafe { self.bearing[of].read(i as usize) };
+            let bearing = unsafe { self.work.bearing[of].read(i as usize) };
             (bearing.owed, bearing.held_by)
         };
         own.contacts.pairs_mut().for_each(|(contact, push)| contact.pass(push, above, borne));
     }
 
     fn solve(&self, pair: usize, own: &mut PairShare, first: bool) {
-        let GarmentPair { particles, faces, level, .. } = self.pairs[pair];
+        debug_assert!(matches!(self.phase, LayerPhase::Solve(..)));
+        let GarmentPair { particles, faces, level, .. } = self.work.pairs[pair];
         let of = [particles, faces];
         let columns = of.map(|g| self.particles(g));
         if first {
             let load = of.map(|g| self.touches(g).load(level));
             own.contacts.pairs_mut().for_each(|(contact, _)| contact.weigh(columns, load));
         }
-        let settings = self.works[0].step.settings;
-        let dt = settings.step_seconds / self.substeps as f32;
-        let constants = self.pairs[pair].constants(dt, settings.static_friction);
-        let resting = of.map(|g| &self.resting[g]);
+        let settings = self.work.works[0].step.settings;
+        let dt = settings.step_seconds / self.work.phases.substeps as f32;
+        let constants = self.work.pairs[pair].constants(dt, settings.static_friction);
+        let resting = of.map(|g| &self.work.resting[g]);
         for (contact, push) in own.contacts.pairs_mut() {
             let mut rest = [Resting::default(); VERTICES];
             for (k, rest) in rest.iter_mut().enumerate() {
