@@ -6,7 +6,6 @@ pub mod histogram;
 pub mod page;
 pub mod raster;
 pub mod svg;
-pub mod tiles;
 
 /// An sRGB colour.
 pub type Colour = [u8; 3];
