@@ -7,16 +7,12 @@ mod arm_clearance;
 mod body_input;
 mod foot;
 pub mod ground;
-#[cfg(test)]
-mod habits;
 pub mod kinematics;
 mod leg;
 mod limb;
 pub mod limits;
 mod neutral;
 mod plant;
-#[cfg(test)]
-mod recordings;
 mod reliable_joints;
 mod retarget;
 pub mod smooth;
