@@ -72,8 +72,10 @@ fn the_table_of_a_device_is_made_without_one_and_says_so() {
     let scratch = Scratch::new("backend-picture");
     let output = scratch.toile(&["bench", "skirt", "--picture", "out"]);
     assert_eq!(output.status.code(), Some(2), "there is no table to draw");
+    let output = scratch.toile(&["bench", "skirt", "--table"]);
+    assert_eq!(output.status.code(), Some(2), "a table is of a device or of stages");
     let output = scratch.toile(&["bench", "skirt", "--table", "--picture", "out"]);
-    assert_eq!(output.status.code(), Some(2), "the table of targets has no chart");
+    assert_eq!(output.status.code(), Some(2), "there is no chart of the processor alone");
     let words = String::from_utf8(output.stderr).expect("stderr is UTF-8");
     assert!(words.contains("--backend gpu"), "{words}");
 }

@@ -41,6 +41,8 @@ fn bench_skinning_reports_time_and_error_together() {
 
     let output = toile(&["bench", "skinning", "--backend", "gpu", "--dual"]);
     assert_eq!(output.status.code(), Some(2), "what is reported anyway is no option");
+    let output = toile(&["bench", "skinning", "--table"]);
+    assert_eq!(output.status.code(), Some(2), "the table is one of graphics devices");
 }
 
 #[test]

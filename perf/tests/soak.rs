@@ -40,8 +40,6 @@ fn every_kind_of_fault_is_borne_and_a_second_run_is_the_same() {
         "{found}"
     );
     assert!(whole("changes") >= 2 && found["pictures"][1] == 1 && found["off_mm"].as_f64().unwrap() < 80.0);
-    let page = fs::read_to_string(scratch.path().join("out/soak/soak.html")).unwrap();
-    assert!(page.contains("<svg") && page.trim_end().ends_with("</html>") && !page.contains("http://cdn"));
     let record: Value = serde_json::from_slice(&fs::read(scratch.path().join("out/soak/soak.json")).unwrap()).unwrap();
     assert_eq!(record["state_hash"], found["state_hash"]);
 }

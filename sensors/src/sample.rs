@@ -8,21 +8,6 @@ use toile_base::skeleton::JOINTS;
 use toile_base::clock::seconds_between;
 use toile_base::frame::{Joints, TrackedJoint};
 
-/// Joints between two frames, linear in time; before `a` it is `a`, after `b` it is `b`.
-///
-/// A joint absent at one end (confidence 0) keeps the other end's position, its confidence fading. The hands are those
-/// of `a`.
-pub fn between(a: &Joints, b: &Joints, time_ns: u64) -> Joints {
-    let t = fraction(a, b, time_ns);
-    let time_ns = time_ns.clamp(a.time_ns.min(b.time_ns), b.time_ns);
-    let mut out = Joints { hands: a.hands, ..Joints::absent(time_ns) };
-    for i in 0..JOINTS {
-        let (p, q) = (&a.joints[i], &b.joints[i]);
-        out.joints[i] = mix(p, q, t, p.position.lerp(q.position, t));
-    }
-    out
-}
-
 /// Joints of a filtered track at a time: cubic Hermite with the limited tangents of neighbouring frames (after
 /// Catmull and Rom 1974, non-uniform in time), so that velocity is continuous and a gap of several frames is crossed
 /// smoothly; clamped at both ends. `None` for an empty track. Frames must be in order of time.
@@ -116,18 +101,10 @@ mod tests {
     }
 
     #[test]
-    fn linear_between_is_halfway_in_the_middle() {
-        let f = between(&frame(0, 0.0), &frame(40, 1.0), 20_000_000);
-        assert!((f.joints[3].position.x - 0.5).abs() < 1e-6);
-        assert_eq!(f.time_ns, 20_000_000);
-        assert_eq!(between(&frame(40, 2.0), &frame(40, 1.0), 40_000_000).joints[0].position.x, 1.0);
-    }
-
-    #[test]
     fn a_joint_absent_at_one_end_keeps_the_others_place() {
         let mut b = frame(40, 1.0);
         b.joints[0] = TrackedJoint::default();
-        let f = between(&frame(0, 0.25), &b, 10_000_000);
+        let f = sample(&[frame(0, 0.25), b], 10_000_000).unwrap();
         assert_eq!(f.joints[0].position.x, 0.25);
         assert_eq!(f.joints[0].confidence, 0.75);
     }

@@ -5,14 +5,9 @@ use std::path::PathBuf;
 
 use glam::Vec3;
 use proptest::prelude::*;
-use toile_base::filter::Filter;
 use toile_base::frame::{Joints, TrackedJoint};
 use toile_base::skeleton::{JOINTS, Joint};
-use toile_sensors::filter::angles::AngleFilter;
-use toile_sensors::filter::one_euro::OneEuroSettings;
-use toile_sensors::filter::predict::Predictor;
-use toile_sensors::filter::smoothing::Smoothing;
-use toile_sensors::filter::{FilterSettings, JointFilter};
+use toile_sensors::filter::JointFilter;
 use toile_sensors::source::vmc::Decoder;
 use toile_sensors::source::{OpenOptions, open, read_bytes};
 
@@ -117,19 +112,6 @@ fn wrong_folders_are_refused_in_one_sentence() {
     assert!(single.contains("calibration"), "{single}");
 }
 
-/// Every filter of the crate, with its name.
-fn filters() -> Vec<(&'static str, Box<dyn Filter>)> {
-    let euro = FilterSettings { smoothing: Smoothing::OneEuro(OneEuroSettings::default()), bone_pull: 1.0 };
-    let none = FilterSettings { smoothing: Smoothing::None, bone_pull: 0.0 };
-    vec![
-        ("default", Box::new(JointFilter::default())),
-        ("one euro", Box::new(JointFilter::new(euro))),
-        ("hold", Box::new(JointFilter::new(none))),
-        ("angles", Box::new(AngleFilter::new(0.04))),
-        ("prediction", Box::new(Predictor::new(0.04))),
-    ]
-}
-
 /// Any number that a tracker may send: mostly a place in a room, at times none at all.
 fn number() -> impl Strategy<Value = f32> {
     prop_oneof![
@@ -163,18 +145,17 @@ proptest! {
 
     #[test]
     fn any_joints_give_valid_ones_and_the_same_twice(frames in prop::collection::vec(any_frame(), 1..24)) {
-        for ((name, mut filter), (_, mut again)) in filters().into_iter().zip(filters()) {
-            for frame in &frames {
-                let out = filter.push(frame);
-                prop_assert_eq!(out.time_ns, frame.time_ns);
-                for joint in &out.joints {
-                    prop_assert!(joint.confidence == 0.0 || joint.position.is_finite(), "{}: {:?}", name, joint);
-                }
-                prop_assert_eq!(out, again.push(frame), "{} differs", name);
+        let (mut filter, mut again) = (JointFilter::default(), JointFilter::default());
+        for frame in &frames {
+            let out = filter.push(frame);
+            prop_assert_eq!(out.time_ns, frame.time_ns);
+            for joint in &out.joints {
+                prop_assert!(joint.confidence == 0.0 || joint.position.is_finite(), "{:?}", joint);
             }
-            filter.reset();
-            prop_assert!(filter.push(&samples::standing(0)).is_valid());
+            prop_assert_eq!(out, again.push(frame), "the same frames gave other joints");
         }
+        filter.reset();
+        prop_assert!(filter.push(&samples::standing(0)).is_valid());
     }
 
     #[test]

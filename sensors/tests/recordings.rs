@@ -7,7 +7,6 @@ use toile_base::clock::ticks_to_ns;
 use toile_base::frame::Joints;
 use toile_base::limits::CONFIDENCE_GATE;
 use toile_base::skeleton::Joint;
-use toile_sensors::filter::{FilterSettings, JointFilter};
 use toile_sensors::sample::sample;
 use toile_sensors::session::{self as recording, Session};
 use toile_sensors::source::{OpenOptions, open};
@@ -160,27 +159,6 @@ fn joints_csv_is_a_third_inferred_and_its_feet_almost_always() {
     };
     assert!(share(Joint::LeftToe) > 0.97 && share(Joint::RightToe) > 0.97);
     assert!(share(Joint::Spine) < 0.01);
-}
-
-#[test]
-fn bones_keep_their_length_where_they_are_pulled_to_it() {
-    let Some(folder) = data() else { return };
-    for s in all(&folder) {
-        let mut filter = JointFilter::new(FilterSettings { bone_pull: 1.0, ..FilterSettings::default() });
-        let track: Vec<Joints> = s.joints.iter().map(|f| filter.push(f)).collect();
-        for joint in Joint::ALL {
-            let Some(parent) = joint.parent() else { continue };
-            let raw: Vec<f32> = s.joints.iter().filter_map(|f| length(f, parent, joint)).collect();
-            // Once the estimate has settled, and a bone is long enough for its length to be seen.
-            let after: Vec<f32> = track.iter().skip(60).filter_map(|f| length(f, parent, joint)).collect();
-            if raw.is_empty() || after.is_empty() || median(raw.iter().copied()) < 0.15 {
-                continue;
-            }
-            let ((_, before), (mean, after)) = (spread(raw.into_iter()), spread(after.into_iter()));
-            println!("{} {joint:?}: {mean:.3} m, deviation {before:.4} -> {after:.4} m", s.name);
-            assert!(after / mean < 0.05, "{} {joint:?}: {mean} +- {after}", s.name);
-        }
-    }
 }
 
 #[test]

@@ -8,9 +8,6 @@ use std::hint::black_box;
 
 use toile_assets::drafting;
 use toile_base::clock::SECOND_NS;
-use toile_base::filter::Filter;
-use toile_engine::body::Poser;
-use toile_engine::body::filters::{LimitFilter, PoseFilter};
 use toile_engine::clock::{Clock, SimClock};
 use toile_engine::frame_loop::ThreadLoop;
 use toile_engine::frame_loop::event::{EVENTS, EVENTS_NAME, EventKind};
@@ -22,12 +19,8 @@ use toile_engine::frame_loop::sensor_thread::{Playback, SensorFrame, SensorThrea
 use toile_engine::triple_buffer::TripleBuffer;
 use toile_engine::world::Snapshot;
 use toile_fitting::live::lateness::ThreadAccount;
-use toile_sensors::filter::angles::AngleFilter;
-use toile_sensors::filter::one_euro::OneEuroSettings;
-use toile_sensors::filter::predict::Predictor;
-use toile_sensors::filter::smoothing::Smoothing;
-use toile_sensors::filter::{FilterSettings, JointFilter};
-use toile_sensors::sample::between;
+use toile_sensors::filter::JointFilter;
+use toile_sensors::sample::sample;
 use toile_workspace::dressed;
 
 thread_local! {
@@ -122,7 +115,8 @@ fn costs_no_allocation(names: &[&str]) {
             let joints = filter.push(raw);
             for quarter in 1..=4 {
                 let time = last.time_ns + (joints.time_ns - last.time_ns) * quarter / 4;
-                world.step(black_box(&between(&last, &joints, time)));
+                let seen = sample(&[last, joints], time).expect("two frames");
+                world.step(black_box(&seen));
             }
             last = joints;
         }
@@ -180,30 +174,4 @@ fn no_turn_of_the_loop_costs_an_allocation_whatever_happens() {
     assert!(events_seen.iter().any(|w| matches!(w, EventKind::Missed(_))), "{events_seen:?}");
     let full = entries.capacity();
     assert!(full.lost > 0 && full.high_water == full.bound, "{full:?}");
-}
-
-#[test]
-fn no_filter_of_joints_allocates_a_frame() {
-    let settings = FilterSettings { smoothing: Smoothing::OneEuro(OneEuroSettings::default()), bone_pull: 1.0 };
-    let body = dressed::shopper();
-    let seen: Vec<_> =
-        (0..SENSOR_FRAMES).map(|i| dressed::joints(&body, i * 1_000_000_000 / dressed::SENSOR_HZ)).collect();
-    let mut locked = JointFilter::new(FilterSettings { bone_pull: 1.0, ..FilterSettings::default() });
-    locked.lock_bones(&body.skeleton);
-    let filters: [(&str, Box<dyn Filter>); 6] = [
-        ("bones of the body", Box::new(locked)),
-        ("One Euro", Box::new(JointFilter::new(settings))),
-        ("angles", Box::new(AngleFilter::new(0.04))),
-        ("prediction", Box::new(Predictor::new(0.04))),
-        ("limits", Box::new(LimitFilter::new(&body.skeleton))),
-        ("pose and feet", Box::new(PoseFilter::new(Poser::new(&body.skeleton)))),
-    ];
-    for (name, mut filter) in filters {
-        let found = allocations(|| {
-            for frame in &seen {
-                black_box(filter.push(black_box(frame)));
-            }
-        });
-        assert_eq!(found, 0, "{name}: {found} allocations in {} frames", seen.len());
-    }
 }

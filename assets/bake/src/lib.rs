@@ -31,7 +31,7 @@ pub mod survey;
 mod links;
 
 #[cfg(test)]
-pub(crate) mod meshes;
+pub(crate) mod tests;
 
 use toile_base::fabric::Fabric;
 use toile_base::garment::{Garment, GarmentData, Layout};

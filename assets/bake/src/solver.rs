@@ -79,7 +79,7 @@ impl SolverChoice {
 mod tests {
     use super::*;
     use crate::fibers;
-    use crate::meshes::{rough_skirt, split, tube};
+    use crate::tests::meshes::{rough_skirt, split, tube};
 
     /// A tube whose first row does not move.
     fn skirt() -> (Shape, Vec<Fiber>) {

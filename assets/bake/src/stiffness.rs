@@ -142,7 +142,7 @@ mod tests {
 
     #[test]
     fn a_strip_of_any_mesh_has_the_modulus_of_its_fabric() {
-        use crate::meshes::{rough_sheet, sheet, split};
+        use crate::tests::meshes::{rough_sheet, sheet, split};
         for stretch in [60.0, 600.0, 6000.0] {
             let mut fabric = Fabric::cotton_lawn();
             (fabric.stretch_warp_n_m, fabric.stretch_weft_n_m, fabric.shear_n_m) = (stretch, 0.6 * stretch, 60.0);

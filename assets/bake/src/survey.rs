@@ -168,7 +168,7 @@ fn notes(fabric: &Fabric) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::meshes::{rough_skirt, sheet, tube};
+    use crate::tests::meshes::{rough_skirt, sheet, tube};
 
     fn shape((positions, faces): (Vec<Vec3>, Vec<crate::shape::Face>), top: f32) -> Shape {
         let fixed = positions.iter().map(|p| p.y > top).collect();

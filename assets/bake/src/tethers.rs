@@ -146,7 +146,7 @@ mod tests {
     use std::f32::consts::TAU;
 
     use super::*;
-    use crate::meshes::{TestMesh, rough_sheet, rough_skirt, sheet, split, tube};
+    use crate::tests::meshes::{TestMesh, rough_sheet, rough_skirt, sheet, split, tube};
 
     fn shape((positions, faces): &TestMesh, fixed: impl Fn(Vec3) -> bool) -> Shape {
         Shape {

@@ -11,15 +11,3 @@ pub trait Filter {
     /// Forgets the shopper.
     fn reset(&mut self);
 }
-
-/// Passes joints on as they come, for a host that filters them itself.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Unfiltered;
-
-impl Filter for Unfiltered {
-    fn push(&mut self, frame: &Joints) -> Joints {
-        *frame
-    }
-
-    fn reset(&mut self) {}
-}

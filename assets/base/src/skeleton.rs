@@ -9,7 +9,7 @@ mod names;
 
 use glam::{Quat, Vec3};
 
-pub use bones::{BONE_CHAIN, BONES, TWISTS, Twist, bone_joint, bone_mirror, bone_name};
+pub use bones::{BONE_CHAIN, BONES, TWISTS, Twist, bone_joint, bone_name};
 pub use joint::{JOINTS, Joint};
 
 /// Where the joints of one body lie in its rest pose.

@@ -9,7 +9,7 @@ use super::*;
 use toile_base::body::{Body, Measures, Region, Sex};
 use toile_base::mesh::Mesh;
 use toile_base::numeric::random::SplitMix64;
-use toile_base::skeleton::{BONES, Joint, TWISTS, bone_joint, bone_mirror};
+use toile_base::skeleton::{BONES, JOINTS, Joint, TWISTS, bone_joint};
 
 /// A person like those of ANSUR II: girths that follow one another, by its deviations.
 fn random_person(sex: Sex, random: &mut SplitMix64) -> Measures {
@@ -94,6 +94,16 @@ fn topology_does_not_depend_on_size_or_sex() {
         assert_eq!(body.mesh.triangles, first.mesh.triangles);
         assert_eq!(body.mesh.positions.len(), first.mesh.positions.len());
         assert_eq!(body.regions, first.regions);
+    }
+}
+
+/// The same bone on the other side: twist bones of the left side come before those of the right.
+fn bone_mirror(bone: usize) -> usize {
+    let side = (BONES - JOINTS) / 2;
+    match bone {
+        0..JOINTS => Joint::ALL[bone].mirror().index(),
+        _ if bone < JOINTS + side => bone + side,
+        _ => bone - side,
     }
 }
 

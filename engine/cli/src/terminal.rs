@@ -202,11 +202,6 @@ impl Paint {
         Self { colour: false }
     }
 
-    /// Whether anything is painted.
-    pub fn is_on(&self) -> bool {
-        self.colour
-    }
-
     /// The text in its tone.
     pub fn tone<'a>(&self, text: &'a str, tone: Tone) -> Cow<'a, str> {
         let code = match tone {

@@ -97,8 +97,12 @@ impl Watched {
 
     /// The next stock that is offered.
     fn change(&mut self, what: &str) -> StockChange<usize> {
-        self.until(what, |watch, _| watch.has_changed());
-        self.watch.take().unwrap()
+        let mut change = None;
+        self.until(what, |watch, _| {
+            change = watch.take();
+            change.is_some()
+        });
+        change.unwrap()
     }
 
     /// Waits until a line has these words.
@@ -110,7 +114,7 @@ impl Watched {
     fn nothing(&mut self) {
         std::thread::sleep(20 * EVERY);
         self.watch.poll();
-        assert!(!self.watch.has_changed(), "{:?}", self.watch.lines());
+        assert!(self.watch.take().is_none(), "{:?}", self.watch.lines());
     }
 }
 

@@ -9,7 +9,6 @@ mod capture;
 mod contact;
 mod depth;
 mod drape;
-mod filters;
 mod gestures;
 mod gestures_report;
 mod measure;
@@ -31,7 +30,6 @@ pub enum BenchCommand {
     Skirt(skirt::SkirtArgs),
     Body(body::BodyBenchArgs),
     Measure(measure::MeasureBenchArgs),
-    Filters(filters::FiltersArgs),
     Gestures(gestures::GesturesArgs),
     Depth(depth::DepthArgs),
     Contact(contact::ContactArgs),
@@ -53,7 +51,6 @@ pub fn run(command: &BenchCommand) -> Result<(), AppError> {
         BenchCommand::Skirt(args) => skirt::run(args),
         BenchCommand::Body(args) => body::run(args),
         BenchCommand::Measure(args) => measure::run(args),
-        BenchCommand::Filters(args) => filters::run(args),
         BenchCommand::Gestures(args) => gestures::run(args),
         BenchCommand::Depth(args) => depth::run(args),
         BenchCommand::Contact(args) => contact::run(args),

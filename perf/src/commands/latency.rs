@@ -24,7 +24,6 @@ use toile_cli::arguments::{Printing, WorkersArg, WornArgs, cores};
 use toile_cli::camera::{self, CameraUse, MountArgs};
 use toile_cli::document::Document;
 use toile_cli::exit::AppError;
-use toile_cli::machine::Machine;
 use toile_cli::output::{Inputs, OutputFolder};
 use toile_cli::terminal::{self, Paint, Tone};
 use toile_fitting::live::crash;
@@ -39,7 +38,7 @@ const MOST_LOAD: i64 = 256;
 ///
 /// Runs the whole loop in real time (sensor, physics with its worker, render) and reports how long each stage takes, from
 /// what the sensor saw until a picture is taken, corrected for coordinated omission; what was late and why; the machine's own
-/// jitter; the quality and the error that it ran at. Writes a page with histograms.
+/// jitter; the quality and the error that it ran at. Writes the figures as JSON too.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(after_help = "Example: see how late a kiosk may be while something else wants its cores\n  toile latency \
                         --seconds 60 --load")]
@@ -83,7 +82,7 @@ pub struct LatencyArgs {
     /// Exit with 3 where a goal is missed
     #[arg(long)]
     pub gate: bool,
-    /// Folder for the page; it is made if missing
+    /// Folder for the figures; it is made if missing
     #[arg(long, value_name = "DIR", default_value = "out/latency")]
     pub out: PathBuf,
     #[command(flatten)]
@@ -184,19 +183,18 @@ pub fn run(args: &LatencyArgs) -> Result<(), AppError> {
             |e| format!("recording {} cannot be written ({e}); name another file with --record", path.display());
         fs::write(path, &bytes).map_err(|e| AppError::Input(refused(e)))?;
     }
-    let machine = Machine::here();
-    let machine = format!("{}, {} cores, {}", machine.cpu, machine.cores, machine.lanes);
-    out.write("latency.html", latency::page(&found, &machine, &request.words()).as_bytes())?;
-    let mut files = out.commit()?;
-    files.extend(args.record.clone());
-    let missed: Vec<&Goal> = found.goals.iter().filter(|g| !g.pass).collect();
+    let mut report = LatencyReport { scene: request, found, files: Vec::new() };
+    let record = serde_json::to_vec_pretty(&Document::new("latency", &report)).map_err(AppError::internal)?;
+    out.write("latency.json", &record)?;
+    report.files = out.commit()?;
+    report.files.extend(args.record.clone());
+    let missed: Vec<&Goal> = report.found.goals.iter().filter(|g| !g.pass).collect();
     let verdict = missed.first().filter(|_| args.gate).map(|g| {
         format!(
             "{} is {:.0} us, more than {:.0} us; run it on a quiet machine or choose less quality",
             g.name, g.us, g.limit_us
         )
     });
-    let report = LatencyReport { scene: request, found, files };
     if args.printing.json {
         terminal::print_json(&Document::new("latency", report))?;
     } else {

@@ -9,7 +9,7 @@ use toile_cli::document::Document;
 use toile_cli::exit::AppError;
 use toile_cli::output::OutputFolder;
 use toile_cli::terminal::{self, Paint, Tone};
-use toile_perf::pareto::{self, Drape, ModelPoint, ParetoOptions, ParetoReport, Point, SCENES, SceneReport};
+use toile_perf::pareto::{self, ParetoOptions, ParetoReport, Point, SCENES, SceneReport};
 
 /// Plot speed against error over the cloth's settings, and report which are best.
 ///
@@ -66,12 +66,6 @@ fn table(report: &ParetoReport, paint: Paint) -> String {
     for scene in report.scenes.iter().filter(|s| s.main) {
         fronts(&mut text, report, scene, paint);
     }
-    if !report.models.is_empty() {
-        models(&mut text, &report.models, paint);
-    }
-    if let Some(drape) = &report.drape {
-        samplings(&mut text, drape, paint);
-    }
     text
 }
 
@@ -111,49 +105,6 @@ fn row(p: &Point) -> String {
     )
 }
 
-fn models(text: &mut String, points: &[ModelPoint], paint: Paint) {
-    put_line!(text, "{}", paint.tone("models: the walking skirt with each and without, x* with it", Tone::Strong));
-    put_line!(text, "  {:>9} {:>9} {:>9} {:>9}  setting", "step us", "mean mm", "max mm", "strain %");
-    for p in points {
-        let how = if p.with { "with" } else { "without" };
-        let own = if p.default { ", its own substeps" } else { "" };
-        let (strain, gap) = (100.0 * p.strain[0], p.reference_gap_mm);
-        put_line!(
-            text,
-            "  {:>9.1} {:>9.3} {:>9.2} {strain:>9.3}  {how} {}, {} substeps{own} (x* within {gap:.3} mm)",
-            p.step_us,
-            p.error_mm,
-            p.max_mm,
-            p.model,
-            p.substeps
-        );
-    }
-    put_line!(text);
-}
-
-fn samplings(text: &mut String, drape: &Drape, paint: Paint) {
-    put_line!(text, "{}", paint.tone("drape", Tone::Strong));
-    put_line!(text, "  {}", drape.setup);
-    put_line!(
-        text,
-        "  {:>9} {:>9} {:>9} {:>9} {:>12} {:>9}",
-        "cm",
-        "particles",
-        "mean cm",
-        "max cm",
-        "published cm",
-        "step us"
-    );
-    for s in &drape.samplings {
-        let published = s.published_cm.map_or_else(|| "-".into(), |cm| format!("{cm:.2}"));
-        let row = format!(
-            "  {:>9} {:>9} {:>9.3} {:>9.2} {published:>12} {:>9.0}",
-            s.spacing_cm, s.particles, s.mean_cm, s.max_cm, s.step_us
-        );
-        put_line!(text, "{row}");
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -176,11 +127,9 @@ mod tests {
         };
         let scene = SceneReport { scene: "skirt".into(), mesh: "grid".into(), main: true, ..SceneReport::default() };
         let points = vec![point("fine", 0.25, true, false), point("shop", 9.87, false, true)];
-        let model = ModelPoint { model: "buckling", substeps: 4, error_mm: 1.25, ..ModelPoint::default() };
-        let report = ParetoReport { points, scenes: vec![scene], models: vec![model], ..ParetoReport::default() };
+        let report = ParetoReport { points, scenes: vec![scene], ..ParetoReport::default() };
         let text = table(&report, Paint::none());
         assert!(text.contains("0.250") && text.contains("mixed, fine, 4 substeps of 3 passes"), "{text}");
-        assert!(text.contains("1.250") && text.contains("without buckling, 4 substeps"), "{text}");
         assert!(text.contains("shop with 4 substeps, is not on the front: 123 us, 9.870 mm"), "{text}");
     }
 }

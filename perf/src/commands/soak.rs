@@ -10,7 +10,6 @@ use toile_cli::arguments::{Printing, WorkersArg, one_of};
 use toile_cli::document::Document;
 use toile_cli::exit::AppError;
 use toile_cli::heap;
-use toile_cli::machine::Machine;
 use toile_cli::output::{Inputs, OutputFolder};
 use toile_cli::terminal::{self, Paint, Tone, Words};
 use toile_engine::clock::SimClock;
@@ -43,7 +42,7 @@ const USUALLY_APART_S: u64 = 30;
 /// Runs the whole loop without a screen: shoppers of many sizes come and go, garments are changed, and with --faults
 /// everything goes wrong that can: the camera, the threads, the clocks, the disk, memory. Checks while it runs that nothing
 /// published is NaN or infinite, that the loop allocates nothing, that memory, files and threads stay as they are, that every
-/// fault is recovered and how fast, and that a second run ends in the same bits. Writes a record as a page and as JSON.
+/// fault is recovered and how fast, and that a second run ends in the same bits. Writes a record as JSON.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(
     after_help = "Example: eight hours and a thousand faults in some minutes, then an hour in real time\n  toile soak \
@@ -187,9 +186,6 @@ pub fn run(args: &SoakArgs) -> Result<(), AppError> {
     crash::forget();
     let second = if args.once { None } else { second(&options, ran.hash, kept.as_deref(), &words)? };
     let found = Soak::new(ran, &options, second);
-    let machine = Machine::here();
-    let machine = format!("{}, {} cores, {}", machine.cpu, machine.cores, machine.lanes);
-    out.write("soak.html", soak::page(&found, &machine, &typed(args, &options)).as_bytes())?;
     let record = serde_json::to_vec_pretty(&Document::new("soak", &found)).map_err(AppError::internal)?;
     out.write("soak.json", &record)?;
     let mut files = out.commit()?;
@@ -273,26 +269,6 @@ pub fn again(plan: SoakPlan, entries: &[Entry], workers: usize) -> Result<(World
         scene_maker.make(number).ok().map(|(world, _reader)| WorldScene::new(world))
     });
     Ok((stepper.scene.world, out))
-}
-
-/// What was typed, for the record.
-fn typed(args: &SoakArgs, options: &SoakOptions) -> String {
-    let SoakOptions { plan, uptime_hours, real_time, workers } = *options;
-    let mut line = format!("toile soak --minutes {} --seed {}", plan.seconds as f64 / 60.0, plan.seed);
-    if plan.faults > 0 {
-        line += &format!(" --faults {}", plan.faults);
-    }
-    if uptime_hours > 0 {
-        line += &format!(" --uptime-hours {uptime_hours}");
-    }
-    if real_time {
-        line += &format!(" --real-time --workers {workers}");
-    }
-    if plan.camera != SoakCamera::default() {
-        line += &format!(" --camera {}", plan.camera.name());
-    }
-    line += &format!(" --scene {}", plan.scene.name());
-    if args.once { line + " --once" } else { line }
 }
 
 /// The figures as people read them.

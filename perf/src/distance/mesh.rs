@@ -15,7 +15,6 @@ pub struct DistanceMesh {
     /// Of each triangle the normal of its inside, those of its three edges and of its three corners. Of any length: only their
     /// directions count.
     normals: Vec<[DVec3; 7]>,
-    open: usize,
 }
 
 impl DistanceMesh {
@@ -26,34 +25,26 @@ impl DistanceMesh {
     pub fn new(positions: &[DVec3], triangles: &[[u32; 3]]) -> Self {
         let corners: Vec<[DVec3; 3]> = triangles.iter().map(|t| t.map(|v| positions[v as usize])).collect();
         let flat = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a).normalize_or_zero();
-        let mut edges: BTreeMap<[u32; 2], (DVec3, i32)> = BTreeMap::new();
+        let mut edges: BTreeMap<[u32; 2], DVec3> = BTreeMap::new();
         let mut vertices = vec![DVec3::ZERO; positions.len()];
         for (t, corners) in triangles.iter().zip(&corners) {
             let normal = flat(*corners);
             for k in 0..3 {
                 let [here, next, last] = [k, (k + 1) % 3, (k + 2) % 3];
                 let (from, to) = (t[here], t[next]);
-                let edge = edges.entry([from.min(to), from.max(to)]).or_default();
-                // Passed once in either direction, an edge is closed.
-                *edge = (edge.0 + normal, edge.1 + if from < to { 1 } else { -1 });
+                *edges.entry([from.min(to), from.max(to)]).or_default() += normal;
                 let (u, v) = (corners[next] - corners[here], corners[last] - corners[here]);
                 let angle = u.cross(v).length().atan2(u.dot(v));
                 vertices[from as usize] += normal * angle;
             }
         }
         let normals = triangles.iter().zip(&corners).map(|(t, corners)| {
-            let edge = |k: usize| edges[&[t[k].min(t[(k + 1) % 3]), t[k].max(t[(k + 1) % 3])]].0;
+            let edge = |k: usize| edges[&[t[k].min(t[(k + 1) % 3]), t[k].max(t[(k + 1) % 3])]];
             let vertex = |k: usize| vertices[t[k] as usize];
             [flat(*corners), edge(0), edge(1), edge(2), vertex(0), vertex(1), vertex(2)]
         });
         let normals = normals.collect();
-        let open = edges.values().filter(|(_, passed)| *passed != 0).count();
-        Self { tree: TriangleTree::new(&corners), corners, normals, open }
-    }
-
-    /// Edges that are not passed as often in one direction as in the other: 0 for a closed mesh.
-    pub fn open_edges(&self) -> usize {
-        self.open
+        Self { tree: TriangleTree::new(&corners), corners, normals }
     }
 
     /// Distance of a point (m), negative inside; infinite where there are no triangles.

@@ -5,7 +5,6 @@
 
 mod capacity;
 mod error;
-mod html;
 mod jitter;
 mod load;
 mod renderer;
@@ -13,7 +12,6 @@ mod report;
 mod run;
 
 pub use error::LatencyError;
-pub use html::page;
 pub use renderer::{OwnPictureFigures, OwnPictureParts};
 pub use report::{Goal, Latency, LatencyStage, QualityFigures};
 pub use run::{LatencyInputs, LatencyOptions, LatencySource, run};

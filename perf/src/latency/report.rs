@@ -17,25 +17,12 @@ pub struct LatencyStage {
     pub budget_us: Option<u64>,
     /// What it took (us).
     pub us: Quantiles,
-    /// Times and how many were near them, for the plot: upper bound (us), count.
-    #[serde(skip)]
-    pub bars: Vec<(f64, u64)>,
 }
-
-/// Bars a decade of a plot.
-pub const BARS: f64 = 12.0;
 
 impl LatencyStage {
     /// The stage whose times a meter holds.
     pub fn of(name: &'static str, budget_us: Option<u64>, meter: &Meter) -> Self {
-        let mut bars = BTreeMap::new();
-        for value in meter.histogram().iter_recorded() {
-            let us = value.value_iterated_to() as f64 * 1e-3;
-            let bar = (us.max(0.1).log10() * BARS).ceil() as i64;
-            *bars.entry(bar).or_insert(0) += value.count_since_last_iteration();
-        }
-        let bars = bars.into_iter().map(|(bar, count)| (10f64.powf(bar as f64 / BARS), count)).collect();
-        Self { name, budget_us, us: Quantiles::of(meter), bars }
+        Self { name, budget_us, us: Quantiles::of(meter) }
     }
 }
 

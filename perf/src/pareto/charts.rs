@@ -1,11 +1,9 @@
 //! The charts of a report.
 
 use super::front;
-use super::models::MODELS;
-use super::report::{Drape, Fate, ModelPoint, ParetoReport, Point, SceneReport, Survival};
+use super::report::{ParetoReport, Point, SceneReport};
 use toile_view::plot::axis::Axis;
 use toile_view::plot::chart::{Chart, Series, SeriesStyle};
-use toile_view::plot::tiles::{Cell, Tiles};
 use toile_view::plot::{BLACK, Drawing, SERIES_COLOURS};
 
 /// A chart under its file's name.
@@ -18,9 +16,6 @@ pub struct NamedDrawing {
 
 /// What 120 Hz leaves a step (us).
 const STEP_US: f64 = 1e6 / 120.0;
-
-/// Colours of the fates.
-const FATES: [[u8; 3]; 3] = [[190, 228, 190], [250, 222, 150], [240, 168, 160]];
 
 /// Solvers and qualities that are series of their own, each with its name in a legend.
 const GROUPS: [(&str, &str, &str); 6] = [
@@ -49,15 +44,6 @@ pub fn figures(report: &ParetoReport) -> Vec<NamedDrawing> {
         if !scene.energy.is_empty() {
             add(format!("{name}-energy"), energy(scene).draw());
         }
-    }
-    if let Some(survival) = &report.survival {
-        add("survival".into(), map(survival).draw());
-    }
-    if !report.models.is_empty() {
-        add("models".into(), models(&report.models).draw());
-    }
-    if let Some(drape) = &report.drape {
-        add("drape".into(), samplings(drape).draw());
     }
     all
 }
@@ -152,65 +138,4 @@ fn energy(scene: &SceneReport) -> Chart {
     });
     let axes = [("time (s)", false), ("energy: motion, weight, bending, stretch (J)", false)];
     framed(titled(scene, "energy by frame"), axes, series.collect())
-}
-
-fn map(survival: &Survival) -> Tiles {
-    let colour = |fate: Fate| match fate {
-        Fate::Stable => FATES[0],
-        Fate::Strained => FATES[1],
-        Fate::RolledBack => FATES[2],
-    };
-    let cell =
-        |(fate, strain): (&Fate, &f64)| Cell { colour: colour(*fate), words: format!("{:.1} %", 100.0 * strain) };
-    let row = |(fates, strains): (&Vec<Fate>, &Vec<f64>)| fates.iter().zip(strains).map(cell).collect();
-    let limit = 100.0 * survival.strained_p99;
-    Tiles {
-        title: "skirt: survival".into(),
-        labels: [
-            "mass of the hem over its fabric's; in each cell the worst 99th percentile of strain".into(),
-            "time step".into(),
-        ],
-        columns: survival.mass_ratios.iter().map(|r| format!("1 : {r}")).collect(),
-        rows: survival.steps_s.iter().map(|s| format!("{:.1} ms", 1e3 * s)).collect(),
-        cells: survival.fate.iter().zip(&survival.strain_p99).map(row).collect(),
-        legend: vec![
-            (FATES[0], format!("stable: within {limit:.0} %, {} substeps whatever the step", survival.substeps)),
-            (FATES[1], format!("strained: finite, but beyond {limit:.0} %")),
-            (FATES[2], "rolled back: at least one step was not finite".into()),
-        ],
-    }
-}
-
-/// Error against time of each model: joined where the skirt is stepped with it, dashed where without.
-fn models(points: &[ModelPoint]) -> Chart {
-    let mut series = Vec::new();
-    for (k, model) in MODELS.into_iter().enumerate() {
-        for with in [true, false] {
-            let of = points.iter().filter(|p| p.model == model && p.with == with);
-            let mut points: Vec<[f64; 2]> = of.map(|p| [p.step_us, p.error_mm]).collect();
-            points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-            let name = if with { model.into() } else { format!("without {model}") };
-            let style = SeriesStyle { dashed: !with, ..SeriesStyle::joined(SERIES_COLOURS[k]) };
-            series.push(Series { name, points, style });
-        }
-    }
-    let own = points.iter().filter(|p| p.default).map(|p| [p.step_us, p.error_mm]).collect();
-    series.push(Series { name: "shop's own substeps".into(), points: own, style: SeriesStyle::rings(BLACK) });
-    let title = "the walking skirt with each model and without, error against time".into();
-    framed(title, [("median time of a step (us)", true), ERROR], series)
-}
-
-fn samplings(drape: &Drape) -> Chart {
-    let ours = drape.samplings.iter().map(|s| [s.spacing_cm, s.mean_cm]).filter(|p| p[1] > 0.0).collect();
-    let theirs = drape.samplings.iter().filter_map(|s| Some([s.spacing_cm, s.published_cm?])).collect();
-    let series = vec![
-        Series { name: "to the finest".into(), points: ours, style: SeriesStyle::joined(SERIES_COLOURS[0]) },
-        Series {
-            name: "MIRAGES, to a real cloth".into(),
-            points: theirs,
-            style: SeriesStyle::joined(SERIES_COLOURS[1]),
-        },
-    ];
-    let axes = [("sampling (cm)", true), ("mean distance (cm)", true)];
-    framed("drape: a tablecloth of 1 m by sampling".into(), axes, series)
 }

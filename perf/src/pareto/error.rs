@@ -1,13 +1,11 @@
 //! Why a scene cannot be run or plotted.
 
 use thiserror::Error;
-use toile_assets::fabric::FabricError;
 use toile_bake::check::MeshError;
 use toile_engine::colliders::ColliderError;
 use toile_engine::workers::WorkerPoolError;
 
 use crate::oracle::OracleError;
-use crate::skirt::SkirtError;
 use crate::worn::WornError;
 
 /// Why the figures cannot be taken.
@@ -16,9 +14,6 @@ pub enum ParetoError {
     /// A scene's mesh that cannot be cloth.
     #[error("a scene's mesh cannot be baked: {0}")]
     Mesh(#[from] MeshError),
-    /// A scene's fabric that cannot be used.
-    #[error(transparent)]
-    Fabric(#[from] FabricError),
     /// A scene's solids that the engine does not take.
     #[error("a scene's colliders are refused: {0}")]
     Colliders(#[from] ColliderError),
@@ -31,9 +26,6 @@ pub enum ParetoError {
     /// A garment that cannot be worn.
     #[error(transparent)]
     Worn(#[from] WornError),
-    /// The survival map's skirt.
-    #[error(transparent)]
-    Skirt(#[from] SkirtError),
     /// A plot that cannot be written as a picture.
     #[error(transparent)]
     Picture(#[from] toile_view::image::Error),

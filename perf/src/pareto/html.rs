@@ -2,14 +2,10 @@
 
 use super::charts::NamedDrawing;
 use super::front;
-use super::report::{Drape, ModelPoint, ParetoReport, Point, SceneReport};
+use super::report::{ParetoReport, Point, SceneReport};
 use toile_view::plot::page::{Entry, Page};
 
 const FRONT: [&str; 7] = ["front, one thread", "substeps", "iterations", "step us", "mean mm", "max mm", "strain %"];
-
-const MODELS: [&str; 7] = ["fabric with", "stepped", "substeps", "step us", "mean mm", "max mm", "strain %"];
-
-const SAMPLINGS: [&str; 6] = ["sampling", "particles", "mean cm", "max cm", "published cm", "step us"];
 
 /// The report as one page of HTML with its charts.
 pub fn page(report: &ParetoReport, figures: &[NamedDrawing]) -> String {
@@ -24,19 +20,6 @@ pub fn page(report: &ParetoReport, figures: &[NamedDrawing]) -> String {
     }
     for scene in report.scenes.iter().filter(|s| s.main) {
         section(&mut page, report, scene, figures);
-    }
-    draw(&mut page, figures, |name| name == "survival");
-    if !report.models.is_empty() {
-        page.section("Models").paragraph(
-            "The walking skirt in a fabric with numbers for one model, stepped with it and without it from the same \
-             moments. x* has the model.",
-        );
-        page.table(&MODELS, report.models.iter().map(model_row));
-        draw(&mut page, figures, |name| name == "models");
-    }
-    if let Some(drape) = &report.drape {
-        table_cloth(&mut page, drape);
-        draw(&mut page, figures, |name| name == "drape");
     }
     page.finish()
 }
@@ -66,30 +49,4 @@ fn row(p: &Point) -> Vec<Entry> {
         Entry::Figure(format!("{:.2}", p.max_mm)),
         Entry::Figure(format!("{:.3}", 100.0 * p.strain_mean)),
     ]
-}
-
-fn model_row(p: &ModelPoint) -> Vec<Entry> {
-    vec![
-        Entry::words(p.model),
-        Entry::words(if p.with { "with it" } else { "without it" }),
-        Entry::figure(p.substeps),
-        Entry::Figure(format!("{:.0}", p.step_us)),
-        Entry::Figure(format!("{:.3}", p.error_mm)),
-        Entry::Figure(format!("{:.2}", p.max_mm)),
-        Entry::Figure(format!("{:.3}", 100.0 * p.strain[0])),
-    ]
-}
-
-fn table_cloth(page: &mut Page, drape: &Drape) {
-    let row = |s: &super::report::Sampling| {
-        vec![
-            Entry::words(format!("{} cm", s.spacing_cm)),
-            Entry::figure(s.particles),
-            Entry::Figure(format!("{:.3}", s.mean_cm)),
-            Entry::Figure(format!("{:.2}", s.max_cm)),
-            Entry::Figure(s.published_cm.map_or_else(String::new, |cm| format!("{cm:.2}"))),
-            Entry::Figure(format!("{:.0}", s.step_us)),
-        ]
-    };
-    page.section("Drape").paragraph(&drape.setup).table(&SAMPLINGS, drape.samplings.iter().map(row));
 }

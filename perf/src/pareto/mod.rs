@@ -6,22 +6,19 @@
 //! beside it and bounds what the errors mean.
 
 mod charts;
-mod drape;
 mod error;
 mod front;
 mod html;
 mod meshed_scene;
-mod models;
 mod play;
 mod reference;
 mod report;
 mod run;
 mod scenes;
-mod survival;
 mod sweep;
 
 pub use error::ParetoError;
-pub use report::{Drape, ModelPoint, ParetoReport, Point, ReportFile, Sampling, SceneReport, Survival};
+pub use report::{ParetoReport, Point, ReportFile, SceneReport};
 pub use run::{ParetoOptions, files, run};
 pub use scenes::SCENES;
 

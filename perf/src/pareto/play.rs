@@ -45,8 +45,6 @@ pub struct Trace {
     pub rolled_back: u64,
     /// Substeps of a step.
     pub substeps: u32,
-    /// Speed of the fastest particle at the end (m/s).
-    pub fastest_m_s: f64,
 }
 
 /// A moment of a run, from which windows start.
@@ -154,7 +152,7 @@ pub fn play_through(
             moments.push(scene.moment(tick));
         }
     }
-    trace.close(&scene.cloth, garment, times_ns);
+    trace.close(&scene.cloth, times_ns);
     Ok((trace, moments))
 }
 
@@ -180,7 +178,7 @@ pub fn play_windows(
         last = Some(scene.cloth);
     }
     if let Some(cloth) = last {
-        trace.close(&cloth, garment, times_ns);
+        trace.close(&cloth, times_ns);
     }
     trace.rolled_back = rolled_back;
     Ok(trace)
@@ -203,13 +201,11 @@ impl Trace {
     }
 
     /// What is known at the end.
-    fn close(&mut self, cloth: &Cloth, garment: &Garment, mut times_ns: Vec<u64>) {
+    fn close(&mut self, cloth: &Cloth, mut times_ns: Vec<u64>) {
         self.step_us = median(&mut times_ns).map_or(0.0, |ns| ns as f64 * 1e-3);
         self.strain = self.strain.map(|sum| sum / self.frames.len().max(1) as f64);
         self.rolled_back = cloth.events.rolled_back;
         self.substeps = cloth.substeps();
-        let speed = |i: usize| cloth.velocity(i).length();
-        self.fastest_m_s = f64::from((0..garment.particles()).map(speed).fold(0.0, f32::max));
     }
 }
 

@@ -1,4 +1,4 @@
-//! What is reported: points, scenes, the survival map, the drape study; as JSON and CSV.
+//! What is reported: points and scenes; as JSON and CSV.
 
 use serde::Serialize;
 use toile_assets::put_line;
@@ -44,33 +44,6 @@ pub struct Point {
     pub on_front: bool,
 }
 
-/// The walking skirt in a fabric with one model of cloth beyond one slope, stepped with it or without.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct ModelPoint {
-    /// Name of the model that the fabric has numbers for.
-    pub model: &'static str,
-    /// Whether it was stepped with it.
-    pub with: bool,
-    /// What is solved in a substep.
-    pub quality: &'static str,
-    /// Substeps of a step.
-    pub substeps: u32,
-    /// Whether garment and quality ask for these substeps themselves.
-    pub default: bool,
-    /// Median time of a step (us).
-    pub step_us: f64,
-    /// Mean distance of the free particles to x*, which has the model (mm).
-    pub error_mm: f64,
-    /// Largest distance of any of them (mm).
-    pub max_mm: f64,
-    /// Mean |length / rest - 1| of warp and weft edges, and its 99th percentile.
-    pub strain: [f64; 2],
-    /// How far x* may itself be off (mm).
-    pub reference_gap_mm: f64,
-    /// Steps that were not finite and were rolled back.
-    pub rolled_back: u64,
-}
-
 /// Energy by frame under one setting.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct EnergyRun {
@@ -101,63 +74,6 @@ pub struct SceneReport {
     pub energy: Vec<EnergyRun>,
 }
 
-/// What became of the skirt under a mass ratio and a time step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Fate {
-    /// Finite, and its 99th percentile of strain within [`Survival::strained_p99`].
-    Stable,
-    /// Finite, but stretched beyond it.
-    Strained,
-    /// At least one step was not finite and was rolled back.
-    RolledBack,
-}
-
-/// Which settings the skirt survives.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct Survival {
-    /// Mass of a hem particle over that of its neighbours above (1).
-    pub mass_ratios: Vec<f64>,
-    /// Time steps (s), each of [`Self::substeps`] substeps.
-    pub steps_s: Vec<f64>,
-    /// Substeps of a step, whatever its length.
-    pub substeps: u32,
-    /// Strain from which cloth counts as strained (1).
-    pub strained_p99: f64,
-    /// What became of it `[steps_s][mass_ratios]`.
-    pub fate: Vec<Vec<Fate>>,
-    /// The largest 99th percentile of strain of any of the second half of its frames (1), likewise.
-    pub strain_p99: Vec<Vec<f64>>,
-}
-
-/// The tablecloth at one sampling.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct Sampling {
-    /// Distance of its particles (cm).
-    pub spacing_cm: f64,
-    /// Particles of the tablecloth.
-    pub particles: usize,
-    /// Mean distance to the finest, over the particles that both have and that hang (cm).
-    pub mean_cm: f64,
-    /// Largest of these distances (cm).
-    pub max_cm: f64,
-    /// The published mean distance to a real cloth (cm), a different reference.
-    pub published_cm: Option<f64>,
-    /// Median time of a step (us).
-    pub step_us: f64,
-    /// Speed of its fastest particle at the end (mm/s): whether it had come to rest.
-    pub fastest_mm_s: f64,
-}
-
-/// A tablecloth at several samplings.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct Drape {
-    /// What cloth on what table.
-    pub setup: String,
-    /// Coarsest first; the last is the one that the others are held against.
-    pub samplings: Vec<Sampling>,
-}
-
 /// All figures of a run.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct ParetoReport {
@@ -167,12 +83,6 @@ pub struct ParetoReport {
     pub points: Vec<Point>,
     /// Every scene in every mesh.
     pub scenes: Vec<SceneReport>,
-    /// The map of what the skirt survives; none where it was not run.
-    pub survival: Option<Survival>,
-    /// The skirt with and without each model; empty where it was not run.
-    pub models: Vec<ModelPoint>,
-    /// The tablecloth by its sampling; none where it was not run.
-    pub drape: Option<Drape>,
 }
 
 /// A file of the report.
@@ -182,23 +92,6 @@ pub struct ReportFile {
     pub name: String,
     /// Content of the file.
     pub bytes: Vec<u8>,
-}
-
-/// The points of the models as a table of comma-separated values, a head line first.
-pub fn models_csv(points: &[ModelPoint]) -> String {
-    let mut text = String::from(
-        "model,with,quality,substeps,default,step_us,error_mm,max_mm,strain_mean,strain_p99,reference_gap_mm,rolled_back\n",
-    );
-    for p in points {
-        let ModelPoint { model, with, quality, substeps, default, step_us, error_mm, max_mm, .. } = p;
-        let ([mean, p99], gap, rolled_back) = (p.strain, p.reference_gap_mm, p.rolled_back);
-        put_line!(
-            text,
-            "{model},{with},{quality},{substeps},{default},{step_us:.2},{error_mm:.6},{max_mm:.6},{mean:.6e},{p99:.6e},\
-             {gap:.6},{rolled_back}"
-        );
-    }
-    text
 }
 
 /// All points as a table of comma-separated values, a head line first.

@@ -2,7 +2,7 @@
 
 use super::error::ParetoError;
 use super::report::{self, ParetoReport, ReportFile};
-use super::{charts, drape, front, html, models, scenes, survival, sweep};
+use super::{charts, front, html, scenes, sweep};
 
 /// What is to be measured.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -27,21 +27,10 @@ pub fn run(options: &ParetoOptions, progress: &dyn Fn(f64)) -> Result<ParetoRepo
     let mut report = ParetoReport { quick: options.quick, ..ParetoReport::default() };
     for (k, name) in names.iter().enumerate() {
         let part = |share: f64| progress((k as f64 + share) / names.len() as f64);
-        if *name == "drape" {
-            report.drape = Some(drape::study(options.quick, &part)?);
-            continue;
-        }
-        if *name == "models" {
-            report.models = models::study(options.quick, &part)?;
-            continue;
-        }
         for subject in scenes::subjects(name, options.quick)? {
             let (points, scene) = sweep::sweep(&subject, options.quick, &part)?;
             report.points.extend(points);
             report.scenes.push(scene);
-        }
-        if *name == "skirt" {
-            report.survival = Some(survival::map(options.quick)?);
         }
     }
     front::mark(&mut report.points);
@@ -55,10 +44,6 @@ pub fn run(options: &ParetoOptions, progress: &dyn Fn(f64)) -> Result<ParetoRepo
 pub fn files(report: &ParetoReport) -> Result<Vec<ReportFile>, ParetoError> {
     let figures = charts::figures(report);
     let mut files = vec![ReportFile { name: "points.csv".into(), bytes: report::csv(&report.points).into_bytes() }];
-    if !report.models.is_empty() {
-        let bytes = report::models_csv(&report.models).into_bytes();
-        files.push(ReportFile { name: "models.csv".into(), bytes });
-    }
     for figure in &figures {
         let mut png = Vec::new();
         toile_view::plot::raster::image(&figure.drawing).write_png(&mut png)?;

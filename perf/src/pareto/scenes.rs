@@ -4,7 +4,6 @@ use glam::DVec3;
 use toile_assets::scene::shopper;
 use toile_assets::scene::skirt::{self, SkirtMotion, Stretch};
 use toile_bake::Shape;
-use toile_base::fabric::Fabric;
 use toile_engine::colliders::{Colliders, RestSphere};
 
 use super::error::ParetoError;
@@ -13,8 +12,7 @@ use crate::validate::mesh::{CaseFabric, EndSupport, MeshStyle, Strip};
 use crate::worn::AverageBody;
 
 /// Names of all scenes, in the order in which they are run.
-pub const SCENES: [&str; 8] =
-    ["cantilever", "skirt", IRREGULAR, "strap-dress", "tee", "wide-leg-trousers", "models", "drape"];
+pub const SCENES: [&str; 6] = ["cantilever", "skirt", IRREGULAR, "strap-dress", "tee", "wide-leg-trousers"];
 
 /// The skirt with an irregular mesh.
 const IRREGULAR: &str = "skirt-irregular";
@@ -53,15 +51,6 @@ pub fn subjects(name: &str, quick: bool) -> Result<Vec<MeshedScene>, ParetoError
         }
         garment => Ok(vec![worn(garment, quick)?]),
     }
-}
-
-/// The walking skirt in a fabric that gives, with `change` made to it.
-pub fn changed_skirt(quick: bool, change: impl FnOnce(&mut Fabric)) -> Result<MeshedScene, ParetoError> {
-    let side = if quick { 24 } else { 64 };
-    let mut scene = walk(("skirt", format!("grid {side} x {side}"), skirt::shape(side)), true, quick)?;
-    scene.fabric = skirt::fabric(&scene.shape, Stretch::Physical);
-    change(&mut scene.fabric);
-    Ok(scene)
 }
 
 fn cantilever(rows: usize, main: bool) -> Result<MeshedScene, ParetoError> {

@@ -85,7 +85,7 @@ pub fn sweep(
 }
 
 /// Times all settings again, in as many rounds as are left of [`ROUNDS`].
-pub fn time_again(
+fn time_again(
     subject: &MeshedScene,
     reference: &Reference,
     played: &mut [(&Garment, Setting, Vec<f64>)],

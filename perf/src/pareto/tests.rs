@@ -1,6 +1,5 @@
 //! The front, the plots and a small sweep.
 
-use super::report::Fate;
 use super::*;
 use toile_view::plot::axis::{Axis, figure};
 use toile_view::plot::{Anchor, Drawing, Mark, raster, svg};
@@ -58,33 +57,6 @@ fn more_substeps_come_nearer_to_x_star() {
     let page = files.iter().find(|f| f.name == "pareto.html").map(|f| String::from_utf8_lossy(&f.bytes)).unwrap();
     assert!(page.contains("<svg") && !page.contains("<script") && !page.contains("src="));
     assert!(files.iter().any(|f| f.name == "cantilever-front.png" && f.bytes.starts_with(b"\x89PNG")));
-}
-
-#[test]
-fn a_model_that_is_left_out_costs_less_and_ends_farther_off() {
-    let options = ParetoOptions { scene: Some("models".into()), quick: true };
-    let report = run(&options, &|_| {}).unwrap();
-    for model in models::MODELS {
-        let of = |with: bool| {
-            let mine = report.models.iter().filter(move |p| p.model == model && p.with == with);
-            mine.max_by_key(|p| p.substeps).unwrap()
-        };
-        let [with, without] = [true, false].map(of);
-        assert!(with.error_mm.is_finite() && with.rolled_back == 0 && with.step_us > 0.0, "{with:?}");
-        // Shear that hardly ever comes to its lock is worth little.
-        if model != "shear lock" {
-            assert!(without.error_mm > with.error_mm, "{model}: {without:?} and {with:?}");
-        }
-    }
-    let files = files(&report).unwrap();
-    assert!(files.iter().any(|f| f.name == "models.csv") && files.iter().any(|f| f.name == "models.png"));
-}
-
-#[test]
-fn the_survival_map_knows_a_light_hem_at_a_short_step_as_stable() {
-    let map = survival::map(true).unwrap();
-    assert_eq!(map.fate[0][0], Fate::Stable, "{:?}", map.strain_p99);
-    assert_eq!((map.fate.len(), map.fate[0].len()), (map.steps_s.len(), map.mass_ratios.len()));
 }
 
 #[test]

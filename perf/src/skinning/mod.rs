@@ -3,11 +3,6 @@
 pub mod device;
 mod error;
 mod oracle;
-mod picture;
-mod shapes;
-mod solid;
-mod sweep;
-pub mod table;
 
 use std::hint::black_box;
 
@@ -24,9 +19,6 @@ use toile_fitting::timing;
 
 pub use error::SkinningError;
 pub use oracle::SurfaceErrors;
-pub use picture::twist_picture;
-pub use shapes::{BentJoint, BlendDistance, Shapes, TwistVolume, shapes};
-pub use sweep::{SweepTiming, sweep_timing};
 
 /// Rounds of a measurement: reference loop and kernels in turn, so that both see the machine in the same state. An odd number.
 const ROUNDS: usize = 5;

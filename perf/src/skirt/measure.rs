@@ -2,7 +2,6 @@
 
 use std::time::Instant;
 
-use toile_bake::Shape;
 use toile_base::numeric::statistics::{median, quantile};
 use toile_fitting::heap::HeapProbe;
 use toile_fitting::scene::StepTimes;
@@ -28,18 +27,9 @@ const METERED_STEPS: usize = 240;
 /// # Errors
 /// Where the options cannot be met.
 pub fn measure(options: &SkirtOptions, heap: &HeapProbe) -> Result<SkirtReport, SkirtError> {
-    measure_with(&Backends::open(options.backend), options, heap, |_| {})
-}
-
-/// The same with a mesh that `change` has changed before it is baked.
-pub(super) fn measure_with(
-    backends: &Backends,
-    options: &SkirtOptions,
-    heap: &HeapProbe,
-    change: impl FnOnce(&mut Shape),
-) -> Result<SkirtReport, SkirtError> {
+    let backends = Backends::open(options.backend);
     let reference = ReferenceTimer::new()?;
-    let mut scene = SkirtScene::by(backends, options, heap, change)?;
+    let mut scene = SkirtScene::by(&backends, options, heap, |_| {})?;
     let mut run = SkirtRun::new(options, &scene, *heap);
     for _ in 0..WARM_UP {
         scene.prepare();
@@ -58,7 +48,7 @@ pub(super) fn measure_with(
     let metered = METERED_STEPS.min(options.steps.max(1));
     let MeteredStages { stages_us, greater_share_us, device_us } = scene.metered_stages(metered);
     (report.stages_us, report.greater_share_us, report.device_us) = (stages_us, greater_share_us, device_us);
-    report.stepped_by = SteppedBy::of(backends);
+    report.stepped_by = SteppedBy::of(&backends);
     report.decided_by = scene.stepper().measured().map(Into::into);
     Ok(report)
 }

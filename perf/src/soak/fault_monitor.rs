@@ -21,7 +21,7 @@ use super::scenario::SoakFault;
 
 /// A step follows the shopper whose joints are this far from theirs on average (m): twice what they are at worst while nothing is
 /// wrong, which the report says.
-pub const FOLLOWS_M: f32 = 0.08;
+const FOLLOWS_M: f32 = 0.08;
 
 /// No particle of cloth that a person moves is faster (m/s): a hand that strikes out reaches this.
 const CALM_M_S: f32 = 10.0;

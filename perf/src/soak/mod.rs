@@ -8,7 +8,6 @@ mod depth_camera;
 mod error;
 pub mod fault_kind;
 mod fault_monitor;
-mod html;
 mod memory;
 mod observed_loops;
 mod options;
@@ -20,7 +19,6 @@ mod scene_loop;
 mod scene_maker;
 
 pub use error::SoakError;
-pub use html::page;
 pub use memory::MemorySample;
 pub use options::{LEAST_APART_S, SceneWeight, SoakCamera, SoakOptions, SoakOutfit, SoakPlan};
 pub use report::{FaultFigures, FaultKindFigures, MemoryFigures, RecoveryTicks, Soak, SoakCheck};

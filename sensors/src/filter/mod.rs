@@ -1,22 +1,17 @@
-//! Joints made believable, frame by frame: gate, smooth, hold what is lost, keep the bones' lengths.
+//! Joints made believable, frame by frame: gate, smooth, hold what is lost.
 //!
 //! Runs on the sensor thread in less than 50 µs a frame, with a fixed state and no allocation.
 
-pub mod angles;
-pub mod bones;
 pub mod gate;
 pub mod hold;
 pub mod holt;
 pub mod one_euro;
-pub mod predict;
-pub mod smoothing;
 
 use glam::Vec3;
-use toile_base::skeleton::{JOINTS, Joint, Skeleton};
+use toile_base::skeleton::{JOINTS, Joint};
 
-use bones::BoneLength;
 use hold::Hold;
-use smoothing::{Smoother, Smoothing};
+use holt::{Holt, HoltSettings};
 use toile_base::clock::seconds_between;
 use toile_base::filter::Filter;
 use toile_base::frame::{Joints, TrackedJoint};
@@ -29,73 +24,35 @@ const LONGEST_SILENCE: f32 = 1.0;
 /// Shortest step between two frames (s); a frame that comes no later than the one before counts as this much later.
 const SHORTEST_STEP: f32 = 1e-3;
 
-/// Settings of the joint filter.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FilterSettings {
-    /// Smoothing of positions.
-    pub smoothing: Smoothing,
-    /// How far bones are pulled to their running median length: 0 as seen .. 1 constant.
-    pub bone_pull: f32,
-}
-
-impl Default for FilterSettings {
-    /// Bones as seen: pulled ones add their parents' noise along the chain, and a pose takes directions alone
-    /// (docs/filters.md has the figures).
-    fn default() -> Self {
-        Self { smoothing: Smoothing::default(), bone_pull: 0.0 }
-    }
-}
-
 /// State of one joint.
 #[derive(Debug, Clone, Copy)]
 struct JointTrack {
-    smooth: Smoother,
+    smooth: Holt,
     hold: Hold,
-    bone: BoneLength,
     /// The measurement last believed (m), and when (ns).
     believed: Vec3,
     believed_ns: u64,
     /// Whether it was believed in the frame before.
     following: bool,
-    /// Its position in the frame before, bone lengths not yet corrected (m).
+    /// Its position in the frame before (m).
     place: Vec3,
     /// How far the smoothed place moved in this frame (m); zero unless followed.
     moved: Vec3,
 }
 
 /// The filter of one shopper's joints. Its state has a fixed size; [`push`](Self::push) allocates nothing.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct JointFilter {
-    settings: FilterSettings,
+    settings: HoltSettings,
     last_ns: Option<u64>,
     /// `None` for joints never seen.
     tracks: [Option<JointTrack>; JOINTS],
-    /// Length of each limb's bone (m), where the body has been measured.
-    measured: [Option<f32>; JOINTS],
 }
 
-/// Bones that a measured body fixes: other joints lie elsewhere in a sensor than in a body.
-const MEASURED: [Joint; 8] = {
-    use Joint::*;
-    [LeftElbow, LeftWrist, LeftKnee, LeftAnkle, RightElbow, RightWrist, RightKnee, RightAnkle]
-};
-
 impl JointFilter {
-    /// A filter that has seen nothing.
-    pub fn new(settings: FilterSettings) -> Self {
-        Self { settings, last_ns: None, tracks: [None; JOINTS], measured: [None; JOINTS] }
-    }
-
-    /// Locks the bones of arms and legs to those of the measured body, in place of what the session shows.
-    pub fn lock_bones(&mut self, body: &Skeleton) {
-        for joint in MEASURED {
-            self.measured[joint.index()] = Some(body.offset(joint).length());
-        }
-    }
-
     /// Forgets the shopper.
     pub fn reset(&mut self) {
-        *self = Self::new(self.settings);
+        *self = Self::default();
     }
 
     /// Takes a frame and gives the believable one of the same time. Confidence is 1 for a joint that is seen,
@@ -107,7 +64,7 @@ impl JointFilter {
         let dt = self.step(frame.time_ns);
         let seen = self.smooth(&frame, dt);
         let places = self.place(&frame, &seen, dt);
-        self.pull_bones(&frame, &seen, &places)
+        self.joints(&frame, &places)
     }
 
     /// Seconds since the last frame; after a long silence the motion is forgotten.
@@ -130,13 +87,13 @@ impl JointFilter {
                 && seen[i]
                 && track.following
             {
-                trust[i] = track.smooth.drive(tracked.position, dt, &self.settings.smoothing);
+                trust[i] = track.smooth.trust(tracked.position, dt, &self.settings);
             }
         }
         let trust = shared(&trust);
         for (i, tracked) in frame.joints.iter().enumerate() {
             match &mut self.tracks[i] {
-                Some(track) if seen[i] => track.follow(tracked.position, dt, trust[i], &self.settings.smoothing),
+                Some(track) if seen[i] => track.follow(tracked.position, dt, trust[i], &self.settings),
                 Some(track) => track.moved = Vec3::ZERO,
                 empty if seen[i] => *empty = Some(JointTrack::first_seen(tracked.position)),
                 _ => {}
@@ -168,7 +125,7 @@ impl JointFilter {
                 None => track.place + self.drift(joint),
             };
             places[i] = if seen[i] {
-                let smoothed = track.smooth.output(&self.settings.smoothing);
+                let smoothed = track.smooth.output(&self.settings);
                 if !track.following {
                     track.hold.resume(held, smoothed);
                 }
@@ -196,25 +153,15 @@ impl JointFilter {
         gate::anchor(joint, |j| self.tracks[j.index()].is_some())
     }
 
-    /// Pulls bones to their lengths, from the pelvis outward; learns from bones of which both ends are at least inferred.
-    fn pull_bones(&mut self, frame: &Joints, seen: &[bool; JOINTS], places: &[Vec3; JOINTS]) -> Joints {
+    /// The frame that is handed out: each joint from the nearest ancestor that was ever seen.
+    fn joints(&self, frame: &Joints, places: &[Vec3; JOINTS]) -> Joints {
         let mut out = Joints { hands: frame.hands, ..Joints::absent(frame.time_ns) };
         for joint in Joint::ALL {
             let i = joint.index();
-            let parent = self.anchor(joint);
-            let Some(track) = &mut self.tracks[i] else { continue };
-            let position = match parent {
-                Some(from) => {
-                    let jumped = [from, joint].iter().any(|j| frame.at(*j).is_believed() && !seen[j.index()]);
-                    if let Some(bone) = inferred(frame, from, joint).filter(|_| !jumped) {
-                        let weight = frame.at(from).confidence.min(frame.at(joint).confidence);
-                        track.bone.learn(from, bone.length(), weight);
-                    }
-                    let bone = places[i] - places[from.index()];
-                    let length = self.measured[i].filter(|_| joint.parent() == Some(from));
-                    let bone_length = length.map_or(track.bone, |length| BoneLength::fixed(from, length));
-                    out.at(from).position + bone_length.pulled(from, bone, self.settings.bone_pull)
-                }
+            let Some(track) = &self.tracks[i] else { continue };
+            // Summed along the chain, not taken from `places`: the last bits differ, and state hashes rest on them.
+            let position = match self.anchor(joint) {
+                Some(from) => out.at(from).position + (places[i] - places[from.index()]),
                 None => places[i],
             };
             out.joints[i] = TrackedJoint { position, confidence: track.hold.trust() };
@@ -240,18 +187,11 @@ impl Filter for JointFilter {
     }
 }
 
-impl Default for JointFilter {
-    fn default() -> Self {
-        Self::new(FilterSettings::default())
-    }
-}
-
 impl JointTrack {
     fn first_seen(at: Vec3) -> Self {
         Self {
-            smooth: Smoother::start(at),
+            smooth: Holt::start(at),
             hold: Hold::first_seen(),
-            bone: BoneLength::default(),
             believed: at,
             believed_ns: 0,
             following: true,
@@ -265,13 +205,13 @@ impl JointTrack {
         gate::is_plausible_move(self.believed, tracked.position, seconds)
     }
 
-    fn follow(&mut self, measured: Vec3, dt: f32, trust: f32, settings: &Smoothing) {
+    fn follow(&mut self, measured: Vec3, dt: f32, trust: f32, settings: &HoltSettings) {
         let before = self.smooth.level;
         if self.following {
             self.smooth.update(measured, dt, trust, settings);
             self.moved = self.smooth.level - before;
         } else {
-            self.smooth = Smoother::start(measured);
+            self.smooth = Holt::start(measured);
             self.moved = Vec3::ZERO;
         }
     }

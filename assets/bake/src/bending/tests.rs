@@ -6,7 +6,7 @@ use glam::{Mat3, Quat, Vec3};
 
 use super::*;
 use crate::fibers;
-use crate::meshes::{TestMesh, rough_sheet, rough_skirt, sheet, split, tube};
+use crate::tests::meshes::{TestMesh, rough_sheet, rough_skirt, sheet, split, tube};
 
 fn fabric(bias: Option<f32>) -> Fabric {
     let mut fabric = Fabric::cotton_lawn();

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::check;
-use crate::meshes::{TestMesh, renumbered, rough_sheet, rough_skirt, sheet, split, tube};
+use crate::tests::meshes::{TestMesh, renumbered, rough_sheet, rough_skirt, sheet, split, tube};
 use toile_base::numeric::random::SplitMix64;
 
 fn traced((positions, faces): &TestMesh) -> (Vec<Edge>, Vec<Fiber>) {

@@ -1,7 +1,7 @@
 //! The curve of a link in f64: up to three slopes and friction, over the deformation of the cloth.
 //!
 //! Between two knees the force is slope * d; behind a knee it goes on from there with a slope of its own: stretch that becomes
-//! stiff (upper), shear that locks (both), a thread that is pushed together and gives way as an arc (lower, [`arc_force`]). In parallel a
+//! stiff (upper), shear that locks (both), a thread that is pushed together and gives way as an arc (lower, [`ARC_FORCE`]). In parallel a
 //! slider in series with a spring, as [`FrictionElement`] has it.
 
 use super::friction_element::{FrictionElement, STICKING};
@@ -71,23 +71,9 @@ impl LinkCurve {
     }
 }
 
-/// Force of a thread of length 1 and rigidity 1 whose ends are pushed to the distance `part`: it bows as an arc of its length
-/// (Choi and Ko 2002, "Stable but responsive cloth", eq. 9): f = k^2 / (cos(k/2) - sinc(k/2)) with sinc(k/2) = `part`.
-/// Negative: it pushes.
-pub fn arc_force(part: f64) -> f64 {
-    let part = part.clamp(1e-9, 1.0);
-    let (mut low, mut high) = (0.0, std::f64::consts::PI);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if f64::sin(middle) / middle > part { low = middle } else { high = middle }
-    }
-    // cos u - sinc u is -u^2 / 3 where the arc is flat.
-    let u = 0.5 * (low + high);
-    if u < 1e-3 { -ARC_FORCE } else { 4.0 * u * u / (u.cos() - part) }
-}
-
-/// Force at which a straight thread of length 1 and rigidity 1 gives way, as [`arc_force`] has it: 12 where Euler's column has
-/// pi^2, because an arc is not quite the form that a column takes.
+/// Force at which a straight thread of length 1 and rigidity 1 gives way. Its ends are pushed to a distance `part`, and it bows as an arc
+/// of its length (Choi and Ko 2002, "Stable but responsive cloth", eq. 9): f = k^2 / (cos(k/2) - sinc(k/2)) with sinc(k/2) = `part`.
+/// That is 12 where Euler's column has pi^2, because an arc is not quite the form that a column takes.
 pub const ARC_FORCE: f64 = 12.0;
 
 /// By how much that force grows when the ends have come together: a line that is within 2 % of the arc until they are at .6 of
@@ -119,6 +105,20 @@ mod tests {
             LinkCurve { knees: [-lock, lock], behind: [20.0; 2], half_width: 0.5 * width, ..LinkCurve::plain(slope) };
         let read = read_loop(8f64.to_radians(), [0.5, 2.5].map(f64::to_radians), |d| link_curve.force(d));
         assert!((read.slope / slope - 1.0).abs() < 1e-9 && (read.width / width - 1.0).abs() < 1e-9);
+    }
+
+    /// Force of a thread of length 1 and rigidity 1 whose ends are pushed to the distance `part`, as an arc of its length. Negative: it
+    /// pushes.
+    fn arc_force(part: f64) -> f64 {
+        let part = part.clamp(1e-9, 1.0);
+        let (mut low, mut high) = (0.0, std::f64::consts::PI);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if f64::sin(middle) / middle > part { low = middle } else { high = middle }
+        }
+        // cos u - sinc u is -u^2 / 3 where the arc is flat.
+        let u = 0.5 * (low + high);
+        if u < 1e-3 { -ARC_FORCE } else { 4.0 * u * u / (u.cos() - part) }
     }
 
     #[test]

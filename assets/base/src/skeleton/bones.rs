@@ -106,15 +106,6 @@ pub fn bone_joint(bone: usize) -> Option<Joint> {
     twist.or_else(|| Joint::ALL.get(bone).copied())
 }
 
-/// The same bone on the other side; bones of the midline are their own mirror.
-pub fn bone_mirror(bone: usize) -> usize {
-    match bone {
-        0..JOINTS => Joint::ALL[bone].mirror().index(),
-        _ if bone < JOINTS + SIDE => bone + SIDE,
-        _ => bone - SIDE,
-    }
-}
-
 /// The name of a bone in files: a joint's is that of H-Anim, and twist bones, for which H-Anim has no name, are numbered
 /// from the root of their limb: `l_elbow_twist_1`.
 pub fn bone_name(bone: usize) -> Option<String> {
@@ -143,12 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn bones_know_their_joint_and_their_mirror() {
-        for bone in 0..BONES {
-            let mirror = bone_mirror(bone);
-            assert_eq!(bone_mirror(mirror), bone);
-            assert_eq!(bone_joint(mirror), bone_joint(bone).map(Joint::mirror));
-        }
+    fn bones_know_their_joint() {
         assert_eq!(bone_joint(TWISTS[4].first + 2), Some(Joint::RightShoulder));
         assert_eq!(bone_joint(BONES), None);
         assert_eq!(TWISTS[7].first + TWISTS[7].count, BONES);

@@ -5,19 +5,14 @@
 
 mod arm_clearance;
 mod body_input;
-pub mod filters;
 mod foot;
 pub mod ground;
-#[cfg(test)]
-mod habits;
 pub mod kinematics;
 mod leg;
 mod limb;
 pub mod limits;
 mod neutral;
 mod plant;
-#[cfg(test)]
-mod recordings;
 mod reliable_joints;
 mod retarget;
 pub mod smooth;
@@ -67,8 +62,8 @@ pub struct Poser {
     /// Where the pelvis is seen, and where it is carried to before feet are held, world (m); y is not used.
     place: Vec3,
     carried: Vec3,
-    /// Where planted feet are kept; `None` lets them slide.
-    tread: Option<Tread>,
+    /// Where planted feet are kept.
+    tread: Tread,
     clear: ArmClearance,
     /// The pose before feet are kept and the arms kept clear of the body.
     pose: Pose,
@@ -85,7 +80,7 @@ impl Poser {
             stance: Stance::default(),
             place: skeleton.at(Joint::Pelvis),
             carried: skeleton.at(Joint::Pelvis),
-            tread: Some(Tread::default()),
+            tread: Tread::default(),
             clear: ArmClearance::default(),
             pose: Pose::rest(skeleton),
             started: false,
@@ -98,23 +93,11 @@ impl Poser {
         Self { clear: ArmClearance::new(spheres, capsules), ..self }
     }
 
-    /// The same without inverse kinematics of planted feet: what is compared with.
-    #[must_use]
-    pub fn letting_feet_slide(self) -> Self {
-        Self { tread: None, ..self }
-    }
-
     /// Forgets the person: the next moment is taken over as it is.
     pub fn reset(&mut self) {
         let mut clear = std::mem::take(&mut self.clear);
         clear.reset();
-        let tread = self.tread.map(|_| Tread::default());
-        *self = Self { clear, tread, ..Self::new(&self.skeleton) };
-    }
-
-    /// The skeleton that is posed.
-    pub fn skeleton(&self) -> &Skeleton {
-        &self.skeleton
+        *self = Self { clear, ..Self::new(&self.skeleton) };
     }
 
     /// The pose `dt` (s) after the last call, from the latest joints; call it every step, also with old joints.
@@ -138,9 +121,7 @@ impl Poser {
             self.ground = Ground::new(&self.skeleton);
         }
         let mut shown = self.pose;
-        if let Some(tread) = &mut self.tread {
-            tread.apply(&self.skeleton, &mut shown, self.stance.planted(), dt);
-        }
+        self.tread.apply(&self.skeleton, &mut shown, self.stance.planted(), dt);
         self.clear.apply(&self.skeleton, &mut shown, dt, first);
         shown
     }

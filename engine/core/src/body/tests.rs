@@ -1,5 +1,8 @@
 //! Tests of the pose: what joints show, the skeleton does, whatever its proportions, and never by a jump.
 
+mod habits;
+mod recordings;
+
 use glam::{EulerRot, Quat, Vec3};
 use proptest::prelude::*;
 use toile_base::frame::{Joints, TrackedJoint};

@@ -241,9 +241,18 @@ impl<S: FrameSource, F: Filter, C: Clock> ThreadLoop for SensorThread<S, F, C> {
 
 #[cfg(test)]
 mod tests {
-    use toile_base::filter::Unfiltered;
-
     use super::*;
+
+    /// Passes joints on as they come.
+    struct Unfiltered;
+
+    impl Filter for Unfiltered {
+        fn push(&mut self, frame: &Joints) -> Joints {
+            *frame
+        }
+
+        fn reset(&mut self) {}
+    }
 
     #[test]
     fn stamps_of_a_clock_that_jumped_and_frames_that_are_no_news_do_not_get_through() {

@@ -10,7 +10,6 @@ mod laid;
 mod layout;
 mod posed;
 mod posed_mesh;
-mod prune;
 mod sweep;
 #[cfg(test)]
 mod tests;
@@ -30,7 +29,6 @@ pub use laid::LaidVertex;
 pub use layout::Padding;
 pub use posed::Posed;
 pub use posed_mesh::{PosedMesh, PosedVertex};
-pub use prune::{Pruning, pruning};
 pub use sweep::{SweepBinding, SweptLimb, SweptSkin};
 
 use kernel::{BlockOutput, Dual, Linear, MeshOutput, SkinOutput, SkinSurface};

@@ -6,10 +6,10 @@ mod shapes;
 mod sweep;
 
 use glam::{Affine3A, Quat, Vec3};
-use toile_base::mesh::{Influences, SkinWeights, WideWeights};
+use toile_base::mesh::{Influences, SkinWeights};
 use toile_base::skeleton::BONES;
 
-use super::{Blend, Posed, PosedMesh, SkinError, SkinningJob, dual_palette, pruning};
+use super::{Blend, Posed, PosedMesh, SkinError, SkinningJob, dual_palette};
 use crate::lanes::Width;
 use crate::workers::WorkerPool;
 
@@ -163,26 +163,4 @@ fn a_collapsed_normal_is_zero_and_an_empty_skin_does_nothing() {
     let empty = SkinningJob::new(&[], &[], &none).unwrap();
     assert_eq!(posed(&empty, Blend::Dual, &palette).vertices(), 0);
     assert_eq!(empty.padding().share(), 0.0);
-}
-
-#[test]
-fn pruning_says_what_it_costs() {
-    let crowd = Crowd::<8>::new(64, 0.5);
-    let (kept, shares): (Vec<_>, Vec<_>) = crowd.weights.iter().map(|w| SkinWeights::strongest(w.iter())).unzip();
-    let surface = [&crowd.positions[..], &crowd.normals[..]];
-    let found = pruning(surface, &crowd.weights, &kept, &[crowd.palette]).unwrap();
-    assert_eq!(found.vertices, 32, "half of the vertices have five to eight influences");
-    let worst = shares.iter().copied().fold(0.0, f32::max);
-    assert!((found.share_max - worst).abs() < 1e-6);
-    // By hand, at the vertex that is said to be the worst.
-    let v = found.worst.unwrap();
-    let sum = |w: &mut dyn Iterator<Item = (u8, f32)>| {
-        let p = crowd.positions[v];
-        w.fold(Vec3::ZERO, |sum, (bone, w)| sum + crowd.palette[usize::from(bone)].transform_point3(p) * w)
-    };
-    let error = sum(&mut crowd.weights[v].iter()).distance(sum(&mut kept[v].iter()));
-    assert!((error - found.error_max_m).abs() < 1e-5 && error > 1e-3, "{error} against {}", found.error_max_m);
-    assert!(found.error_mean_m > 0.0 && found.error_mean_m < found.error_max_m);
-    let wide: Vec<WideWeights> = kept.iter().map(|w| WideWeights::strongest(w.iter()).0).collect();
-    assert_eq!(pruning(surface, &wide, &kept, &[crowd.palette]).unwrap(), Default::default());
 }

@@ -6,7 +6,7 @@ use toile_assets::scene::SESSION;
 use toile_base::clock::SECOND_NS;
 use toile_base::frame::{DepthFrame, Joints};
 use toile_base::skeleton::Joint;
-use toile_sensors::filter::{FilterSettings, JointFilter};
+use toile_sensors::filter::JointFilter;
 use toile_sensors::source::{self, OpenOptions, Session};
 
 use crate::FittingError;
@@ -47,7 +47,7 @@ pub fn of_depth(depth: Vec<DepthFrame>) -> Session {
 
 /// The joints of a session after the filter, at the same times: as the sensor thread filters them in the loop.
 pub fn filtered(session: &Session) -> Vec<Joints> {
-    let mut filter = JointFilter::new(FilterSettings::default());
+    let mut filter = JointFilter::default();
     session.joints.iter().map(|joints| filter.push(joints)).collect()
 }
 

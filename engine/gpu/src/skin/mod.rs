@@ -16,7 +16,7 @@ use std::ops::Range;
 use glam::{Affine3A, Vec3};
 use toile_base::skeleton::BONES;
 use toile_engine::skin::{Blend, DualQuat, SkinningJob, dual_palette};
-use wgpu::{Buffer, CommandEncoder, CommandEncoderDescriptor, ComputePass, ComputePassDescriptor};
+use wgpu::{CommandEncoder, CommandEncoderDescriptor, ComputePass, ComputePassDescriptor};
 
 use crate::cloth::flat::Workgroups;
 use crate::cloth::readback::{ReadbackCounts, ReadbackRing};
@@ -136,17 +136,6 @@ impl Skinning {
     /// Where there is no such body.
     pub fn span(&self, body: usize) -> Range<usize> {
         self.spans[body].clone()
-    }
-
-    /// On the device: world positions (m) of all bodies in the order of their meshes, four numbers a vertex, the last 1; a
-    /// vertex buffer.
-    pub fn position_buffer(&self) -> &Buffer {
-        &self.buffers.positions
-    }
-
-    /// On the device: unit normals likewise, the last number 0.
-    pub fn normal_buffer(&self) -> &Buffer {
-        &self.buffers.normals
     }
 
     /// A body's positions and normals on the device, for a renderer there; `None` where there is no such body.

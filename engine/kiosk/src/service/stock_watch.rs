@@ -168,11 +168,6 @@ impl<H: Send + 'static> StockWatch<H> {
         self.next.take()
     }
 
-    /// Whether there is one.
-    pub fn has_changed(&self) -> bool {
-        self.next.is_some()
-    }
-
     /// Lines for the operator, each once.
     pub fn lines(&mut self) -> Vec<String> {
         std::mem::take(&mut self.lines)

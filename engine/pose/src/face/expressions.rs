@@ -11,11 +11,8 @@ use super::head_mesh::HeadMesh;
 use super::landmarks::{FaceLandmarks, SurfacePoint, mirrored};
 use super::prior::{solve, wendland};
 
-/// Number of expressions.
+/// Number of expressions. The order of all amplitudes: jaw open, smile, brows up, lids closed.
 pub const EXPRESSIONS: usize = 4;
-
-/// Their names, in the order of all amplitudes.
-pub const EXPRESSION_NAMES: [&str; EXPRESSIONS] = ["jaw_open", "smile", "brows_up", "lids_closed"];
 
 /// Rounds until points of the mesh move as they are meant to.
 const CORRECTIONS: usize = 12;

@@ -29,7 +29,7 @@ mod obj;
 mod texture;
 
 pub use adapt::{AdaptedHead, adapt};
-pub use expressions::{EXPRESSION_NAMES, EXPRESSIONS, ExpressionFields};
+pub use expressions::{EXPRESSIONS, ExpressionFields};
 pub use landmarks::{FaceLandmarks, SurfacePoint};
 pub use obj::{mtl, obj};
 pub use sequence::{TrackedSequence, follow};

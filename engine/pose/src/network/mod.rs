@@ -15,6 +15,4 @@ pub use running::Network;
 pub use shape::Shape;
 
 #[cfg(test)]
-mod small_file;
-#[cfg(test)]
 mod tests;

@@ -76,11 +76,6 @@ impl Network {
         &self.buffers[buffer].as_slice()[..numbers]
     }
 
-    /// On so many lanes from now on; the results are the same bits.
-    pub fn set_width(&mut self, width: Width) {
-        self.width = width;
-    }
-
     /// Overwrites what it has of the last image.
     pub fn wipe(&mut self) {
         self.buffers.iter_mut().for_each(|buffer| buffer.as_mut().fill(0.0));

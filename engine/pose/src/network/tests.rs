@@ -1,5 +1,7 @@
 //! Fast kernels against their reference, on images and weights drawn at random: the same bits at every width.
 
+mod small_file;
+
 use toile_base::numeric::random::SplitMix64;
 use toile_engine::lanes::Width;
 

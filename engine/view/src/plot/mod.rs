@@ -2,11 +2,9 @@
 
 pub mod axis;
 pub mod chart;
-pub mod histogram;
 pub mod page;
 pub mod raster;
 pub mod svg;
-pub mod tiles;
 
 /// An sRGB colour.
 pub type Colour = [u8; 3];
@@ -60,17 +58,6 @@ pub enum Mark {
         /// Whether it is a ring.
         ring: bool,
     },
-    /// A filled rectangle.
-    Box {
-        /// Its upper left corner.
-        at: [f64; 2],
-        /// Width and height (pixels).
-        size: [f64; 2],
-        /// Colour of the rectangle.
-        colour: Colour,
-        /// Text that a page shows under the pointer.
-        hint: Option<String>,
-    },
     /// One line of text, centred on a height.
     Text {
         /// The end that the anchor names.
@@ -115,7 +102,7 @@ impl Drawing {
             let moved = drawing.marks.into_iter().map(|mut mark| {
                 match &mut mark {
                     Mark::Line { points, .. } => points.iter_mut().for_each(down),
-                    Mark::Dot { at, .. } | Mark::Box { at, .. } | Mark::Text { at, .. } => down(at),
+                    Mark::Dot { at, .. } | Mark::Text { at, .. } => down(at),
                 }
                 mark
             });

@@ -1,4 +1,4 @@
-//! A page of HTML that needs no other file and no script: headings, paragraphs, lists, tables, drawings.
+//! A page of HTML that needs no other file and no script: headings, paragraphs, tables, drawings.
 
 use super::Drawing;
 use super::svg::{self, escaped};
@@ -7,11 +7,7 @@ use toile_assets::put_line;
 const STYLE: &str = "body { font-family: system-ui, sans-serif; background: #fff; color: #222; max-width: 1080px; \
 margin: 2em auto; padding: 0 1em; }\nsvg { max-width: 100%; height: auto; }\ntable { border-collapse: collapse; }\n\
 th, td { padding: 0.2em 0.7em; text-align: right; border-bottom: 1px solid #ddd; }\nth:first-child, td:first-child, \
-.words { text-align: left; }\n.bad { color: #b00; font-weight: bold; }\n.good { color: #075; }\n\
-.bar { display: inline-block; height: 0.7em; background: #0072b2; }";
-
-/// Width of the longest bar of a table (px).
-const BAR_PX: f64 = 120.0;
+.words { text-align: left; }";
 
 /// Content of a cell of a table.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,12 +16,6 @@ pub enum Entry {
     Figure(String),
     /// Words, to the left.
     Words(String),
-    /// A good result.
-    Good(String),
-    /// A bad result.
-    Bad(String),
-    /// A bar, by its share of the longest (0..1).
-    Bar(f64),
 }
 
 impl Entry {
@@ -43,12 +33,6 @@ impl Entry {
         match self {
             Self::Figure(text) => format!("<td>{}</td>", escaped(text)),
             Self::Words(text) => format!("<td class=\"words\">{}</td>", escaped(text)),
-            Self::Good(text) => format!("<td class=\"good\">{}</td>", escaped(text)),
-            Self::Bad(text) => format!("<td class=\"bad\">{}</td>", escaped(text)),
-            Self::Bar(share) => {
-                let width = share.clamp(0.0, 1.0) * BAR_PX;
-                format!("<td class=\"words\"><span class=\"bar\" style=\"width:{width:.0}px\"></span></td>")
-            }
         }
     }
 }
@@ -69,41 +53,22 @@ impl Page {
 
     /// The page's own heading.
     pub fn title(&mut self, text: &str) -> &mut Self {
-        self.element("h1", "", text)
+        self.element("h1", text)
     }
 
     /// The heading of a section.
     pub fn section(&mut self, text: &str) -> &mut Self {
-        self.element("h2", "", text)
+        self.element("h2", text)
     }
 
     /// A paragraph; a line break in the text is one on the page.
     pub fn paragraph(&mut self, text: &str) -> &mut Self {
-        self.element("p", "", text)
+        self.element("p", text)
     }
 
-    /// A paragraph that says that something passed.
-    pub fn good(&mut self, text: &str) -> &mut Self {
-        self.element("p", " class=\"good\"", text)
-    }
-
-    /// A paragraph that says that something failed.
-    pub fn bad(&mut self, text: &str) -> &mut Self {
-        self.element("p", " class=\"bad\"", text)
-    }
-
-    fn element(&mut self, name: &str, class: &str, text: &str) -> &mut Self {
+    fn element(&mut self, name: &str, text: &str) -> &mut Self {
         let text = escaped(text).replace('\n', "<br>\n");
-        put_line!(self.html, "<{name}{class}>{text}</{name}>");
-        self
-    }
-
-    /// A list; nothing where it is empty.
-    pub fn list(&mut self, items: &[String]) -> &mut Self {
-        if !items.is_empty() {
-            let items: String = items.iter().map(|item| format!("<li>{}</li>\n", escaped(item))).collect();
-            put_line!(self.html, "<ul>\n{items}</ul>");
-        }
+        put_line!(self.html, "<{name}>{text}</{name}>");
         self
     }
 
@@ -138,12 +103,12 @@ mod tests {
     #[test]
     fn what_a_page_would_read_as_its_own_signs_is_written_out() {
         let mut page = Page::new("a & b");
-        page.title("1 < 2").paragraph("one\ntwo").list(&[]).list(&["\"<script>\"".into()]);
-        page.table(&["x"], [vec![Entry::words("<b>"), Entry::figure(7), Entry::Bad("no".into()), Entry::Bar(2.0)]]);
+        page.title("1 < 2").paragraph("one\ntwo").paragraph("\"<script>\"");
+        page.table(&["x"], [vec![Entry::words("<b>"), Entry::figure(7)]]);
         let html = page.finish();
-        for text in ["<title>a &amp; b</title>", "1 &lt; 2", "one<br>\ntwo", "&lt;script&gt;", "width:120px"] {
+        for text in ["<title>a &amp; b</title>", "1 &lt; 2", "one<br>\ntwo", "&lt;script&gt;", "&lt;b&gt;"] {
             assert!(html.contains(text), "{text} is not in {html}");
         }
-        assert!(!html.contains("<script") && html.ends_with("</html>\n") && html.matches("<ul>").count() == 1);
+        assert!(!html.contains("<script") && html.ends_with("</html>\n"));
     }
 }

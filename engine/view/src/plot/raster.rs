@@ -23,10 +23,6 @@ pub fn image(drawing: &Drawing) -> Image {
                 }
             }
             Mark::Dot { at, radius, colour, ring } => dot(&mut image, *at, *radius, *colour, *ring),
-            Mark::Box { at, size, colour, .. } => {
-                let size = Size::new(size[0].round() as u32, size[1].round() as u32);
-                image.fill(at[0].round() as i32, at[1].round() as i32, size, *colour);
-            }
             Mark::Text { at, anchor, words, large } => text(&mut image, *at, *anchor, words, *large),
         }
     }

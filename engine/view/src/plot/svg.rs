@@ -35,11 +35,6 @@ fn element(mark: &Mark) -> String {
             };
             format!("<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" {paint}/>")
         }
-        Mark::Box { at: [x, y], size: [w, h], colour, hint } => {
-            let place = format!("x=\"{x:.1}\" y=\"{y:.1}\" width=\"{w:.1}\" height=\"{h:.1}\"");
-            let hint = hint.as_ref().map_or_else(String::new, |hint| format!("<title>{}</title>", escaped(hint)));
-            format!("<rect {place} fill=\"{}\">{hint}</rect>", hex(*colour))
-        }
         Mark::Text { at: [x, y], anchor, words, large } => {
             let anchor = match anchor {
                 Anchor::Left => "start",

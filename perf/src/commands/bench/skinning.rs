@@ -1,13 +1,8 @@
 //! `toile bench skinning`: a body skinned by linear blending and by dual quaternions.
 
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-
 use toile_cli::arguments::count;
 use toile_cli::document::Document;
 use toile_cli::exit::AppError;
-use toile_cli::output::OutputFolder;
-use toile_cli::picture::write_png;
 use toile_cli::terminal::{self, Paint, Words};
 use toile_engine::lanes::Width;
 use toile_engine::skin::Blend;
@@ -46,15 +41,11 @@ pub struct SkinningArgs {
     #[arg(long, value_name = "L", value_parser = lanes())]
     lanes: Option<Width>,
     /// cpu, or gpu: skin on a graphics device as well, and report its times and errors beside the processor's
-    #[arg(long, value_name = "B", value_parser = ["cpu", "gpu"], default_value = "cpu", conflicts_with = "picture")]
+    #[arg(long, value_name = "B", value_parser = ["cpu", "gpu"], default_value = "cpu")]
     backend: String,
-    /// Run every row of the table, and the volumes of limbs; takes half a minute. With --backend gpu: surfaces up to a million
-    /// vertices, and up to 64 bodies
+    /// With --backend gpu: run every row of the table, surfaces up to a million vertices, and up to 64 bodies
     #[arg(long)]
     table: bool,
-    /// Draw the twist test into DIR/twist.png instead: the forearm by each blend, split and not
-    #[arg(long, value_name = "DIR")]
-    picture: Option<PathBuf>,
     /// Print one JSON object, and nothing else, on stdout
     #[arg(long)]
     json: bool,
@@ -77,9 +68,6 @@ impl SkinningArgs {
 /// # Errors
 /// Where this machine cannot do what was asked for, and where stdout cannot be written.
 pub fn run(args: &SkinningArgs) -> Result<(), AppError> {
-    if let Some(folder) = &args.picture {
-        return twist(folder, args.json);
-    }
     if args.backend == "gpu" {
         if args.dual || args.threads != 1 {
             let words = "with `--backend gpu` both blends and both numbers of threads are reported; leave `--dual` and `--threads` out";
@@ -94,12 +82,7 @@ pub fn run(args: &SkinningArgs) -> Result<(), AppError> {
         return terminal::print(&found.markdown());
     }
     if args.table {
-        let words = Words::new(args.json);
-        let table = skinning::table::run(&mut |case| words.print_line(case)).map_err(refused)?;
-        if args.json {
-            return terminal::print_json(&Document::new("bench-skinning-table", table));
-        }
-        return terminal::print(&table.markdown());
+        return Err(AppError::Usage("`--table` lists sizes for a graphics device; add `--backend gpu`".to_owned()));
     }
     let blend = if args.dual { Blend::Dual } else { Blend::Linear };
     let report = SkinningReport::new(skinning::measure(&args.options()).map_err(refused)?, blend);
@@ -107,17 +90,6 @@ pub fn run(args: &SkinningArgs) -> Result<(), AppError> {
         return terminal::print_json(&Document::new("bench-skinning", report));
     }
     terminal::print(&skinning_report::summary(&report, Paint::for_stdout()))
-}
-
-/// Draws the twist test.
-fn twist(folder: &Path, json: bool) -> Result<(), AppError> {
-    let mut out = OutputFolder::prepare(folder)?;
-    write_png(&mut out, "twist.png", &skinning::twist_picture().map_err(refused)?)?;
-    let files = out.commit()?;
-    if json {
-        return terminal::print_json(&Document::new("bench-skinning-picture", BTreeMap::from([("files", files)])));
-    }
-    terminal::print(&format!("{}\n", files[0].display()))
 }
 
 fn refused(error: SkinningError) -> AppError {

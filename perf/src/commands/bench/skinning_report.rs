@@ -3,10 +3,9 @@
 use serde::Serialize;
 use toile_assets::put_line;
 use toile_cli::terminal::{Paint, Tone};
-use toile_engine::skin::Blend;
+use toile_engine::skin::{Blend, Padding};
 use toile_fitting::scene::reference_time;
-use toile_perf::skinning::table::SkinningRow;
-use toile_perf::skinning::{Skinning, Timing};
+use toile_perf::skinning::{Skinning, SkinningSubject, Timing};
 
 /// The body of `toile bench skinning`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -26,6 +25,56 @@ pub struct SkinningReport {
     /// What was skinned, its lanes, and the figures of both blends.
     #[serde(flatten)]
     pub found: SkinningRow,
+}
+
+/// The figures of both blends, with what was skinned.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SkinningRow {
+    /// The skin that was measured.
+    pub subject: SkinningSubject,
+    /// Vertices that were skinned.
+    pub verts: usize,
+    /// Number of workers.
+    pub threads: usize,
+    /// Number of lanes.
+    pub lanes: usize,
+    /// Blocks of 16 lanes.
+    pub blocks: usize,
+    /// Joint sets that lie apart.
+    pub sets: usize,
+    /// Share of the lanes that carries no vertex (0..1).
+    pub padding: f64,
+    /// Influences of a vertex, mean.
+    pub influences: f64,
+    /// Influences that a vertex' block is blended from, mean, padding included.
+    pub blended: f64,
+    /// Reference time (us).
+    pub yardstick_us: f64,
+    /// Time of linear blending.
+    pub linear: Timing,
+    /// Time of dual quaternions.
+    pub dual: Timing,
+}
+
+impl From<Skinning> for SkinningRow {
+    fn from(found: Skinning) -> Self {
+        let Padding { vertices, blocks, runs, influences, blended, .. } = found.padding;
+        let of_each = |count: usize| count as f64 / vertices.max(1) as f64;
+        Self {
+            subject: found.subject,
+            verts: found.verts,
+            threads: found.threads,
+            lanes: found.lanes,
+            blocks,
+            sets: runs,
+            padding: found.padding.share(),
+            influences: of_each(influences),
+            blended: of_each(blended),
+            yardstick_us: found.yardstick_us,
+            linear: found.linear,
+            dual: found.dual,
+        }
+    }
 }
 
 impl SkinningReport {
@@ -70,9 +119,6 @@ pub fn summary(report: &SkinningReport, paint: Paint) -> String {
 
 #[cfg(test)]
 mod tests {
-    use toile_engine::skin::Padding;
-    use toile_perf::skinning::SkinningSubject;
-
     use super::*;
 
     #[test]

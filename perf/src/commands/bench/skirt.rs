@@ -18,7 +18,7 @@ use toile_fitting::heap::HeapProbe;
 use toile_gpu::backend::Backend;
 use toile_perf::crossover;
 use toile_perf::skirt::options::{MAX_GARMENTS, SkirtMesh, SkirtOptions};
-use toile_perf::skirt::{self, SkirtError, table};
+use toile_perf::skirt::{self, SkirtError};
 use toile_perf::turns::{self, TurnCase, TurnsError};
 use toile_perf::worn::{self, WornError, WornOptions};
 use toile_view::plot::raster;
@@ -118,8 +118,8 @@ pub struct SkirtArgs {
     steps: usize,
     #[command(flatten)]
     backend: BackendArg,
-    /// Run every row of the table of targets, in place of one run; with --backend gpu or auto, sizes and numbers of skirts on
-    /// the processor and on the device, and where they cross, with threads, sizes and steps of its own; takes some minutes
+    /// With --backend gpu or auto: sizes and numbers of skirts on the processor and on the device, and where they cross, with
+    /// threads, sizes and steps of its own; takes some minutes. With --stages: sixteen cases
     #[arg(long)]
     table: bool,
     /// With --table of a device: write the chart crossover.png there
@@ -236,12 +236,8 @@ pub fn run(args: &SkirtArgs) -> Result<(), AppError> {
         return crossover(args, &options);
     }
     if args.table {
-        let words = Words::new(args.json);
-        let table = table::run(&options, &heap, &mut |case| words.print_line(case));
-        if args.json {
-            return terminal::print_json(&Document::new("bench-skirt-table", table));
-        }
-        return terminal::print(&table.markdown());
+        let words = "`--table` lists sizes on a device, or stages; add `--backend gpu` or `--stages`";
+        return Err(AppError::Usage(words.to_owned()));
     }
     let report = skirt::measure(&options, &heap).map_err(refused)?;
     backend::print_fallback(&report.stepped_by);
@@ -354,7 +350,7 @@ mod tests {
             ..SkirtOptions::default()
         };
         assert_eq!(found.unwrap(), expected);
-        assert!(options("skirt --table --picture out").is_err(), "there is no chart of the targets");
+        assert!(options("skirt --table --picture out").is_err(), "there is no chart of the processor alone");
     }
 
     #[test]

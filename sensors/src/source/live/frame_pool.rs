@@ -9,9 +9,6 @@ use toile_base::frame::{DepthFrame, Intrinsics};
 /// Depth images of a camera: on their way to the tracker, to the loop, and waiting in the queue of an observer of the sensor.
 pub const POOL_FRAMES: usize = 16;
 
-/// Name of this capacity in reports and warnings.
-pub const POOL_FRAMES_NAME: &str = "POOL_FRAMES (depth images of a camera on their way)";
-
 /// The images.
 #[derive(Debug)]
 pub struct FramePool {

@@ -106,11 +106,6 @@ impl LiveDepth {
         self.check.counts
     }
 
-    /// Depth images for which there was no room.
-    pub fn no_room(&self) -> u64 {
-        self.pool.lost
-    }
-
     /// The colour image that came last with a frame; of no size where none did.
     pub fn colour(&self) -> &ColourImage {
         &self.raw.colour

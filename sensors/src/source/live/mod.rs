@@ -48,7 +48,7 @@ use webcam_unsupported as webcam;
 pub use device_clock::DeviceClock;
 pub use error::CameraError;
 pub use frame_check::{CameraCounts, CameraState, FrameCheck, FrameVerdict};
-pub use frame_pool::{FramePool, POOL_FRAMES, POOL_FRAMES_NAME};
+pub use frame_pool::{FramePool, POOL_FRAMES};
 pub use library::{FOLDERS_VARIABLE, LibraryName, OWN_FOLDER, folders};
 pub use live_camera::{Arrival, CameraFrame, CameraInfo, CameraOptions, ColourImage, LiveCamera};
 pub use live_colour::{ColourUpdate, LiveColour};

@@ -2,6 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
+use toile_base::skeleton::{Joint, Twist};
+
 use super::*;
 
 const SIDES: usize = 96;
@@ -58,6 +60,16 @@ fn a_twisted_tube_loses_the_volume_that_linear_blending_loses_and_dual_quaternio
         assert!((linear - expected).abs() < 1e-4, "{theta} degrees: {linear} against {expected}");
         let dual = volume(theta.to_radians(), Blend::Dual);
         assert!((dual - 1.0).abs() < 1e-4, "{theta} degrees: {dual}");
+    }
+}
+
+#[test]
+fn a_split_forearm_keeps_its_volume_by_either_blend() {
+    let forearm = Twist::towards(Joint::LeftWrist).unwrap();
+    let of_a_stretch = 120.0_f64.to_radians() * f64::from(forearm.share(1));
+    for blend in Blend::ALL {
+        let kept = volume(of_a_stretch, blend);
+        assert!(kept > 0.98, "{blend}: {kept}");
     }
 }
 

@@ -131,8 +131,4 @@ impl ScreenPainter {
 }
 
 #[cfg(test)]
-mod face_page;
-#[cfg(test)]
-mod pages;
-#[cfg(test)]
 mod tests;

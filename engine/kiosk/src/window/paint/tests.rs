@@ -1,3 +1,6 @@
+mod face_page;
+mod pages;
+
 use std::sync::Arc;
 
 use super::theme::{LEAST_LINE, ScreenStyle, TARGET_MM};

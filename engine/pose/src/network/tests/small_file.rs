@@ -1,6 +1,6 @@
 //! A small file made here, so that reading and running are tried where no network is fetched.
 
-use super::Network;
+use crate::network::Network;
 
 /// What a field of a table holds.
 enum Field {

@@ -4,10 +4,10 @@ use glam::{Quat, Vec3};
 use toile_base::frame::Joints;
 use toile_base::skeleton::{Joint, Pose};
 
-use super::kinematics::JointFrames;
-use super::smooth::rotation_vector;
-use super::tests::{hold, seen, skeleton, standing};
-use super::{Poser, ground};
+use super::{hold, seen, skeleton, standing};
+use crate::body::kinematics::JointFrames;
+use crate::body::smooth::rotation_vector;
+use crate::body::{Poser, ground};
 
 /// Turns the toes of what is seen about their ankles, the left one by `outwards` degrees and the right one mirrored.
 fn turn_toes(joints: &mut Joints, outwards: f32) {

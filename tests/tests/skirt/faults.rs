@@ -1,16 +1,11 @@
 //! The hard cases: what a fault of one frame does to the skirt, and how soon it is over.
 
 use glam::{Affine3A, Vec3, Vec3A, Vec4};
-use serde::Serialize;
 use toile_assets::scene::skirt;
 use toile_bake::Shape;
 use toile_fitting::heap::HeapProbe;
-use toile_fitting::scene::events::ClothEvents;
-
-use super::error::SkirtError;
-use super::gauge::{FrameErrors, Gauge};
-use super::options::{SkirtOptions, WARM_UP};
-use super::scene::SkirtScene;
+use toile_perf::skirt::options::{SkirtOptions, WARM_UP};
+use toile_perf::skirt::{FrameErrors, Gauge, SkirtScene};
 
 /// Something that is wrong for one frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,14 +31,8 @@ const BACK: f64 = 1.25;
 const STAYS: usize = 30;
 
 /// How the skirt took a fault.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy)]
 pub struct SkirtRecovery {
-    /// Greatest mean strain of a frame of the same skirt undisturbed, over the same steps.
-    pub baseline_mean: f64,
-    /// Greatest 99th percentile of a frame of the same.
-    pub baseline_p99: f64,
-    /// Greatest stretch of an edge of the same.
-    pub baseline_stretch: f64,
     /// Greatest stretch of an edge from the fault on.
     pub worst_stretch: f64,
     /// Steps from the faulty one on, which is the first, until strain, mean and 99th percentile, is back within a quarter
@@ -51,49 +40,34 @@ pub struct SkirtRecovery {
     pub recovered_steps: usize,
     /// Vertices published that were not finite, summed over the frames.
     pub nonfinite: usize,
-    /// What the engine says has happened.
-    pub events: ClothEvents,
 }
 
 /// Runs the scene into a fault, and once more without it, and compares what follows.
-///
-/// # Errors
-/// Where the options cannot be met.
-pub fn recover(options: &SkirtOptions, fault: SkirtFault, heap: &HeapProbe) -> Result<SkirtRecovery, SkirtError> {
-    let (undisturbed, _) = watch(options, None, heap)?;
-    let (frames, events) = watch(options, Some(fault), heap)?;
+pub fn recover(options: &SkirtOptions, fault: SkirtFault) -> SkirtRecovery {
+    let undisturbed = watch(options, None);
+    let frames = watch(options, Some(fault));
     let greatest = |of: fn(&FrameErrors) -> f64, frames: &[FrameErrors]| frames.iter().map(of).fold(0.0, f64::max);
     let baseline_mean = greatest(|f| f.strain_mean, &undisturbed);
     let baseline_p99 = greatest(|f| f.strain_p99, &undisturbed);
     let back = |f: &FrameErrors| {
         f.nonfinite == 0 && f.strain_mean <= BACK * baseline_mean && f.strain_p99 <= BACK * baseline_p99
     };
-    Ok(SkirtRecovery {
-        baseline_mean,
-        baseline_p99,
-        baseline_stretch: greatest(|f| f.stretch_max, &undisturbed),
+    SkirtRecovery {
         worst_stretch: greatest(|f| f.stretch_max, &frames),
         recovered_steps: frames.windows(STAYS).position(|w| w.iter().all(back)).unwrap_or(frames.len()),
         nonfinite: frames.iter().map(|f| f.nonfinite).sum(),
-        events,
-    })
+    }
 }
 
-/// The frames from the fault on, and what happened in them.
-fn watch(
-    options: &SkirtOptions,
-    fault: Option<SkirtFault>,
-    heap: &HeapProbe,
-) -> Result<(Vec<FrameErrors>, ClothEvents), SkirtError> {
-    let mut scene = SkirtScene::new(options, heap)?;
+/// The frames from the fault on.
+fn watch(options: &SkirtOptions, fault: Option<SkirtFault>) -> Vec<FrameErrors> {
+    let mut scene = SkirtScene::new(options, &HeapProbe::none()).expect("the scene can be built");
     let mut gauge = Gauge::new(&scene);
     for _ in 0..WARM_UP {
         scene.prepare();
         scene.step();
     }
-    let before = scene.events();
-    let frames = (0..WATCHED).map(|after| step(&mut scene, &mut gauge, fault.filter(|_| after == 0))).collect();
-    Ok((frames, scene.events().since(before)))
+    (0..WATCHED).map(|after| step(&mut scene, &mut gauge, fault.filter(|_| after == 0))).collect()
 }
 
 fn step(scene: &mut SkirtScene, gauge: &mut Gauge, fault: Option<SkirtFault>) -> FrameErrors {
@@ -130,16 +104,11 @@ pub fn heavy_hem(shape: &mut Shape) {
     shape.heavier[skirt::hem(n)].fill(1_000.0);
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn patches_are_half_of_the_skirt_and_a_heavy_hem_is_a_row() {
-        let mut shape = skirt::shape(32);
-        patches(&mut shape);
-        assert_eq!(shape.heavier.iter().filter(|x| **x == 1_000.0).count(), 512);
-        heavy_hem(&mut shape);
-        assert_eq!(shape.heavier.iter().filter(|x| **x == 1_000.0).count(), 32);
-    }
+#[test]
+fn patches_are_half_of_the_skirt_and_a_heavy_hem_is_a_row() {
+    let mut shape = skirt::shape(32);
+    patches(&mut shape);
+    assert_eq!(shape.heavier.iter().filter(|x| **x == 1_000.0).count(), 512);
+    heavy_hem(&mut shape);
+    assert_eq!(shape.heavier.iter().filter(|x| **x == 1_000.0).count(), 32);
 }

@@ -11,10 +11,10 @@ use toile_sensors::filter::JointFilter;
 use toile_sensors::sample::sample;
 use toile_sensors::source::{OpenOptions, open};
 
-use super::kinematics::JointFrames;
-use super::smooth::{LIMB_SPEED, rotation_vector};
-use super::tests::{LIMBS, skeleton};
-use super::{Poser, ground};
+use super::{LIMBS, skeleton};
+use crate::body::kinematics::JointFrames;
+use crate::body::smooth::{LIMB_SPEED, rotation_vector};
+use crate::body::{Poser, ground};
 
 const KINECT: [&str; 5] = [
     "skeleton/kinectron-kinect2/recorded_skeleton.json",

@@ -6,14 +6,14 @@ use std::path::PathBuf;
 use toile_view::image::Size;
 use toile_view::raster::{AdapterChoice, Gpu, Offscreen};
 
-use super::tests::DISPLAYS;
-use super::*;
+use super::DISPLAYS;
 use crate::visitor::own_face::FaceTrouble;
 use crate::visitor::screen::{Action, Block, BodyView, Page};
 use crate::visitor::tests::Play;
 use crate::visitor::texts::Language;
 use crate::window::camera::tests::least_share;
 use crate::window::overlay::Overlay;
+use crate::window::paint::*;
 
 /// The pages of a visit in a language, and in large type.
 pub fn all(language: usize, large: bool) -> BTreeMap<String, Screen> {

@@ -3,7 +3,7 @@
 //! `TOILE_FACE_PAGE=docs/pictures` keeps the page there, for the documents. The network's file is no part of the repository: where it is not
 //! fetched, this test says so and does not run.
 
-#[path = "../../../tests/common/painted_face.rs"]
+#[path = "../../../../tests/common/painted_face.rs"]
 #[expect(dead_code, reason = "of the drawn heads only the picture is used")]
 mod painted_face;
 
@@ -24,7 +24,6 @@ use toile_view::figure::{Appearance, OwnHead};
 use toile_view::image::{Image, Size};
 use toile_view::raster::{AdapterChoice, Gpu, Offscreen};
 
-use super::*;
 use crate::service::config::Config;
 use crate::service::stock::Stock;
 use crate::visitor::face_maker::FaceMaker;
@@ -34,6 +33,7 @@ use crate::visitor::tests::Play;
 use crate::window::body_model::BodyModel;
 use crate::window::body_renderer::{BodyRenderer, BodyScene};
 use crate::window::overlay::Overlay;
+use crate::window::paint::*;
 
 const PAGE: &str = "TOILE_FACE_PAGE";
 

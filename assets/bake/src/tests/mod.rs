@@ -1,0 +1,3 @@
+//! Shared by the tests of several modules.
+
+pub(crate) mod meshes;
