@@ -28,5 +28,3 @@ pub mod crossover;
 pub mod drape;
 pub mod measuring;
 pub mod pareto;
-
-pub mod capture;

@@ -21,7 +21,6 @@ mod pointing;
 #[path = "../../tests/src/recordings.rs"]
 mod recordings;
 mod reliability;
-mod silhouettes;
 mod soak;
 mod torture;
 mod validate;

@@ -5,7 +5,6 @@ use toile_cli::exit::AppError;
 
 pub(super) mod backend;
 mod body;
-mod capture;
 mod contact;
 mod depth;
 mod drape;
@@ -14,7 +13,6 @@ mod gestures;
 mod gestures_report;
 mod measure;
 mod own_picture;
-mod silhouettes;
 mod skinning;
 mod skinning_report;
 mod skirt;
@@ -39,8 +37,6 @@ pub enum BenchCommand {
     OwnPicture(own_picture::OwnPictureArgs),
     Drape(drape::DrapeArgs),
     Tablecloth(tablecloth::TableclothArgs),
-    Capture(capture::CaptureBenchArgs),
-    Silhouettes(silhouettes::SilhouettesArgs),
 }
 
 /// Runs `toile bench`.
@@ -61,7 +57,5 @@ pub fn run(command: &BenchCommand) -> Result<(), AppError> {
         BenchCommand::OwnPicture(args) => own_picture::run(args),
         BenchCommand::Drape(args) => drape::run(args),
         BenchCommand::Tablecloth(args) => tablecloth::run(args),
-        BenchCommand::Capture(args) => capture::run(args),
-        BenchCommand::Silhouettes(args) => silhouettes::run(args),
     }
 }
