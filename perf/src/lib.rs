@@ -18,10 +18,7 @@ pub mod soak;
 pub mod torture;
 pub mod turns;
 pub mod validate;
-pub mod webcam;
 pub mod worn;
-
-pub mod own_picture;
 
 pub mod contact;
 pub mod crossover;

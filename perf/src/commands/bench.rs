@@ -12,13 +12,11 @@ mod filters;
 mod gestures;
 mod gestures_report;
 mod measure;
-mod own_picture;
 mod skinning;
 mod skinning_report;
 mod skirt;
 mod skirt_summary;
 mod tablecloth;
-mod webcam;
 mod worn_summary;
 
 /// Time one part of the frame, with the error at that speed.
@@ -33,8 +31,6 @@ pub enum BenchCommand {
     Gestures(gestures::GesturesArgs),
     Depth(depth::DepthArgs),
     Contact(contact::ContactArgs),
-    Webcam(webcam::WebcamBenchArgs),
-    OwnPicture(own_picture::OwnPictureArgs),
     Drape(drape::DrapeArgs),
     Tablecloth(tablecloth::TableclothArgs),
 }
@@ -53,8 +49,6 @@ pub fn run(command: &BenchCommand) -> Result<(), AppError> {
         BenchCommand::Gestures(args) => gestures::run(args),
         BenchCommand::Depth(args) => depth::run(args),
         BenchCommand::Contact(args) => contact::run(args),
-        BenchCommand::Webcam(args) => webcam::run(args),
-        BenchCommand::OwnPicture(args) => own_picture::run(args),
         BenchCommand::Drape(args) => drape::run(args),
         BenchCommand::Tablecloth(args) => tablecloth::run(args),
     }
