@@ -5,7 +5,6 @@ pub mod backend;
 pub mod depth;
 pub mod distance;
 pub mod filters;
-pub mod gestures;
 pub mod oracle;
 mod random;
 pub mod reliability;

@@ -11,7 +11,6 @@ mod bench;
 mod colliders;
 #[path = "../../tests/src/program.rs"]
 mod common;
-mod gestures;
 mod latency;
 mod measuring;
 mod oracle;

@@ -9,8 +9,6 @@ mod contact;
 mod depth;
 mod drape;
 mod filters;
-mod gestures;
-mod gestures_report;
 mod measure;
 mod skinning;
 mod skinning_report;
@@ -28,7 +26,6 @@ pub enum BenchCommand {
     Body(body::BodyBenchArgs),
     Measure(measure::MeasureBenchArgs),
     Filters(filters::FiltersArgs),
-    Gestures(gestures::GesturesArgs),
     Depth(depth::DepthArgs),
     Contact(contact::ContactArgs),
     Drape(drape::DrapeArgs),
@@ -46,7 +43,6 @@ pub fn run(command: &BenchCommand) -> Result<(), AppError> {
         BenchCommand::Body(args) => body::run(args),
         BenchCommand::Measure(args) => measure::run(args),
         BenchCommand::Filters(args) => filters::run(args),
-        BenchCommand::Gestures(args) => gestures::run(args),
         BenchCommand::Depth(args) => depth::run(args),
         BenchCommand::Contact(args) => contact::run(args),
         BenchCommand::Drape(args) => drape::run(args),
