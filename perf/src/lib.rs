@@ -4,7 +4,6 @@
 pub mod backend;
 pub mod depth;
 pub mod distance;
-pub mod gestures;
 pub mod oracle;
 mod random;
 pub mod reliability;
@@ -17,15 +16,10 @@ pub mod soak;
 pub mod torture;
 pub mod turns;
 pub mod validate;
-pub mod webcam;
 pub mod worn;
-
-pub mod own_picture;
 
 pub mod contact;
 pub mod crossover;
 pub mod drape;
 pub mod measuring;
 pub mod pareto;
-
-pub mod capture;

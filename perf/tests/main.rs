@@ -13,7 +13,6 @@ mod coarse;
 mod colliders;
 #[path = "../../tests/src/program.rs"]
 mod common;
-mod gestures;
 mod latency;
 mod measuring;
 mod oracle;
@@ -23,7 +22,6 @@ mod pointing;
 #[path = "../../tests/src/recordings.rs"]
 mod recordings;
 mod reliability;
-mod silhouettes;
 mod soak;
 mod torture;
 mod validate;

@@ -12,7 +12,6 @@ pub mod plane;
 
 pub mod flow;
 pub mod pose;
-pub mod render;
 
 pub mod body;
 pub mod recording;
@@ -20,3 +19,6 @@ pub mod recording;
 #[cfg(test)]
 #[path = "../../../tests/src/recordings.rs"]
 mod recordings;
+#[cfg(test)]
+#[path = "tests/render/mod.rs"]
+mod render;

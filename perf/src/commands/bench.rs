@@ -5,21 +5,15 @@ use toile_cli::exit::AppError;
 
 pub(super) mod backend;
 mod body;
-mod capture;
 mod contact;
 mod depth;
 mod drape;
-mod gestures;
-mod gestures_report;
 mod measure;
-mod own_picture;
-mod silhouettes;
 mod skinning;
 mod skinning_report;
 mod skirt;
 mod skirt_summary;
 mod tablecloth;
-mod webcam;
 mod worn_summary;
 
 /// Time one part of the frame, with the error at that speed.
@@ -30,15 +24,10 @@ pub enum BenchCommand {
     Skirt(skirt::SkirtArgs),
     Body(body::BodyBenchArgs),
     Measure(measure::MeasureBenchArgs),
-    Gestures(gestures::GesturesArgs),
     Depth(depth::DepthArgs),
     Contact(contact::ContactArgs),
-    Webcam(webcam::WebcamBenchArgs),
-    OwnPicture(own_picture::OwnPictureArgs),
     Drape(drape::DrapeArgs),
     Tablecloth(tablecloth::TableclothArgs),
-    Capture(capture::CaptureBenchArgs),
-    Silhouettes(silhouettes::SilhouettesArgs),
 }
 
 /// Runs `toile bench`.
@@ -51,14 +40,9 @@ pub fn run(command: &BenchCommand) -> Result<(), AppError> {
         BenchCommand::Skirt(args) => skirt::run(args),
         BenchCommand::Body(args) => body::run(args),
         BenchCommand::Measure(args) => measure::run(args),
-        BenchCommand::Gestures(args) => gestures::run(args),
         BenchCommand::Depth(args) => depth::run(args),
         BenchCommand::Contact(args) => contact::run(args),
-        BenchCommand::Webcam(args) => webcam::run(args),
-        BenchCommand::OwnPicture(args) => own_picture::run(args),
         BenchCommand::Drape(args) => drape::run(args),
         BenchCommand::Tablecloth(args) => tablecloth::run(args),
-        BenchCommand::Capture(args) => capture::run(args),
-        BenchCommand::Silhouettes(args) => silhouettes::run(args),
     }
 }

@@ -21,7 +21,6 @@ mod crossing;
 
 pub use crossing::{CrossedMeasure, StatedDecile, crossed, reliability};
 pub use makehuman::{FamilyError, SurveyRanges, makehuman_person};
-pub use person::{GIVEN, survey_person};
 pub use sensor::{NoiseModel, Sensor, StudyCamera};
 pub use sizing::SizeAgreement;
 pub use standing::{JointPositions, Moment, StudyPerson, TapeMeasures};

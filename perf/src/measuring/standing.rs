@@ -3,7 +3,6 @@
 use std::f32::consts::TAU;
 
 use glam::{Affine3A, Quat, Vec3};
-use toile_assets::body::tape;
 use toile_base::body::{Body, Region, Sex};
 use toile_base::numeric::random::SplitMix64;
 use toile_base::skeleton::{BONES, JOINTS, Joint, Pose};
@@ -71,32 +70,10 @@ const SWAYS: [(Joint, f32); 7] = [
 /// How far the feet's middle wanders on the floor (m).
 const WANDER: f32 = 0.006;
 
-/// Movements of a performing person: a joint, the axis about which it turns, its angle (rad) and its frequency (1/s).
-const PERFORMS: [(Joint, Vec3, f32, f32); 10] = [
-    (Joint::LeftShoulder, Vec3::Z, 1.2, 0.37),
-    (Joint::RightShoulder, Vec3::NEG_X, 1.3, 0.29),
-    (Joint::LeftElbow, Vec3::NEG_X, 1.1, 0.53),
-    (Joint::RightElbow, Vec3::NEG_X, 1.0, 0.61),
-    (Joint::Spine, Vec3::Y, 0.35, 0.31),
-    (Joint::Neck, Vec3::Y, 0.5, 0.43),
-    (Joint::LeftHip, Vec3::NEG_X, 0.7, 0.9),
-    (Joint::LeftKnee, Vec3::X, 1.0, 0.9),
-    (Joint::RightHip, Vec3::NEG_X, 0.7, 0.9),
-    (Joint::RightKnee, Vec3::X, 1.0, 0.9),
-];
-
-/// Joints that do it half a period later.
-const LAGS: [Joint; 2] = [Joint::RightHip, Joint::RightKnee];
-
 impl StudyPerson {
     /// Triangles of the surface.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.body.mesh.triangles
-    }
-
-    /// What the tape reads around the trunk at a height of the surface at rest (m).
-    pub fn girth(&self, height: f32) -> f32 {
-        tape::girth(&self.body, height)
     }
 
     /// The surface of the swaying person at one moment, feet on the floor (m) `[vertices]`.
@@ -122,20 +99,6 @@ impl StudyPerson {
             }
         };
         on_both_feet(&self.body, &mut pose);
-        self.skinned(&pose, moment, positions)
-    }
-
-    /// The same of a person who moves: lifts the arms, bends them, walks on the spot, each at a pace of its own, beginning and ending at rest.
-    pub fn perform(&self, moment: Moment, positions: &mut Vec<Vec3>) -> JointPositions {
-        let mut pose = self.pose;
-        let begun = (moment.time / 0.5).min(1.0);
-        for (joint, axis, by, hz) in PERFORMS {
-            // From nothing to `by` and back; legs take turns.
-            let lag = if LAGS.contains(&joint) { std::f32::consts::PI } else { 0.0 };
-            let phase = TAU * hz * moment.time + lag;
-            let turn = by * begun * (0.5 - 0.5 * phase.cos());
-            pose.local[joint.index()] = Quat::from_axis_angle(axis, turn) * pose.local[joint.index()];
-        }
         self.skinned(&pose, moment, positions)
     }
 

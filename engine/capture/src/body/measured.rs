@@ -76,8 +76,6 @@ pub struct SilhouetteBody {
     pub measures: [Estimate; MEASURES.len()],
     /// The same with what their errors have in common.
     pub all: Correlated<{ MEASURES.len() }>,
-    /// What the fit states by itself (m), without the error that is added for bodies that the model cannot be.
-    pub own_sigma: [f32; MEASURES.len()],
     /// How likely it is a woman, 0 to 1.
     pub woman: f32,
     /// The likelier sex's body, with its surface moved to the outlines.
@@ -297,14 +295,12 @@ fn with_forearms(fitter: &mut BodyFitter, found: (f64, FitState)) -> (f64, FitSt
 
 fn together(parts: Vec<SexMeasures>, views: &[CameraSilhouette], upright: DMat3, hull: &HullShape) -> SilhouetteBody {
     let mixture: Vec<_> = parts.iter().map(|p| (p.share, p.measures)).collect();
-    let own = Correlated::mixed(&mixture);
-    let all = with_model_error(own);
+    let all = with_model_error(Correlated::mixed(&mixture));
     let woman = parts.iter().find(|p| p.sex == Sex::Female).map_or(0.0, |p| p.share);
     let best = parts.into_iter().max_by(|a, b| a.share.total_cmp(&b.share)).expect("one sex at least was fitted");
     let back = upright.transpose();
     SilhouetteBody {
         measures: all.estimates(),
-        own_sigma: own.estimates().map(|e| e.sigma),
         all,
         woman,
         body: best.body,

@@ -18,7 +18,7 @@ const COOL_DOWN_NS: u64 = 300_000_000;
 
 /// The grip of one hand.
 #[derive(Debug, Clone)]
-pub struct Grip {
+pub(super) struct Grip {
     openness: f32,
     since_ns: u64,
     seen_ns: Option<u64>,
@@ -26,20 +26,14 @@ pub struct Grip {
     quiet_until_ns: u64,
 }
 
-impl Default for Grip {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 impl Grip {
     /// A hand that was not seen yet.
-    pub const fn new() -> Self {
+    pub(super) const fn new() -> Self {
         Self { openness: 0.5, since_ns: 0, seen_ns: None, open: None, quiet_until_ns: 0 }
     }
 
     /// One frame: how open the hand is, `None` where it is not seen. Gives a change; the first state is not one.
-    pub fn step(&mut self, now: u64, openness: Option<f32>) -> Option<Gesture> {
+    pub(super) fn step(&mut self, now: u64, openness: Option<f32>) -> Option<Gesture> {
         let lost = self.seen_ns.is_some_and(|seen| now - seen > LONGEST_GAP_NS);
         if lost {
             *self = Self { quiet_until_ns: self.quiet_until_ns, ..Self::new() };

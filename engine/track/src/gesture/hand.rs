@@ -63,8 +63,6 @@ impl HandRegion {
 /// The outline of one hand.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HandShape {
-    /// Area over that of its convex hull: 1 for a fist, less with fingers spread.
-    pub solidity: f32,
     /// Area of the hull (squared hand lengths): large with fingers stretched.
     pub spread: f32,
     /// How deep the outline lies under its hull at most (hand lengths): the measure of Gultepe 2013.
@@ -161,7 +159,6 @@ impl HandSegmenter {
         let outline = self.mask.outline()?;
         let cell = grid.pitch / region.length;
         (outline.area * cell * cell >= SMALLEST).then_some(HandShape {
-            solidity: outline.area / outline.hull,
             spread: outline.hull * cell * cell,
             gap: outline.gap * cell,
             aspect: outline.aspect,
@@ -195,7 +192,7 @@ impl HandSegmenter {
 }
 
 /// Aspect, spread and gap of a fist, and by how much they differ from hand to hand: means over distances and deviations of
-/// the simulated hands of `toile bench gestures`.
+/// simulated hands (docs/gestures.md, "What is missed, and what is false").
 const FIST: [f32; 3] = [1.41, 0.325, 0.05];
 const SCATTER: [f32; 3] = [0.17, 0.06, 0.03];
 
@@ -210,15 +207,5 @@ impl HandShape {
         let seen = [self.aspect, self.spread, self.gap];
         let sum: f32 = (0..3).map(|i| (seen[i] - FIST[i]) / SCATTER[i]).sum();
         ((sum - CLOSED_OPEN[0]) / (CLOSED_OPEN[1] - CLOSED_OPEN[0])).clamp(0.0, 1.0)
-    }
-
-    /// Open by the measure of Gultepe 2013 alone: how deep the outline lies under its hull.
-    pub fn is_open_by_gap(&self) -> bool {
-        self.gap > 0.1
-    }
-
-    /// Open by the ratio of the areas alone.
-    pub fn is_open_by_solidity(&self) -> bool {
-        self.solidity < 0.89
     }
 }

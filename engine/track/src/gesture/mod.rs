@@ -16,11 +16,11 @@ use toile_base::frame::{DepthFrame, HandState as ReportedState, Joints};
 use toile_base::skeleton::Joint;
 
 pub use event::{Gesture, GestureEvent, GestureEvents};
-pub use grip::Grip;
 pub use hand::{HandRegion, HandSegmenter, HandShape};
 pub use trunk::{Side, Trunk};
 
 use event::LONGEST_GAP_NS;
+use grip::Grip;
 use hold::{Hold, HoldInput};
 use position_history::PositionHistory;
 use swipe::{Swipe, SwipeInput};

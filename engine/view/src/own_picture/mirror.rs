@@ -59,14 +59,12 @@ pub struct OwnPictureOptions {
     pub size: Size,
     /// What is free of it, left and right (shares of its width): there the shopper stands.
     pub free: [f32; 2],
-    /// Whether the snapshot is brought to the picture's moment, as it has to be; if not, it is drawn as it is, for comparison.
-    pub repose: bool,
 }
 
 impl OwnPictureOptions {
     /// All of a mirror of this size.
     pub const fn of(size: Size) -> Self {
-        Self { size, free: [0.0, 1.0], repose: true }
+        Self { size, free: [0.0, 1.0] }
     }
 }
 
@@ -91,7 +89,6 @@ pub struct OwnPicture {
     column: Option<f32>,
     /// Successive pictures that have confirmed the shopper.
     steady: u32,
-    reposed: Option<Repose>,
 }
 
 impl OwnPicture {
@@ -105,7 +102,7 @@ impl OwnPicture {
         (Size::new(self.size.0, self.size.1), &self.rgb)
     }
 
-    /// Whether cloth is seen at each pixel of the last picture that has any `[pixels]`; used to compare outlines.
+    /// Whether cloth is seen at each pixel of the last picture that has any `[pixels]`.
     pub fn shown(&self) -> impl Iterator<Item = bool> {
         self.painter.shown()
     }
@@ -114,7 +111,7 @@ impl OwnPicture {
     pub fn forget(&mut self) {
         self.rgb.fill(0);
         self.light.reset();
-        (self.column, self.steady, self.reposed) = (None, 0, None);
+        (self.column, self.steady) = (None, 0);
     }
 
     /// Draws a picture: with the garments, or plain, and then why.
@@ -139,13 +136,8 @@ impl OwnPicture {
         }
         let framing = self.framing(input, options);
         self.background.draw(picture, &framing, &mut self.rgb);
-        let posed = self.pose(model, snapshot, input, options, &framing);
-        // A body that is drawn where it is not seen cannot be borne out, and is for comparison alone.
-        let borne_out = posed.and_then(|camera| {
-            let found = self.bear_out(input, &camera, &framing);
-            found.or_else(|plain| if options.repose { Err(plain) } else { Ok(()) }).map(|()| camera)
-        });
-        let camera = match borne_out {
+        let posed = self.pose(model, snapshot, input, &framing);
+        let camera = match posed.and_then(|camera| self.bear_out(input, &camera, &framing).map(|()| camera)) {
             Ok(camera) => camera,
             Err(plain) => {
                 self.steady = 0;
@@ -180,7 +172,6 @@ impl OwnPicture {
         model: &OwnPictureModel,
         snapshot: &Snapshot,
         input: &OwnPictureInput<'_>,
-        options: &OwnPictureOptions,
         framing: &Framing,
     ) -> Result<ColourCamera, Plain> {
         let camera = input.camera.filter(|c| c.fault().is_none()).ok_or(Plain::UnknownCamera)?;
@@ -194,7 +185,6 @@ impl OwnPicture {
         if !(LENGTHS.contains(&least) && LENGTHS.contains(&most)) || repose.shift_m > FARTHEST_M {
             return Err(Plain::Unsure);
         }
-        self.reposed = options.repose.then_some(repose);
         let world_to_camera = camera.camera_to_world.inverse();
         let place = |p: Vec3, recess: f32| -> Seen {
             let p = world_to_camera.transform_point3(p);
@@ -204,9 +194,7 @@ impl OwnPicture {
         self.points.resize(model.vertices(), Vec3::ZERO);
         self.normals.resize(model.vertices(), Vec3::ZERO);
         snapshot.skin.read(&mut self.points, &mut self.normals);
-        if options.repose {
-            repose.apply(&model.weights, &mut self.points, &mut self.normals);
-        }
+        repose.apply(&model.weights, &mut self.points, &mut self.normals);
         self.seen.clear();
         self.seen.extend(self.points.iter().zip(&model.recess).map(|(p, recess)| place(*p, *recess)));
         self.garments.resize_with(model.garments.len(), SeenGarment::default);
@@ -216,9 +204,7 @@ impl OwnPicture {
             to.points.extend_from_slice(worn);
             to.normals.clear();
             to.normals.resize(worn.len(), Vec3::ZERO);
-            if options.repose {
-                repose.apply(&own.weights, &mut to.points, &mut to.normals);
-            }
+            repose.apply(&own.weights, &mut to.points, &mut to.normals);
             vertex_normals(&to.points, &own.triangles, &mut to.normals);
             to.seen.clear();
             to.seen.extend(to.points.iter().map(|p| place(*p, 0.0)));

@@ -10,14 +10,16 @@ use toile_base::numeric::random::SplitMix64;
 const LOST: [Joint; 6] =
     [Joint::LeftWrist, Joint::LeftHand, Joint::LeftToe, Joint::RightWrist, Joint::RightHand, Joint::RightToe];
 
+/// Standard deviation of a position along each axis (m).
+const JITTER: f32 = 0.008;
+
+/// Probability that a joint of [`LOST`] is lost in a frame.
+const DROPOUT: f32 = 0.01;
+
 /// The noise, with its own generator: the same seed and frames give the same bits.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointNoise {
     rng: SplitMix64,
-    /// Standard deviation of a position along each axis (m).
-    sigma: f32,
-    /// Chance that a joint of [`LOST`] is lost in a frame.
-    dropout: f32,
     /// Frames that each joint stays lost.
     left: [u8; JOINTS],
 }
@@ -25,12 +27,7 @@ pub struct JointNoise {
 impl JointNoise {
     /// Jitter of 8 mm, and each hand, wrist and toe lost once in about three seconds at 30 Hz.
     pub const fn new(seed: u64) -> Self {
-        Self::with(seed, 0.008, 0.01)
-    }
-
-    /// Jitter of `sigma` (m) and a chance of `dropout` a frame for each joint that can be lost.
-    pub const fn with(seed: u64, sigma: f32, dropout: f32) -> Self {
-        Self { rng: SplitMix64::new(seed), sigma, dropout, left: [0; JOINTS] }
+        Self { rng: SplitMix64::new(seed), left: [0; JOINTS] }
     }
 
     /// A frame as a tracker would give it. Lost joints have a confidence below the gate for 2 to 9 frames and wander by
@@ -39,7 +36,7 @@ impl JointNoise {
         let mut out = *truth;
         for joint in Joint::ALL {
             let lost = self.is_lost(joint);
-            let spread = if lost { 10.0 * self.sigma } else { self.sigma };
+            let spread = if lost { 10.0 * JITTER } else { JITTER };
             let shift = Vec3::new(self.rng.gaussian(), self.rng.gaussian(), self.rng.gaussian()) * spread;
             let guess = 0.1 + 0.3 * self.rng.uniform();
             let tracked = out.at_mut(joint);
@@ -59,7 +56,7 @@ impl JointNoise {
             *left -= 1;
             return true;
         }
-        if LOST.contains(&joint) && self.rng.uniform() < self.dropout {
+        if LOST.contains(&joint) && self.rng.uniform() < DROPOUT {
             *left = 1 + (self.rng.next_u64() % 8) as u8;
             return true;
         }

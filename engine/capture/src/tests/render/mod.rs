@@ -3,8 +3,7 @@
 mod print;
 mod scene;
 mod sensor;
-#[cfg(test)]
-pub(crate) mod tests;
+pub mod tests;
 
 pub use print::Print;
 pub use scene::{Bar, Lighting, PrintedSurface, look_at};
