@@ -136,6 +136,7 @@ impl BodyModel {
     }
 
     /// The base as it is.
+    #[cfg(test)]
     pub(super) fn as_drawn(&self) -> Calibrated {
         let setting = Setting { sliders: [0.0; SLIDERS], scale: 1.0 };
         Calibrated {

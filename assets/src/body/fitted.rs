@@ -84,12 +84,6 @@ pub fn fitted<V: Vocabulary>(sex: Sex, wanted: &Wanted<V>) -> Result<Fitted, Bod
     }
 }
 
-/// The body of a sex as it is drawn, before any morph.
-pub fn drawn(sex: Sex) -> Body {
-    let model = model(sex);
-    model.fitted(&model.as_drawn()).body
-}
-
 /// Where the landmarks of a sex's drawn body lie.
 pub(crate) fn proportions(sex: Sex) -> Proportions {
     Proportions::of(&model(sex).morphs.base)

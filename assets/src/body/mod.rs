@@ -22,6 +22,6 @@ pub mod tape;
 #[cfg(test)]
 mod tests;
 
-pub use fitted::{TOLERANCE, build, drawn, fitted, wanted};
+pub use fitted::{TOLERANCE, build, fitted, wanted};
 pub use outcome::{BodyError, Fitted};
 pub use reading::{Ansur, En, Readings, Vocabulary, Wanted};

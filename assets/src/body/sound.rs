@@ -1,54 +1,11 @@
-//! Checks of a body's surface: how rough its surface is, and whether it crosses itself.
-//!
-//! A surface that meets itself after a short way along it is folded, which no body is; one that meets itself after a
-//! long way touches, as the thighs of stout people do.
+//! Finds where a body's surface crosses itself.
 
 use glam::{DVec3, Vec3};
 
 use toile_base::mesh::Mesh;
 
-/// Roughness of a surface after Ugur 2008, equation 7.2: the mean distance of a vertex from the mean of its neighbours,
-/// as a fraction of the mean length of the edges, so that size alone does not make a body rough. 0 without triangles.
-pub fn roughness(mesh: &Mesh) -> f32 {
-    let (way, count) = laplacians(mesh);
-    let edges: f64 = mesh.triangles.iter().flat_map(sides).map(|(a, b)| length(mesh, a, b)).sum();
-    let mean_edge = edges / (3 * mesh.triangles.len()).max(1) as f64;
-    let rough: f64 = way.iter().zip(&count).filter(|(_, n)| **n > 0).map(|(d, n)| (d / f64::from(*n)).length()).sum();
-    (rough / way.len().max(1) as f64 / mean_edge.max(f64::MIN_POSITIVE)) as f32
-}
-
-/// How much the surface was bent by morphing: the mean distance between a vertex's offset from its neighbours' mean and
-/// the base's own, as a fraction of the mean edge, with both bodies at the same mean length of edges. 0 for a body that
-/// is the base's enlargement. Both meshes have the same triangles.
-pub fn unevenness(mesh: &Mesh, base: &Mesh) -> f32 {
-    let scaled = |m: &Mesh| {
-        let (way, count) = laplacians(m);
-        let edges: f64 = m.triangles.iter().flat_map(sides).map(|(a, b)| length(m, a, b)).sum();
-        let mean_edge = edges / (3 * m.triangles.len()).max(1) as f64;
-        way.into_iter().zip(count).map(move |(d, n)| d / (f64::from(n.max(1)) * mean_edge)).collect::<Vec<_>>()
-    };
-    let (ours, theirs) = (scaled(mesh), scaled(base));
-    let apart: f64 = ours.iter().zip(&theirs).map(|(a, b)| (*a - *b).length()).sum();
-    (apart / ours.len().max(1) as f64) as f32
-}
-
 fn sides(t: &[u32; 3]) -> [(u32, u32); 3] {
     [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])]
-}
-
-fn length(mesh: &Mesh, a: u32, b: u32) -> f64 {
-    f64::from(mesh.positions[a as usize].distance(mesh.positions[b as usize]))
-}
-
-/// Sum of the ways to each vertex's neighbours, and their number; a closed mesh has each edge once each way.
-fn laplacians(mesh: &Mesh) -> (Vec<DVec3>, Vec<u32>) {
-    let mut way = vec![DVec3::ZERO; mesh.positions.len()];
-    let mut count = vec![0; mesh.positions.len()];
-    for (a, b) in mesh.triangles.iter().flat_map(sides) {
-        way[a as usize] += (mesh.positions[b as usize] - mesh.positions[a as usize]).as_dvec3();
-        count[a as usize] += 1;
-    }
-    (way, count)
 }
 
 /// An edge that pierces a triangle.
@@ -70,38 +27,6 @@ pub fn crossings(mesh: &Mesh) -> Vec<Crossing> {
     let mut found = Vec::new();
     edges.into_iter().for_each(|edge| grid.pierced(mesh, edge, &mut found));
     found
-}
-
-/// Edges along the surface within which crossing is folding: about 80 mm of way on our bodies.
-pub const FOLDED_WITHIN: usize = 6;
-
-/// Those crossings at which the surface is folded: a way of at most [`FOLDED_WITHIN`] edges leads from the edge to the
-/// triangle. The others are contact.
-pub fn folds(mesh: &Mesh, crossings: &[Crossing]) -> Vec<Crossing> {
-    if crossings.is_empty() {
-        return Vec::new();
-    }
-    let mut near: Vec<Vec<u32>> = vec![Vec::new(); mesh.positions.len()];
-    for (a, b) in mesh.triangles.iter().flat_map(sides) {
-        near[a as usize].push(b);
-    }
-    let folded = |c: &&Crossing| {
-        let mut reached = c.edge.to_vec();
-        let mut from = 0;
-        for _ in 0..FOLDED_WITHIN {
-            let to = reached.len();
-            for k in from..to {
-                for &v in &near[reached[k] as usize] {
-                    if !reached.contains(&v) {
-                        reached.push(v);
-                    }
-                }
-            }
-            from = to;
-        }
-        c.triangle.iter().any(|v| reached.contains(v))
-    };
-    crossings.iter().filter(folded).copied().collect()
 }
 
 /// Size of the cells in which triangles are looked up (m): about two edges of a body.

@@ -17,7 +17,8 @@ impl Fill {
     /// The fuller of two, with what both lost.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
-        let fuller = if other.most * self.capacity > self.most * other.capacity || self.capacity == 0 { other } else { self };
+        let fuller =
+            if other.most * self.capacity > self.most * other.capacity || self.capacity == 0 { other } else { self };
         Self { lost: self.lost + other.lost, ..fuller }
     }
 }

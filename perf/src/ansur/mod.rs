@@ -1,10 +1,7 @@
-//! The parametric body compared with people: random subjects of ANSUR II, body by body.
+//! The survey ANSUR II: its files, random people of it, and the table of how measures go together.
 
-mod study;
 mod survey;
 mod table;
 
-pub(crate) use study::chosen;
-pub use study::{BodyStudy, GIVEN, MeasureErrors, QUICK_MS, Spread, StudyError, TOO_ROUGH, study};
-pub use survey::{Survey, SurveyError};
+pub use survey::{Survey, SurveyError, chosen};
 pub use table::table;

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use toile_assets::file::{self, FileError, FileKind};
 use toile_base::body::Sex;
 
+use crate::random::CaseRandom;
+
 /// A survey as a table: ANSUR II has 3 MB and more people than any other that is public.
 const SURVEY: FileKind = FileKind {
     name: "an ANSUR II file, such as ANSUR_II_FEMALE.csv",
@@ -95,5 +97,34 @@ impl Survey {
             number.ok_or_else(|| SurveyError::NoNumber { file: file(), line: line + 2, column: name.to_owned() })
         };
         self.rows.iter().enumerate().map(cell).collect()
+    }
+}
+
+/// Draws `count` of so many people without repeats: the first rows of a shuffle (Fisher and Yates).
+pub fn chosen(people: usize, count: usize, seed: u64) -> Vec<usize> {
+    let mut rows: Vec<usize> = (0..people).collect();
+    let mut random = CaseRandom::new("ansur", seed);
+    let count = count.min(people);
+    for i in 0..count {
+        let other = i + random.below(people - i);
+        rows.swap(i, other);
+    }
+    rows.truncate(count);
+    rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_person_is_drawn_twice() {
+        let mut rows = chosen(100, 60, 7);
+        assert_eq!(rows, chosen(100, 60, 7), "by the seed");
+        assert_ne!(rows, chosen(100, 60, 8));
+        rows.sort_unstable();
+        rows.dedup();
+        assert_eq!(rows.len(), 60);
+        assert_eq!(chosen(5, 60, 7).len(), 5);
     }
 }

@@ -4,7 +4,6 @@ use clap::Subcommand;
 use toile_cli::exit::AppError;
 
 pub(super) mod backend;
-mod body;
 mod contact;
 mod depth;
 mod drape;
@@ -22,7 +21,6 @@ mod worn_summary;
 pub enum BenchCommand {
     Skinning(skinning::SkinningArgs),
     Skirt(skirt::SkirtArgs),
-    Body(body::BodyBenchArgs),
     Measure(measure::MeasureBenchArgs),
     Depth(depth::DepthArgs),
     Contact(contact::ContactArgs),
@@ -38,7 +36,6 @@ pub fn run(command: &BenchCommand) -> Result<(), AppError> {
     match command {
         BenchCommand::Skinning(args) => skinning::run(args),
         BenchCommand::Skirt(args) => skirt::run(args),
-        BenchCommand::Body(args) => body::run(args),
         BenchCommand::Measure(args) => measure::run(args),
         BenchCommand::Depth(args) => depth::run(args),
         BenchCommand::Contact(args) => contact::run(args),

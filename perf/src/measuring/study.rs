@@ -4,6 +4,7 @@ use std::f32::consts::TAU;
 use std::path::PathBuf;
 
 use serde::Serialize;
+use toile_assets::body::BodyError;
 use toile_assets::sizes::Population;
 use toile_base::body::Sex;
 use toile_base::frame::DepthFrame;
@@ -22,7 +23,7 @@ use super::sensor::{NoiseModel, Sensor, StudyCamera};
 use super::sizing::{SizeAgreement, sizes};
 use super::standing::{JointPositions, Moment, StudyPerson, TapeMeasures};
 use super::surfaces::PersonSurfaces;
-use crate::ansur::{StudyError, Survey};
+use crate::ansur::{Survey, SurveyError, chosen};
 
 /// Whose bodies are studied.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,9 +55,17 @@ impl Family {
 /// Why a study cannot be made.
 #[derive(Debug, thiserror::Error)]
 pub enum MeasuringError {
-    /// The survey's people.
+    /// The survey's file cannot be read.
     #[error(transparent)]
-    Survey(#[from] StudyError),
+    Survey(#[from] SurveyError),
+    /// A person whose measures are outside of what bodies are built for.
+    #[error("the survey's line {line}: {source}")]
+    Person {
+        /// The line, from 1.
+        line: usize,
+        /// Which measure is outside of which range.
+        source: BodyError,
+    },
     /// The second family.
     #[error(transparent)]
     Family(#[from] FamilyError),
@@ -223,22 +232,21 @@ pub fn study(
         cases.push(case);
     };
     for survey in surveys {
-        let sex = survey.sex().map_err(StudyError::from)?;
+        let sex = survey.sex()?;
         let seed = |k: usize| options.seed ^ ((k as u64) << 20) ^ u64::from(sex == Sex::Male);
         match &options.family {
             Family::Survey => {
-                let columns: Result<Vec<Vec<f64>>, _> = GIVEN.iter().map(|g| survey.column(g.1)).collect();
-                let columns = columns.map_err(StudyError::from)?;
-                for row in crate::ansur::chosen(survey.people(), options.people, options.seed) {
+                let columns: Vec<Vec<f64>> = GIVEN.iter().map(|g| survey.column(g.1)).collect::<Result<_, _>>()?;
+                for row in chosen(survey.people(), options.people, options.seed) {
                     let metres = std::array::from_fn(|k| (columns[k][row] * 1e-3) as f32);
                     let mut rng = SplitMix64::new(seed(row));
                     let person = survey_person(sex, &metres, &mut rng)
-                        .map_err(|source| StudyError::Person { line: row + 2, source })?;
+                        .map_err(|source| MeasuringError::Person { line: row + 2, source })?;
                     add(&person, &mut rng);
                 }
             }
             Family::Makehuman(folder) => {
-                let ranges = SurveyRanges::of(survey).map_err(StudyError::from)?;
+                let ranges = SurveyRanges::of(survey)?;
                 for k in 0..options.people {
                     let mut rng = SplitMix64::new(seed(k) ^ SECOND);
                     let person = makehuman_person(folder, &ranges, &mut rng)?;

@@ -149,9 +149,8 @@ impl<C: JumpableClock + Clone + Send + Sync + 'static> SoakLoops<C> {
         let mut scene_maker = SceneMaker::new(scenario.clone());
         let (frame, reader) = scene_maker.make(0)?;
         let (frame, worker) = if options.workers > 1 {
-            let (crew, worker) =
-                threads::worker_pool(options.workers, ThreadRole::Physics)
-                    .map_err(toile_engine::world::WorldError::from)?;
+            let (crew, worker) = threads::worker_pool(options.workers, ThreadRole::Physics)
+                .map_err(toile_engine::world::WorldError::from)?;
             (frame.with_workers(crew), worker)
         } else {
             (frame, None)

@@ -91,7 +91,11 @@ impl Garment {
         let hoops: std::collections::HashSet<[u32; 2]> = hoop_edges.iter().map(|(ends, _)| *ends).collect();
         let weft = strain_edges.iter_mut().filter(|(ends, _)| hoops.contains(ends));
         weft.chain(hoop_edges.iter_mut()).for_each(|(ends, rest)| *rest = laid.gathered(*ends, *rest));
-        debug_assert_eq!(check::check(&self.data, &self.layout), Ok(()), "lengths change, and no place and no particle");
+        debug_assert_eq!(
+            check::check(&self.data, &self.layout),
+            Ok(()),
+            "lengths change, and no place and no particle"
+        );
     }
 }
 

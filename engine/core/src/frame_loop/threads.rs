@@ -110,10 +110,7 @@ where
 ///
 /// # Errors
 /// As [`WorkerPool::new`].
-pub fn worker_pool(
-    workers: usize,
-    caller: ThreadRole,
-) -> Result<(WorkerPool, Option<RolePlacement>), WorkerPoolError> {
+pub fn worker_pool(workers: usize, caller: ThreadRole) -> Result<(WorkerPool, Option<RolePlacement>), WorkerPoolError> {
     let (send_placement, placed) = mpsc::sync_channel(1);
     let begin = move || match caller.second_worker() {
         Some(role) => _ = send_placement.send(thread_roles::apply(role)),

@@ -38,7 +38,9 @@ pub fn physics(world: &World) -> report::PhysicsReport {
     let lists = world.cloths().iter().map(Cloth::lists).chain(world.layers().map(GarmentContact::lists));
     let lost = lists.map(|lists| lists.lost).sum::<u64>();
     if lost > 0 {
-        warnings.push(format!("lists of a step were full and lost {lost} entries, which is a fault of the program; report it"));
+        warnings.push(format!(
+            "lists of a step were full and lost {lost} entries, which is a fault of the program; report it"
+        ));
     }
     let held = world.colliders().held();
     if held > 0 {
