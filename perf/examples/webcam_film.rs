@@ -62,7 +62,8 @@ fn film(path: &str) -> Result<(), Box<dyn Error>> {
             material: Material::Skin,
             look: None,
         };
-        let scene = TracedScene::build(PictureScene { surfaces: &[surface], floor: true });
+        let surfaces = [surface];
+        let scene = TracedScene::build(PictureScene { surfaces: &surfaces, floor: true });
         let image = scene.render(&view, Size::new(SIZE[0], SIZE[1]), TraceQuality::Motion);
         let mut noisy = |v: u8| (f32::from(v) + NOISE * random.gaussian()).round().clamp(0.0, 255.0);
         let rgb: Vec<f32> = image.bytes().iter().map(|v| noisy(*v)).collect();
