@@ -47,7 +47,7 @@
 //! | none | pose, skinning, colliders, cloth, [`world`]: one step called from the host's own loop. 17 packages |
 //! | `threads` | a second worker of the cloth on a thread of its own; the bits stay the same |
 //! | `meters` | distributions of step and stage times |
-//! | `loop` | sensor, physics and render threads at 120 Hz, recording and replay. With all features 31 packages on Linux |
+//! | `loop` | sensor, physics and render threads at 120 Hz, recording and replay. With all features 29 packages on Linux |
 //!
 //! # Limits
 //!
