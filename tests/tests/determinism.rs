@@ -5,6 +5,7 @@ use std::thread;
 use toile_base::clock::ticks_to_ns;
 use toile_base::frame::Joints;
 use toile_engine::cloth::ContactRates;
+use toile_engine::workers::WorkerPool;
 use toile_engine::world::World;
 use toile_sensors::sample::sample;
 use toile_workspace::dressed;
@@ -12,8 +13,9 @@ use toile_workspace::dressed;
 /// Two seconds of the scene, in which the arms rise and the walk begins.
 const STEPS: u64 = 240;
 
-fn play(names: &[&str], track: &[Joints]) -> World {
-    let mut world = dressed::dressed(names, track);
+fn play(names: &[&str], track: &[Joints], workers: usize) -> World {
+    let pool = WorkerPool::new(workers).expect("a pool of one or two");
+    let mut world = dressed::dressed(names, track).with_workers(pool);
     let start = track[0].time_ns;
     for tick in 0..STEPS {
         world.step(&sample(track, start + ticks_to_ns(tick)).expect("a track with frames"));
@@ -22,7 +24,7 @@ fn play(names: &[&str], track: &[Joints]) -> World {
 }
 
 #[test]
-fn two_runs_end_in_the_same_bits_and_another_input_in_others() {
+fn one_worker_and_two_end_in_the_same_bits_and_another_input_in_others() {
     let track = dressed::track(&dressed::shopper(), 1.8, 2.1);
     let mut other = track.clone();
     // One joint, one sensor frame, one millimetre.
@@ -30,7 +32,8 @@ fn two_runs_end_in_the_same_bits_and_another_input_in_others() {
 
     let names: &[&str] = &["strap-dress"];
     let (first, second, third) = thread::scope(|scope| {
-        let runs = [&track, &track, &other].map(|t| scope.spawn(move || play(names, t)));
+        let runs =
+            [(&track, 1), (&track, 2), (&other, 1)].map(|(t, workers)| scope.spawn(move || play(names, t, workers)));
         let [a, b, c] = runs.map(|run| run.join().expect("a run that ends"));
         (a, b, c)
     });
@@ -42,11 +45,12 @@ fn two_runs_end_in_the_same_bits_and_another_input_in_others() {
 }
 
 #[test]
-fn two_runs_of_three_layers_end_in_the_same_bits() {
+fn three_layers_end_in_the_same_bits_by_one_worker_and_two() {
     let track = dressed::track(&dressed::shopper(), 1.8, 2.1);
     let names: &[&str] = &["straight-trousers", "shirt", "blazer"];
     let [first, second] = thread::scope(|scope| {
-        let runs = [&track, &track].map(|t| scope.spawn(move || play(names, t)));
+        let track = &track;
+        let runs = [1, 2].map(|workers| scope.spawn(move || play(names, track, workers)));
         runs.map(|run| run.join().expect("a run that ends"))
     });
     assert!(dressed::is_finite(&first));

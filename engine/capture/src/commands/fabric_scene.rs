@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use glam::Vec3;
 use toile_assets::file::{self, FileKind};
 use toile_assets::scene_file::{SceneFile, SceneSource};
+use toile_base::fabric::Fabric;
 use toile_capture::recover::VALUES;
 use toile_cli::exit::AppError;
 use toile_fitting::scene::Runner;
@@ -98,7 +99,15 @@ impl FabricScene {
     pub fn simulate(&self, values: &[f64; VALUES], frames: usize) -> Result<Vec<Vec<Vec3>>, AppError> {
         let mut scene = parse(&self.path, &self.text)?;
         for (key, of) in Self::KEYS {
-            scene.garments[0].fabric.set_figure(key, values[of] as f32);
+            let value = values[of] as f32;
+            let found = |(name, least, most): &(&str, f32, f32)| *name == key && (*least..=*most).contains(&value);
+            if !Fabric::RANGES.iter().any(found) {
+                let path = self.path.display();
+                return Err(AppError::input(format!(
+                    "{path}: the search came to {key} = {value}, which no fabric has; start from other values"
+                )));
+            }
+            scene.garments[0].fabric.set_figure(key, value);
         }
         let mut runner = Runner::new(scene).map_err(AppError::input)?;
         let mut all = Vec::with_capacity(frames);

@@ -166,7 +166,7 @@ impl TouchLists {
         touches.resize(next as usize, Touch::default());
         each(&mut |i, touch| {
             let place = &mut count[i as usize];
-            // None where there was no room for all.
+            // None where the list could not hold all.
             if let Some(to) = touches.get_mut(*place as usize) {
                 *to = touch;
             }
