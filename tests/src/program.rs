@@ -7,8 +7,22 @@ use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
+use std::sync::{PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 
 use serde_json::Value;
+
+/// The machine's cores: shared by what runs as long as it needs, and held by a program that has to keep up with a camera.
+static CORES: RwLock<()> = RwLock::new(());
+
+/// The cores beside others, for work that takes seconds. Each program of [`Scratch::toile`] has them.
+pub fn beside_others() -> RwLockReadGuard<'static, ()> {
+    CORES.read().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// All cores: waits for the work that has begun, and keeps more from beginning.
+pub fn alone() -> RwLockWriteGuard<'static, ()> {
+    CORES.write().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// A folder of a test's own, empty; it goes with the test.
 pub struct Scratch(PathBuf);
@@ -27,6 +41,7 @@ impl Scratch {
 
     /// Runs the program in this folder.
     pub fn toile(&self, args: &[&str]) -> Output {
+        let _cores = beside_others();
         let mut command = Command::new(crate::PROGRAM);
         command.stdin(Stdio::null()).env_remove("RUST_BACKTRACE").current_dir(&self.0);
         // Graphics drivers complain on stderr where there is none.

@@ -6,7 +6,7 @@ use std::process::{Command, Output};
 
 use crate::common::Scratch;
 #[cfg(unix)]
-use crate::common::run_until;
+use crate::common::{alone, run_until};
 use crate::kinect;
 use crate::kinect::{IMAGES, player, write_recording};
 use serde_json::Value;
@@ -103,7 +103,7 @@ fn kiosk(scratch: &Scratch, library: &Path, images: usize, enough: impl FnMut(&s
     let recording = scratch.path().join(format!("visit-{images}"));
     write_recording(&recording, images);
     let config = "[sensor]\ncamera = \"kinect\"\n[session]\nstep_out_s = 1.5\nwipe_s = 0.5\n[health]\nevery_s = 0.2\n\
-                  [machine]\nlock_memory = false\n";
+                  [machine]\nlock_memory = false\n[wear]\nquality = \"draft\"\n";
     fs::write(scratch.path().join("kiosk.toml"), config).unwrap();
     let mut command = Command::new(crate::PROGRAM);
     command.current_dir(scratch.path()).args(["kiosk", "--headless", "--seconds", "76", "--json"]);
@@ -114,15 +114,23 @@ fn kiosk(scratch: &Scratch, library: &Path, images: usize, enough: impl FnMut(&s
     (report, words)
 }
 
+/// The states that a kiosk went through.
+#[cfg(unix)]
+fn states_of(report: &Value) -> Vec<&str> {
+    report["states"].as_array().unwrap().iter().map(|s| s.as_str().unwrap()).collect()
+}
+
 #[test]
 #[cfg(unix)]
 fn a_visit_at_the_kiosk_is_seen_by_a_camera_from_start_to_end() {
     let Some(library) = player() else { return };
-    let _alone = crate::REAL_TIME.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let _alone = alone();
     let scratch = Scratch::new("camera-kiosk");
     // Long enough to be measured and dressed beside compilers, too.
     let (kiosk_report, words) = kiosk(&scratch, &library, 1_350, |line| line.contains(", try-on, "));
-    assert_eq!(kiosk_report["states"], serde_json::json!(["attract", "measuring", "try-on"]));
+    let states = states_of(&kiosk_report);
+    // Beside compilers the person is out of sight for seconds now and then, and begins anew.
+    assert!(states.starts_with(&["attract", "measuring"]) && states.contains(&"try-on"), "{states:?}");
     assert!(words.contains("camera seeing"), "{words}");
     assert_eq!(kiosk_report["nonfinite"], 0);
     assert!(kiosk_report["ready_ms"].as_f64().is_some_and(|ms| ms < 10_000.0), "{}", kiosk_report["ready_ms"]);
@@ -133,7 +141,7 @@ fn a_visit_at_the_kiosk_is_seen_by_a_camera_from_start_to_end() {
         lost |= line.contains("camera lost");
         lost && line.contains(", attract, ")
     });
-    let states: Vec<&str> = kiosk_report["states"].as_array().unwrap().iter().map(|s| s.as_str().unwrap()).collect();
+    let states = states_of(&kiosk_report);
     assert!(states.starts_with(&["attract", "measuring"]) && states.ends_with(&["left", "attract"]), "{states:?}");
     assert!(words.contains("camera seeing"), "{words}");
 }

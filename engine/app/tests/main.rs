@@ -3,9 +3,6 @@
 /// The program that the tests run.
 const PROGRAM: &str = env!("CARGO_BIN_EXE_toile");
 
-/// Held by each test of a kiosk that has to keep up with a camera. Two such kiosks at once get too little of two cores.
-static REAL_TIME: std::sync::Mutex<()> = std::sync::Mutex::new(());
-
 #[cfg(unix)]
 mod bad_files;
 mod bad_input;

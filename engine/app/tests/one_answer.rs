@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::common::Scratch;
+use crate::common::{Scratch, beside_others};
 use crate::recordings;
 use serde_json::Value;
 use toile_assets::drafting;
@@ -41,6 +41,7 @@ fn zones(recommendation: &Value) -> Vec<(String, f64, String)> {
 
 /// The way of one call, as an embedder of `toile-fitting` takes it.
 fn dressed_in_one_call(path: &Path, garment: &str) -> (String, [f32; 5]) {
+    let _cores = beside_others();
     let request = TryOn::of_shopper(&[garment.to_owned()], None, ShopperFacts::default());
     let dressed = request.on_shopper(&session::open(Some(path), None).unwrap()).unwrap();
     let Wearer::Body { measures: m, .. } = dressed.request.wearer else { panic!("no person was measured") };
@@ -50,6 +51,7 @@ fn dressed_in_one_call(path: &Path, garment: &str) -> (String, [f32; 5]) {
 
 /// The SDK gives the command's measures and size, and every bit of its cloth.
 fn by_the_sdk(path: &Path, garment: &str, tried: &Value) {
+    let _cores = beside_others();
     let garments = [Garment::open(garment).unwrap()];
     let options = TryOnOptions { quality: Quality::Draft, ..TryOnOptions::default() };
     let own = try_on(&Recording::open(path).unwrap(), &garments, &options).unwrap();
