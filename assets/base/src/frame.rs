@@ -232,6 +232,9 @@ mod tests {
         let good = Intrinsics::KINECT_V1;
         assert!(Intrinsics { width: 65535, height: 65535, ..good }.fault().is_some());
         assert!(Intrinsics { width: 0, ..good }.fault().is_some());
+        let most = (MAX_PIXELS / u64::from(MAX_SIDE)) as u32;
+        assert!(Intrinsics { width: MAX_SIDE, height: most, ..good }.fault().is_none(), "the largest that is allowed");
+        assert!(Intrinsics { width: MAX_SIDE, height: most + 1, ..good }.fault().is_some());
         assert!(Intrinsics { fx: f32::NAN, ..good }.fault().is_some());
         assert!(pose_fault(&Affine3A::from_scale(Vec3::splat(1000.0))).is_some());
         assert!(pose_fault(&Affine3A::from_scale(Vec3::new(-1.0, 1.0, 1.0))).is_some());

@@ -46,3 +46,43 @@ impl Rig {
         self.capsules.iter().map(to).fold(f32::INFINITY, f32::min)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::{Levels, Measures, Sex};
+    use crate::mesh::Mesh;
+    use crate::skeleton::{JOINTS, Skeleton};
+
+    /// A body without a surface: joint `j` at (j, 0, 0).
+    fn bare() -> Body {
+        let [neck, shoulder, chest, underbust, waist, hip, crotch, knee, ankle] = [0.0; 9];
+        Body {
+            sex: Sex::Female,
+            mesh: Mesh::default(),
+            normals: Vec::new(),
+            skeleton: Skeleton { rest: std::array::from_fn::<_, JOINTS, _>(|j| Vec3::X * j as f32) },
+            weights: Vec::new(),
+            regions: Vec::new(),
+            levels: Levels { neck, shoulder, chest, underbust, waist, hip, crotch, knee, ankle },
+            measures: Measures::average(Sex::Female),
+        }
+    }
+
+    #[test]
+    fn spheres_lie_by_their_bones_and_a_distance_is_to_the_nearest_capsule() {
+        let sphere = |bone: u8| Sphere { bone, offset: Vec3::Y, radius: 0.25 };
+        let spheres = std::array::from_fn(|k| sphere((k % JOINTS) as u8));
+        let rig = Rig { spheres, capsules: [[1, 2]; MAX_CAPSULES] };
+        let placed = rig.placed(&bare());
+        for (k, (centre, radius)) in placed.into_iter().enumerate() {
+            assert_eq!((centre, radius), (Vec3::new((k % JOINTS) as f32, 1.0, 0.0), 0.25));
+        }
+        // The capsule runs from (1, 1, 0) to (2, 1, 0).
+        for (p, distance) in
+            [(Vec3::new(1.5, 2.0, 0.0), 0.75), (Vec3::new(3.0, 1.0, 0.0), 0.75), (Vec3::new(1.5, 1.0, 0.0), -0.25)]
+        {
+            assert!((rig.distance(&bare(), p) - distance).abs() < 1e-6, "{p}");
+        }
+    }
+}

@@ -244,3 +244,21 @@ impl Fabric {
         }
     }
 }
+
+#[cfg(all(test, feature = "serde"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_file_leaves_out_is_that_of_matt_cotton() {
+        let fabric: Fabric = toml::from_str(
+            "name = \"plain\"\ntitle = \"Plain\"\ndensity_kg_m2 = 0.1\nstretch_warp_n_m = 5000.0\nstretch_weft_n_m = 4000.0\n\
+             shear_n_m = 60.0\nbend_warp_un_m = 4.0\nbend_weft_un_m = 3.0\nfriction = 0.3\ndamping_per_s = 1.0\n\
+             contact_offset_mm = 2.0\ncomfortable_stretch = 0.04\ncolour = [1.0, 1.0, 1.0]\n",
+        )
+        .unwrap();
+        assert_eq!((fabric.thickness_mm, fabric.threads_per_cm), (USUAL_THICKNESS_MM, USUAL_THREADS));
+        assert_eq!((fabric.sheen, fabric.opacity, fabric.weave), (USUAL_SHEEN, 1.0, Weave::Plain));
+        assert!(fabric.drape_percent.is_none() && fabric.shear_lock.is_none() && !fabric.buckling);
+    }
+}

@@ -208,6 +208,16 @@ mod tests {
         }
     }
 
+    #[test]
+    fn work_is_the_area_below_the_curve() {
+        let curve = StretchCurve { knee_percent: 2.0, knee_n_m: 60.0, beyond_n_m: 40_000.0, hysteresis_n_m: 0.0 };
+        // A triangle up to the knee, and a trapezium between 60 and 860 N/m beyond.
+        let area = 0.5 * 0.02 * 60.0 + 0.02 * 0.5 * (60.0 + 860.0);
+        for work in curve.works(0.04) {
+            assert!((work / area - 1.0).abs() < 1e-6, "{work} of {area}");
+        }
+    }
+
     #[cfg(feature = "serde")]
     #[test]
     fn a_curve_in_a_file_has_a_knee_or_a_table() {

@@ -15,6 +15,9 @@ pub mod solver;
 pub mod trim;
 pub mod tuck;
 
+#[cfg(test)]
+mod tests;
+
 pub use baked::Garment;
 pub use bytes::BytesError;
 pub use check::LayoutError;
