@@ -86,7 +86,7 @@ impl Contacts {
                 + size_of_val(&*o.reach)
                 + o.skin.bytes()
         };
-        size_of::<Self>() + self.owners.iter().map(owned).sum::<usize>()
+        self.owners.iter().map(owned).sum()
     }
 }
 
