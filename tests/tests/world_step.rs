@@ -195,17 +195,18 @@ fn a_shopper_who_is_suddenly_elsewhere_keeps_her_dress() {
     eprintln!("strain at worst {worst}, three seconds later {strain:?}");
     assert!((arrived - 2.0).abs() < 0.1, "she is at {arrived} m, not at 2 m");
     assert_eq!(world.cloths()[0].events.rolled_back, 0);
-    assert!(strain.p99 < 0.1, "the dress has not recovered: {strain:?}");
+    assert!(worst < 0.3, "an edge was stretched by {worst}");
+    assert!(strain.p99 < 0.02, "the dress has not recovered: {strain:?}");
     let cloth = world.cloths()[0].positions.iter().map(|p| p.distance(world.pose().root.into())).fold(0.0, f32::max);
     assert!(cloth < 1.5, "a part of the dress stayed behind, {cloth} m away");
 }
 
 /// Bounds of calm motion for a garment of each kind: the 99th percentile of strain, averaged over the steps.
 const CALM_STRAIN_P99: [(&str, f32); 4] =
-    [("strap-dress", 0.04), ("tee", 0.10), ("wide-leg-trousers", 0.07), ("blazer", 0.08)];
+    [("strap-dress", 0.03), ("tee", 0.09), ("wide-leg-trousers", 0.03), ("blazer", 0.08)];
 
 /// Deepest penetration in calm motion (m).
-const CALM_PENETRATION_M: f32 = 0.010;
+const CALM_PENETRATION_M: f32 = 0.003;
 
 #[test]
 fn calm_motion_stretches_little_and_stays_outside_of_the_body() {
