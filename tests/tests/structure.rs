@@ -52,6 +52,7 @@ const UNSAFE_FILES: [(&str, &str); 47] = [
     ("sensors/src/source/live/realsense.rs", "librealsense's C interface is called"),
     ("sensors/src/source/live/orbbec.rs", "OrbbecSDK's C interface is called"),
     ("sensors/src/source/live/v4l2.rs", "the kernel's calls for webcams, and the memory that it shares"),
+    ("engine/core/tests/memory.rs", "a counting allocator has to implement an unsafe trait"),
     ("engine/view/tests/own_picture_allocations.rs", "a counting allocator has to implement an unsafe trait"),
     ("sensors/tests/cameras/azure_lens.rs", "libk4a shows where points of a calibration are seen"),
     ("sensors/tests/cameras/realsense_recorder.rs", "librealsense's recorder writes what the test plays"),

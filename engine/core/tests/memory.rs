@@ -1,5 +1,7 @@
 //! The memory that states report is the memory that they hold: every byte that is handed out to this thread is counted.
 
+#![expect(unsafe_code, reason = "a counting allocator has to implement an unsafe trait")]
+
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
