@@ -102,8 +102,8 @@ fn a_slot_that_rubs_has_its_own_particles() {
     assert_eq!((friction.kinds(), BendFriction::default().kinds()), (3, 0));
 }
 
-/// One particle, whose bending rubs at slots of so many others.
-fn rubbing(len: u32) -> Result<Garment, LayoutError> {
+/// One particle with such constraints.
+fn one_particle(layout: Layout) -> Result<Garment, LayoutError> {
     let data = GarmentData {
         name: "one".into(),
         size: "one".into(),
@@ -122,13 +122,27 @@ fn rubbing(len: u32) -> Result<Garment, LayoutError> {
         strain_edges: Box::default(),
         hoop_edges: Box::default(),
     };
-    let friction = BendFriction { slots: [slot(len)].into(), particles: [0; 2].into(), coefficients: zeros(2) };
-    let layout = Layout { friction, spans: [vec![(0, 1)], Vec::new()], owner: [0].into(), ..Layout::default() };
-    Garment::new(data, layout)
+    Garment::new(data, Layout { spans: [vec![(0, 1)], Vec::new()], owner: [0].into(), ..layout })
 }
 
 #[test]
 fn a_slot_ends_within_the_particles_of_all_slots() {
+    let rubbing = |len| {
+        let friction = BendFriction { slots: [slot(len)].into(), particles: [0; 2].into(), coefficients: zeros(2) };
+        one_particle(Layout { friction, ..Layout::default() })
+    };
     assert!(rubbing(1).is_ok(), "from the second on, one");
     assert_eq!(rubbing(2).unwrap_err(), LayoutError::Bounds { what: "friction", found: 2, count: 2 });
+}
+
+#[test]
+fn a_hub_ends_within_the_coefficients_of_all_hubs() {
+    let hub = |first| {
+        let group = HubGroup { points: 1, sums: 2, count: 1, coefficients: first, ..HubGroup::default() };
+        let hubs =
+            Hubs { particles: [0].into(), coefficients: zeros(3), groups: [group].into(), count: 1, ..Hubs::default() };
+        one_particle(Layout { hubs, ..Layout::default() })
+    };
+    assert!(hub(1).is_ok());
+    assert_eq!(hub(2).unwrap_err(), LayoutError::Bounds { what: "hubs", found: 3, count: 3 });
 }
