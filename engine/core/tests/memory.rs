@@ -51,8 +51,8 @@ fn held<T>(job: impl FnOnce() -> T) -> (T, usize) {
 }
 
 /// A sheet of a fabric whose bending and links rub, fixed along its upper edge.
-fn sheet(name: &str, height: f32, fabric: &str) -> Garment {
-    let place = |row: u32, column: u32| (Vec3::new(column as f32 * 0.02, height - row as f32 * 0.02, 0.0), row == 0);
+fn sheet(name: &str, fabric: &str) -> Garment {
+    let place = |row: u32, column: u32| (Vec3::new(column as f32 * 0.02, 2.0 - row as f32 * 0.02, 0.0), row == 0);
     let fabric = toile_assets::fabric::built_in(fabric).unwrap();
     bake(name, "one size", &Shape::sheet(24, 31, place), &fabric).unwrap()
 }
@@ -69,7 +69,7 @@ fn assert_reported(what: &str, reported: usize, held: usize) {
 fn a_state_reports_the_memory_that_it_holds() {
     let colliders = Colliders::new(&[], &[], false).unwrap();
     for fabric in ["cotton-lawn", "wool-tropical"] {
-        let garment = sheet("curtain", 2.0, fabric);
+        let garment = sheet("curtain", fabric);
         let (cloth, bytes) = held(|| Cloth::new(&garment, &colliders));
         assert_reported(&format!("state of {fabric}"), cloth.bytes(), bytes);
         let (layout, bytes) = held(|| garment.layout().clone());
@@ -79,7 +79,7 @@ fn a_state_reports_the_memory_that_it_holds() {
 
 #[test]
 fn contact_reports_the_memory_that_it_holds() {
-    let mut garments = ["inner", "outer"].map(|name| sheet(name, 2.0, "cotton-lawn"));
+    let mut garments = ["inner", "outer"].map(|name| sheet(name, "cotton-lawn"));
     garments[1].set_layer(1);
     let (contact, bytes) = held(|| GarmentContact::new(&garments).unwrap());
     assert_reported("contact of two sheets", contact.bytes(), bytes);
